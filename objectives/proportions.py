@@ -79,6 +79,7 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     offered=("proportions",),
     on_sheet=True,
     plain=True,
+    turning=False,
 )
 ROD_TO_CRANK = ClosedFormQuantity(
     name="rod_to_crank",
@@ -103,6 +104,7 @@ ROD_TO_CRANK = ClosedFormQuantity(
     offered=("proportions",),
     on_sheet=True,
     plain=True,
+    turning=False,
 )
 FOOTPRINT = ClosedFormQuantity(
     name="footprint",

@@ -122,7 +122,8 @@ class Quantity(ABC):
     none, SI. in_line: its value for every design without offset. needs: of the machine. instead: quantities that serve
     where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances: whether it includes
     tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a design has it.
-    plain: whether it follows from others at a glance, so that a short table leaves it out.
+    plain: whether it follows from others at a glance, so that a short table leaves it out. turning: whether it is of a
+    crank that turns through, so that a swing has none.
     """
 
     name: str
@@ -151,6 +152,7 @@ class Quantity(ABC):
     offered: tuple[Offer, ...] = _fact(())
     on_sheet: bool = _fact(False)
     plain: bool = _fact(False)
+    turning: bool = _fact(True)
     table: ClassVar[str] = ""
     """Table of a job without which there is no such quantity; none for one that every problem has."""
 

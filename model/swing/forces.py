@@ -17,7 +17,9 @@ finds it. Elsewhere friction may lock the linkage, and the force is NaN.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,6 +32,7 @@ from ..machine.design import Design
 from ..machine.mechanism import Mechanism
 from ..signals.position_error import influences
 from .law import way as way_of
+from .push import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
 from .swing import Array, Swing
 
 _STILL = 1e-200
@@ -105,7 +108,7 @@ def swing_curves(
     else:
         drive, joints = _pushed(theta, m, d, found.load)
         power = drive * m.x_1 * speed
-        angle = np.arcsin(np.clip(np.abs(_bend(theta, m)) / linkage.rod, 0.0, 1.0))
+        angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
     found_load, drive, power = (_chopped(values) for values in (found.load, drive, power))
     return SwingCurves(
@@ -148,11 +151,6 @@ def _motion(linkage: Linkage, theta: Array) -> Motion:
     return found
 
 
-def _bend(theta: Array, m: Motion) -> Array:
-    """Return l sin(theta - phi), m."""
-    return np.asarray(np.sin(theta) * m.along - np.cos(theta) * m.across)
-
-
 def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     """Return the crank angles (n,) of a swing without dead point that put the slider at x (n,).
 
@@ -164,8 +162,8 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
     # sin(theta - phi) tells the two solutions apart: it has one sign between dead points, that of the swing's middle.
     middle = np.array([0.5 * (swing.start + swing.end)])
-    bend = float(_bend(middle, _motion(linkage, middle))[0])
-    theta = np.arctan2(e, x) + (half if bend > 0.0 else -half)
+    side = float(bend(np.sin(middle), np.cos(middle), _motion(linkage, middle))[0])
+    theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
     low, high = sorted((swing.start, swing.end))
     theta = theta + 2.0 * np.pi * np.round((0.5 * (low + high) - theta) / (2.0 * np.pi))
     for _ in range(2):
@@ -178,35 +176,16 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
     """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
     sine, cosine = np.sin(theta), np.cos(theta)
     b: Balance = balance(sine, cosine, m, d, load)
-    turn = np.sign(d.speed)
-    a_side = d.crank_pin_circle * np.sign((1.0 - m.rod_1) * d.speed)
-    b_side = d.slider_pin_circle * np.sign(m.rod_1 * d.speed)
-    o_side = d.crank_pivot_circle * turn
-
-    def residuals(bx: Array, by: Array) -> tuple[Array, Array, tuple[Array, Array, Array, Array]]:
-        ax, ay = bx + b.rod_x, by + b.rod_y
-        px, py = ax + b.crank_x, ay + b.crank_y
-        size_a, size_b, size_p = np.hypot(ax, ay), np.hypot(bx, by), np.hypot(px, py)
-        rod = m.along * by - m.across * bx + b.moment - a_side * size_a + b_side * size_b
-        crank = b.couple + d.r * (cosine * ay - sine * ax) + a_side * size_a + o_side * size_p
-        to_a, to_b, to_p = (_direction(*pair) for pair in ((ax, ay), (bx, by), (px, py)))
-        slopes = (
-            -m.across - a_side * to_a[0] + b_side * to_b[0],
-            m.along - a_side * to_a[1] + b_side * to_b[1],
-            -d.r * sine + a_side * to_a[0] + o_side * to_p[0],
-            d.r * cosine + a_side * to_a[1] + o_side * to_p[1],
-        )
-        return rod, crank, slopes
-
-    straight = d.r * _bend(theta, m)
-    rod_0 = b.moment
-    crank_0 = b.couple + d.r * (cosine * b.rod_y - sine * b.rod_x)
+    sides = PinSides(
+        d.crank_pin_circle * np.sign((1.0 - m.rod_1) * d.speed),
+        d.slider_pin_circle * np.sign(m.rod_1 * d.speed),
+        d.crank_pivot_circle * np.sign(d.speed),
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
-        bx = (m.along * crank_0 - d.r * cosine * rod_0) / straight
-        by = (m.across * crank_0 - d.r * sine * rod_0) / straight
-        if np.any(a_side) or np.any(b_side) or np.any(o_side):
-            bx, by = _with_pins(bx, by, residuals)
-            sure = np.abs(straight) > d.r * d.l * np.sin(_locking_angle(d))
+        bx, by = free_pin(sine, cosine, m, d, b)
+        if any(np.any(side) for side in sides):
+            bx, by = _with_pins(bx, by, partial(pin_rows, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides))
+            sure = np.abs(bend(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
             bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
     slide = np.sign(m.x_1 * d.speed)
@@ -216,14 +195,11 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dic
     return np.asarray(drive), dict(zip(JOINTS, joints, strict=True))
 
 
-def _with_pins(bx: Array, by: Array, residuals: Any) -> tuple[Array, Array]:
+def _with_pins(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) -> tuple[Array, Array]:
     """Return B with friction in the pins, from that without."""
     for _ in range(_ITERATIONS):
-        rod, crank, (rx, ry, cx, cy) = residuals(bx, by)
-        det = rx * cy - ry * cx  # `straight` without friction
-        step_x = (-ry * crank + cy * rod) / det
-        step_y = (-cx * rod + rx * crank) / det
-        bx, by = bx - step_x, by - step_y
+        step_x, step_y = newton_step(rows(bx, by))
+        bx, by = bx + step_x, by + step_y
         size = np.hypot(step_x, step_y)
         if np.all((size <= _SETTLED * np.hypot(bx, by)) | ~np.isfinite(size)):
             break
@@ -231,20 +207,14 @@ def _with_pins(bx: Array, by: Array, residuals: Any) -> tuple[Array, Array]:
     return np.where(near, bx, np.nan), np.where(near, by, np.nan)
 
 
-def _locking_angle(d: Design) -> float:
+def locking_angle(d: Design) -> Any:
     """Return the angle between rod and crank, rad, above which friction in the pins cannot lock; 90 deg at most.
 
     Each row of the two equations' Jacobian turns by no more than the circles of the pins in it, over its length.
     """
-    at_rod = min(1.0, (d.crank_pin_circle + d.slider_pin_circle) / d.l)
-    at_crank = min(1.0, (d.crank_pin_circle + d.crank_pivot_circle) / d.r)
-    return float(min(0.5 * np.pi, np.arcsin(at_rod) + np.arcsin(at_crank)))
-
-
-def _direction(x: Array, y: Array) -> tuple[Array, Array]:
-    size = np.hypot(x, y)
-    some = np.where(size > 0.0, size, 1.0)
-    return x / some, y / some
+    at_rod = np.minimum(1.0, (d.crank_pin_circle + d.slider_pin_circle) / d.l)
+    at_crank = np.minimum(1.0, (d.crank_pin_circle + d.crank_pivot_circle) / d.r)
+    return np.minimum(0.5 * np.pi, np.arcsin(at_rod) + np.arcsin(at_crank))
 
 
 def _crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:

@@ -136,14 +136,14 @@ def _folded(linkage: Linkage, swing: Swing) -> bool:
     return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0
 
 
-def _extreme_angles(swing: Swing) -> list[float]:
+def extreme_angles(swing: Swing) -> list[float]:
     """Return the ends of a swing, and its crank angles normal to the slider line."""
     return [swing.start, swing.end, *swing.inside(0.5 * math.pi), *swing.inside(1.5 * math.pi)]
 
 
 def _require_closing(linkage: Linkage, swing: Swing) -> None:
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    worst = max(_extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
+    worst = max(extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
     reach = abs(e - r * math.sin(worst))
     if reach >= l:
         raise AssemblyError(

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
+from ...model.swing.many import able
+from ...model.swing.swing import Swing
 from ..cycle_peak import screened
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
@@ -25,6 +27,7 @@ def evaluate(
     *,
     gradients: Literal[False] = False,
     own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
 ) -> Array: ...
 @overload
 def evaluate(
@@ -34,6 +37,7 @@ def evaluate(
     *,
     gradients: Literal[True],
     own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
 ) -> tuple[Array, Array]: ...
 def evaluate(
     mechanism: Mechanism,
@@ -42,12 +46,13 @@ def evaluate(
     *,
     gradients: bool = False,
     own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
 ) -> Array | tuple[Array, Array]:
     """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
     A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
     before the last: one design (3 + k,) gives (q,). quantities: names as in job files. own: quantities that may be
-    named besides those of the product.
+    named besides those of the product. swing: which designs need only make, in place of a full turn.
 
     The row of a design that does not turn fully, or that has NaN in it, is NaN. Where friction locks the linkage, what
     follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the exact one of
@@ -73,8 +78,7 @@ def evaluate(
         raise InputError(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
         )
-    with np.errstate(invalid="ignore"):
-        turns = (rows[:, 1] > rows[:, 0] + np.abs(rows[:, 2])) & (rows[:, 0] > 0.0)
+    turns = moving(mechanism, swing, rows)
     turns &= np.isfinite(rows).all(axis=1)
     whole = bool(turns.all())
     found = _found(mechanism, chosen, rows if whole else rows[turns], gradients)
@@ -87,6 +91,15 @@ def evaluate(
             jacobian[where, column] = part.gradients
     values = values.reshape(*shape, len(chosen))
     return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
+
+
+def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> NDArray[np.bool_]:
+    """Return which designs (n, 3 + k) turn fully; with a swing, which can make it."""
+    if swing is not None:
+        return able(mechanism, swing, designs)
+    crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
+    with np.errstate(invalid="ignore"):
+        return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
 
 
 def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]]:

@@ -43,7 +43,7 @@ def certify_designs(
     objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
     rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
     dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
-    forces under friction, peaks that are not minimised.
+    forces under friction, peaks that are not minimised; and for a swing.
     """
     listed = (f"the values of {item.name}" for item in problem.discrete)
     more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
@@ -51,6 +51,11 @@ def certify_designs(
         raise InputError(
             f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "
             "the job and certify that"
+        )
+    if problem.motion is not None:
+        raise InputError(
+            "a certificate is of a crank that turns through; got a swing; the residuals of the front tell how near its "
+            "designs are to optimal"
         )
     if not len(dimensions):
         raise InputError("an empty front cannot be certified; its message says why nothing is feasible")

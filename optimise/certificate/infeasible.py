@@ -24,9 +24,9 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
 
     Requirements that cannot be bounded over a range of designs are not used: the others must contradict each other.
     False when a design meets all of these, or when the budget ends first: then nothing is known. False, too, where more
-    than the three dimensions varies. poll: called many times a second; what it raises ends the search.
+    than the three dimensions varies, and for a swing. poll: called many times a second; what it raises ends the search.
     """
-    if problem.mechanism.varying or problem.choices:
+    if problem.mechanism.varying or problem.choices or problem.motion is not None:
         return False
     start = time.perf_counter()
     one = np.ones(len(problem.objectives))

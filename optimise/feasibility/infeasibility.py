@@ -18,7 +18,9 @@ from ..search.sampling import first_samples
 from ..search.violation import least_violation
 from .best import Best
 from .relaxation import Relaxation, missed, relaxations
+from .swinging import unswung
 
+_UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
 _SAMPLES = 16384
 _RANKED = 2048
 _STARTS = 24
@@ -55,7 +57,7 @@ def diagnose(
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
-        message = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
+        message = _UNMOVED if problem.motion is None else unswung(problem)
         return Diagnosis(feasible, (), message)
     found = []
     for constraint in constraints_of(problem):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ...objectives.robust.quantity import RobustQuantity
+from ...objectives.tables.evaluate import moving
 from ...objectives.tables.varying_column import varying_column
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -190,9 +191,11 @@ class _Search:
         return math.prod(len(ladder) for ladder in self._ladders(reach))
 
     def _window(self, reach: int) -> Array:
-        """Return the combinations (n, 3 + v) of the multiples around the design that turn fully."""
+        """Return the combinations (n, 3 + v) of the multiples around the design that turn fully or make the swing."""
         grid = np.meshgrid(*self._ladders(reach), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
+        if self.part.motion is not None:
+            return np.asarray(designs[moving(self.part.mechanism, self.part.motion, designs)])
         crank, rod, offset = designs.T[:3]
         # Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
         return np.asarray(designs[(crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod)])

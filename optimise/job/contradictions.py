@@ -11,7 +11,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...model.errors import InputError, JobError
+from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
+from ..feasibility.swinging import require_swinging
 from ..problem.problem import Problem
 from ..problem.requirements import Range
 from ..problem.zero_objectives import require_ranking
@@ -27,6 +29,12 @@ def require_consistent(problem: Problem) -> None:
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
     require_ranking(problem)
+    if problem.motion is not None:
+        try:
+            require_swinging(problem)
+        except InputError as error:
+            raise JobError(f"motion: {error}") from None
+        return
     require_reachable(problem)
     require_slow_stroke(problem)
 
@@ -45,7 +53,8 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
     """Refuse a value that a quantity has for no linkage at all."""
     of = problem.quantity(name)
     got = f"got {word} {value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
-    if of.domain is not None and of.domain.refuses(value, least=word == "min"):
+    turning = problem.motion is None or isinstance(of, SwingQuantity)  # below one, proportions may swing
+    if turning and of.domain is not None and of.domain.refuses(value, least=word == "min"):
         raise JobError(f"{key}: {of.domain.rule}; {got}; {of.domain.remedy}")
     if not of.signed and value < 0.0:
         raise JobError(f"{key}: {name} is never negative; {got}; give its size")

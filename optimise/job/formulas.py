@@ -91,14 +91,18 @@ class Formulas:
         machine: Mechanism,
         ranges: Mapping[str, Range],
         named: Mapping[str, Stated],
+        *,
+        turning: bool = True,
     ) -> None:
         """Take a job's own quantities, its machine, the ranges of the dimensions and its named formulas.
 
+        turning: whether the crank must turn through, which narrows the dimensions.
         Raises JobError for a named formula that is wrong.
         """
         self.made: dict[str, FormulaQuantity] = {}
         self._machine, self._stated = machine, named
         self._open: list[str] = []
+        self._turning = turning
         self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in own}
         self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
         self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
@@ -186,7 +190,8 @@ class Formulas:
             if part.name not in self._intervals:
                 self._intervals[part.name] = self._interval(part)
                 self._linears.setdefault(part.name, None)
-        within = Ranges(self._intervals, self._linears, self._advice(names)).of(node)
+        linears = self._linears if self._turning else dict.fromkeys(self._linears)
+        within = Ranges(self._intervals, linears, self._advice(names)).of(node)
         wider = f"widen the ranges of {' and '.join(DIMENSIONS)}"
         self._intervals[name] = within
         self._linears[name] = linear_of(node, self._linears)
@@ -241,7 +246,7 @@ class Formulas:
         crank, rod, offset = (self._intervals[name] for name in DIMENSIONS)
         sizes = sorted((abs(offset.lower), abs(offset.upper)))
         least = 0.0 if offset.spans_zero else sizes[0]
-        if of.reach is None or rod.upper <= (crank.lower + least) * CLEAR:
+        if of.reach is None or not self._turning or rod.upper <= (crank.lower + least) * CLEAR:
             return found
         lower, upper = of.reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
         return Interval(lower, upper, found.apart)

@@ -16,6 +16,7 @@ from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
+from .motion import MotionPart
 from .own import MOST_OWN, Declared, QuantityPart, named, one_line
 from .quantities import ConstraintsPart, ObjectivesPart, tables
 from .robust import RobustPart
@@ -94,6 +95,11 @@ class Job(Part):
     )
     mechanism: MechanismPart = required(
         "how the machine is driven and what it weighs", {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}
+    )
+    motion: MotionPart = optional(
+        "how the crank moves: it turns through, or swings between two angles, driven at the crank or at the slider",
+        {"kind": "turn"},
+        default=MotionPart(),
     )
     load: tuple[Load, ...] = optional(
         "loads on the slider along its line; several add up",

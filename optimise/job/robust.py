@@ -51,6 +51,8 @@ def robustly(problem: Problem, part: RobustPart | None) -> Problem:
     """Return the problem made robust if the job asks for it. Raises JobError if it cannot be."""
     if part is None:
         return problem
+    if problem.motion is not None:
+        raise JobError("robust: it is of a crank that turns through; got a swing; leave the table out")
     if not uncertain(problem.part(0).mechanism):
         raise JobError(
             "robust: it needs tolerances of crank, rod or offset; got none (that of the crank angle changes no "

@@ -8,6 +8,7 @@ from pathlib import Path
 from ...model.errors import InputError, JobError
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
+from ...objectives.tables.swinging import swing_quantities
 from ..discrete.meetable import require_meetable
 from ..methods.registry import require_fit
 from ..problem.problem import Problem
@@ -16,6 +17,7 @@ from .contradictions import require_consistent
 from .formulas import Formulas
 from .messages import key_of
 from .model import Job
+from .motion import require_swing_asked, with_margin
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
@@ -30,16 +32,19 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     """
     variables = job.variables
     require_target(job.target_motion, job.objectives, job.constraints)
+    motion = job.motion.build()
+    require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
     own = (
         *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
         *functions_of(job.quantity, folder),
         *installed,
+        *(() if motion is None else swing_quantities(motion)),
     )
-    formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity))
+    formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity), turning=motion is None)
     choices, variants = variants_of(job, formulas)
     objectives = tuple(objectives_of(job.objectives, formulas))
-    constraints = _joined(constraints_of(job.constraints, formulas), formulas)
+    constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
@@ -54,6 +59,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
         discrete=discrete_of(job),
+        motion=motion,
         costs=None if job.costs is None else job.costs.build(),
         settings=job.optimiser.build(),
         own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),

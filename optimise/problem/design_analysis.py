@@ -14,12 +14,14 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing, require_swing
 from ...objectives.kinds import unit_text
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
+from ...objectives.tables.swinging import swinging
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -162,11 +164,19 @@ def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Arra
     return machine, sizes
 
 
-def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] = (), title: str = "") -> Analysis:
+def analyse(
+    mechanism: Mechanism,
+    design: ArrayLike,
+    *,
+    own: Sequence[Quantity] = (),
+    title: str = "",
+    swing: Swing | None = None,
+) -> Analysis:
     """Return everything about one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
 
-    own: quantities besides those of the product. Raises `AssemblyError` for a design that does not turn fully, and
-    `InputError` for one that is not 3 + k finite numbers.
+    own: quantities besides those of the product. swing: what the design need only make, in place of a full turn.
+    Raises `AssemblyError` for a design that does not turn fully, and `InputError` for one that is not 3 + k finite
+    numbers or that cannot swing as asked.
 
     >>> from slidercrank import Mechanism, analyse
     >>> analysis = analyse(Mechanism(slider_mass=0.8, speed=30.0), [0.04, 0.1, 0.02])
@@ -174,10 +184,11 @@ def analyse(mechanism: Mechanism, design: ArrayLike, *, own: Sequence[Quantity] 
     1.05063
     """
     machine, sizes = one_design(mechanism, design)
-    linkage = single(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch))
+    given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
+    linkage = single(machine, given) if swing is None else require_swing(machine, given, swing)
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}
-    chosen = (*QUANTITIES.values(), *own)
+    chosen = (*QUANTITIES.values(), *own) if swing is None else swinging(own)
     row = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset), *sizes[3:]]])
     for item in chosen:
         reason = item.undefined_because([mechanism]) or item.zero_because([mechanism])

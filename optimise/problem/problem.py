@@ -20,6 +20,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
+from ...objectives.tables.swinging import require_loads, require_of_swing, swing_facts, swing_quantities
 from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
 from .discrete import Discrete, require_known
@@ -27,6 +28,7 @@ from .requirements import Constraint, Objective, Range, Word, merged
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
+    from ...model.swing.swing import Swing
     from ...model.swing.words import Driver, Law
 
 _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
@@ -94,7 +96,8 @@ class Problem:
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and constraints
     may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
     only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`. discrete: which of a design's
-    numbers have one of some values only; their ranges are the hulls of these.
+    numbers have one of some values only; their ranges are the hulls of these. motion: a swing of the crank, which then
+    need not turn through; its quantities are among the own ones, those of a turning crank refused.
     """
 
     name: str
@@ -111,10 +114,13 @@ class Problem:
     variants: tuple[Variant, ...] = ()
     slow_stroke: SlowStroke | None = None
     discrete: tuple[Discrete, ...] = ()
+    motion: Swing | None = None
 
     def __post_init__(self) -> None:
         keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "discrete")
         require_known(self.discrete, ["crank", "rod", "offset", *(item.name for item in self.mechanism.varying)])
+        if self.motion is not None:
+            self._take(self.motion)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):
@@ -153,6 +159,26 @@ class Problem:
                     )
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
+
+    def _take(self, swing: Swing) -> None:
+        """Add the quantities of a swing. Raises `InputError` for what a swing cannot have."""
+        known = {of.name for of in self.own}
+        more = tuple(of for of in swing_quantities(swing) if of.name not in known)
+        object.__setattr__(self, "own", (*self.own, *more))
+        if self.slow_stroke is not None:
+            raise InputError(
+                f"constraints.slow_stroke: it is of a crank that turns through; got {self.slow_stroke} with a swing; "
+                "leave it out"
+            )
+        for variant in self.variants or (self,):
+            require_loads(variant.mechanism)
+        tables = {item.quantity: "objectives" for item in self.objectives}
+        for name, table in ({item.quantity: "constraints" for item in self.every_constraint} | tables).items():
+            fact = next((of for of in swing_facts() if of.name == name), None)
+            reason = None if fact is None else fact.unfit(swing)
+            if reason is not None:
+                raise InputError(f"{table}.{name}: {reason}")
+            require_of_swing(f"{table}.{name}", self.quantity(name))
 
     def __repr__(self) -> str:
         wanted = ", ".join(f"{objective.sense} {objective.quantity}" for objective in self.objectives)
@@ -195,16 +221,17 @@ class Problem:
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
         if gradients:
-            return evaluate(self.mechanism, designs, names, gradients=True, own=self.own)
-        return evaluate(self.mechanism, designs, names, own=self.own)
+            return evaluate(self.mechanism, designs, names, gradients=True, own=self.own, swing=self.motion)
+        return evaluate(self.mechanism, designs, names, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
         """Return everything about one design (3 + k,), crank, rod, offset, m, and the varying numbers, SI.
 
-        Raises `AssemblyError` for a design that does not turn fully, `InputError` for a problem with choices.
+        Raises `AssemblyError` for a design that does not turn fully, or not as far as a swing asks; `InputError` for a
+        problem with choices.
         """
         self._require_chosen()
-        return analyse(self.mechanism, design, own=self.own, title=self.name)
+        return analyse(self.mechanism, design, own=self.own, title=self.name, swing=self.motion)
 
     def swing(
         self,

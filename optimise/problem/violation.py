@@ -7,6 +7,7 @@ import numpy as np
 from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.quantity import Array, Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
+from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ...objectives.volumetric_efficiency import VOLUMETRIC_EFFICIENCY
@@ -23,8 +24,11 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
     They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
-    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio.
+    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio. Of a swing the
+    only one is on its transmission angle: the margin from its dead points.
     """
+    if problem.motion is not None:
+        return _with_floor(problem.constraints, SWING_TRANSMISSION_ANGLE)
     found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
     if problem.mechanism.fullest.friction.acts:
         found = _with_floor(found, SELF_LOCKING_MARGIN)

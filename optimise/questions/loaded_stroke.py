@@ -54,6 +54,8 @@ def front_warnings(front: ParetoFront) -> list[str]:
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
+    if front.problem.motion is not None:  # forth and back are told apart by their drive alone
+        return []
     slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
     found = free & _fast(slow, loaded)
     if not found.any():

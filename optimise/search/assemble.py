@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ...model.kinematics.in_line import without_rounding
 from ...objectives.formula.quantity import FormulaQuantity
-from ...objectives.proportions import STROKE
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.slack import slack_of
@@ -114,7 +113,7 @@ def columns_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array,
 
     variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
     """
-    from ...objectives.tables import analysis
+    from ...objectives.tables import analysis, swinging
 
     parts: list[Columns] = []
     order, done = [], 0
@@ -127,13 +126,14 @@ def columns_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array,
         part = problem.part(same[0])
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
             stand(done, len(dimensions))
-            columns = analysis.columns_of(part.mechanism, dimensions[rows], own=problem.own)
+            judged = analysis.columns_of if problem.motion is None else swinging.columns_of
+            columns = judged(part.mechanism, dimensions[rows], own=problem.own)
             stand(done, len(dimensions))
             chosen = {
                 choice_field(name): np.array([problem.variants[variant].labels[place] for variant in variants[rows]])
                 for place, name in enumerate(problem.choices)
             }
-            before = list(columns).index(STROKE.field)
+            before = 3 + len(part.mechanism.varying)
             of_size, others = dict(islice(columns.items(), before)), dict(islice(columns.items(), before, None))
             parts.append(of_size | chosen | others | _slacks(part, dimensions[rows]))
             done += len(rows)
@@ -147,7 +147,7 @@ def columns_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array,
 
 def _column(part: Columns, name: str) -> NDArray[Any]:
     """Return a column of one machine's designs; NaN where only other machines have it."""
-    return part.get(name, np.full(len(part[STROKE.field]), np.nan))
+    return part.get(name, np.full(len(next(iter(part.values()))), np.nan))
 
 
 def _slacks(problem: Problem, dimensions: Array) -> Columns:

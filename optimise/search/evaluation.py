@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.quantity import Array, Pieces
+from ...objectives.tables.evaluate import moving
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
@@ -98,11 +99,12 @@ class Evaluator:
         return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
     def _geometry_violation(self, dimensions: Array) -> Array:
-        """Greatest relative violation of the computed dimensions' ranges; inf without a fully turning linkage."""
-        crank, rod, offset = dimensions.T[:3]
+        """Greatest relative violation of the computed dimensions' ranges; inf where the linkage does not move as asked.
+
+        As asked: it turns fully, or makes the swing of the problem.
+        """
         violation = np.zeros(len(dimensions))
-        with np.errstate(invalid="ignore"):
-            turns = (crank > 0.0) & (rod > crank + np.abs(offset))
+        turns = moving(self.mechanism, self.problem.motion, dimensions)
         violation[~turns] = np.inf
         for name in self.computed:
             # A linear rule may give an offset of the other sign, which is of the other sheet.
@@ -120,7 +122,7 @@ class Evaluator:
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------
 
     def valid(self, u: Array) -> NDArray[np.bool_]:
-        """Return which points give a linkage that turns fully."""
+        """Return which points give a linkage that turns fully, or makes the swing of the problem."""
         return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
 
     def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:

@@ -89,9 +89,9 @@ def _group(key: str) -> Group:
 @functools.cache
 def _titles() -> dict[str, str]:
     """Return the titles of the columns of quantities, by their keys."""
-    from ...objectives.registry import QUANTITIES
+    from ...objectives.registry import FACTS
 
-    return {quantity.field: quantity.title for quantity in QUANTITIES.values()}
+    return {quantity.field: quantity.title for quantity in FACTS.values()}
 
 
 def _meant(name: str, keys: Collection[str]) -> str:

@@ -32,7 +32,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {settings.samples} samples a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": [*_given(problem.mechanism), *_own(problem)],
+        "given": [*_motion(problem), *_given(problem.mechanism), *_own(problem)],
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
@@ -93,6 +93,18 @@ def _given(mechanism: Mechanism) -> list[str]:
     lines += _friction(mechanism.friction)
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
+    return lines
+
+
+def _motion(problem: Problem) -> list[str]:
+    swing = problem.motion
+    if swing is None:
+        return []
+    ends = f"crank swings from {math.degrees(swing.start):.6g} to {math.degrees(swing.end):.6g} deg and back"
+    timed = "" if swing.duration is None else f", {swing.duration:.6g} s a way"
+    lines = [f"{ends}; the {swing.driver} is driven, law {swing.law}{timed}"]
+    if swing.actuator_tolerance:
+        lines.append(f"tolerance of the actuator {1e3 * swing.actuator_tolerance:.6g} mm")
     return lines
 
 

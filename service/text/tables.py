@@ -6,6 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from ..designs.columns import DIMENSIONS, Column, find_column, metric_key
@@ -119,7 +120,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 
     names = list(result.designs[0])
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
-    keys = [*dimensions, *_chosen(names), find_column(STROKE.name, names).key]
+    keys = [*dimensions, *_chosen(names), *(key for key in names if metric_key(key) == STROKE.field)]
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     objectives = {wanted.column for wanted in result.objectives}
@@ -142,11 +143,15 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 
 
 def _chosen(keys: list[str]) -> list[str]:
-    """Return the columns of what was chosen besides the dimensions: those between the offset and the stroke."""
-    metric = [metric_key(key) for key in keys]
-    if not {"offset_mm", "stroke_mm"} <= set(metric):
+    """Return the columns of what was chosen besides the dimensions: those between the offset and the quantities."""
+    from ...objectives.registry import FACTS
+
+    metric, fields = [metric_key(key) for key in keys], {of.field for of in FACTS.values()}
+    if "offset_mm" not in metric:
         return []
-    return keys[metric.index("offset_mm") + 1 : metric.index("stroke_mm")]
+    first = metric.index("offset_mm") + 1
+    count = len(list(takewhile(lambda key: key not in fields, metric[first:])))
+    return keys[first : first + count]
 
 
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:

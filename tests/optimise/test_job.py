@@ -21,7 +21,8 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
-from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.registry import FACTS, QUANTITIES
+from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Settings
@@ -328,7 +329,14 @@ def test_the_examples_of_the_schema_are_valid() -> None:
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
             given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
-            parse_job(small(**given, load=[AIR], objectives={name: example}))
+            fact = FACTS[name]
+            if isinstance(fact, SwingQuantity):
+                swing = {"kind": "swing", "from": "20 deg", "to": "80 deg", "driver": fact.driver or "slider"}
+                swing |= {"law": "harmonic", "duration": "2 s"}
+                rubs = {key: given[key] for key in ("tolerances", "friction")}
+                parse_job(small(**rubs, motion=swing, objectives={name: example}))
+            else:
+                parse_job(small(**given, load=[AIR], objectives={name: example}))
 
 
 def test_the_schema_cannot_be_changed_from_outside() -> None:

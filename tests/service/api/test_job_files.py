@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from slidercrank.model.errors import JobError
-from slidercrank.objectives.motion_deviation import DEVIATIONS
-from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
@@ -83,7 +82,7 @@ def test_a_file_that_is_no_toml_is_said_with_its_line(shared: httpx.Client) -> N
 
 def test_every_quantity_is_explained(shared: httpx.Client, pytestconfig: pytest.Config) -> None:
     found = {item["name"]: item for item in shared.get("/quantities").json()["quantities"]}
-    assert set(found) == {"crank", "rod", "offset", *QUANTITIES, *DEVIATIONS}
+    assert set(found) == {"crank", "rod", "offset", *FACTS}
     theory = (pytestconfig.rootpath / "docs" / "theory.md").read_text()
     sections = set(re.findall(r"^## (.+)$", theory, re.MULTILINE))
     pictures = (pytestconfig.rootpath / "service/page/static/help/picture.js").read_text()

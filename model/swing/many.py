@@ -1,0 +1,260 @@
+"""Many designs over one swing: their pieces between kinks, and states at points of them.
+
+A swing is cut where its law has a corner, where a table has a knot, where friction or a load changes sides, and where
+the guide's force does. Between two cuts every curve is smooth. A cut moves with the design: where a state g is zero on
+it, by -dg/dp / (dg/dt) in the share t of the time (implicit function theorem).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.rubbing import drives
+from ..kernel.arithmetic import STEP
+from ..kinematics.position import motion
+from ..machine.derived import derived
+from ..machine.design import design_at
+from ..machine.loads.load import Enters
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import Numbers, numbers_of
+from ..machine.raw import fullest_inputs
+from .closure import driven_angles, passes, within
+from .forces import locking_angle
+from .law import corners, shares_of
+from .points import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
+from .swing import Swing, extreme_angles
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Integers = NDArray[np.int64]
+_THIN = 1e-12
+_SCAN = 33
+_CONTACTS = 6
+_ROOTS = 60
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Pieces of one way.
+
+    cuts: (n, c), shares in ascending order from 0 to 1. state: (n, c), which one has a value of its own on a cut; -1
+    where the cut stays.
+    """
+
+    back: bool
+    cuts: Array
+    state: Integers
+
+    @property
+    def live(self) -> Bools:
+        """Pieces (n, c - 1) that have a length."""
+        return np.asarray(np.diff(self.cuts, axis=1) > _THIN)
+
+    @property
+    def inside(self) -> Array:
+        """A share within each piece (n, c - 1)."""
+        return np.asarray(self.cuts[:, :-1] + 0.382 * np.diff(self.cuts, axis=1))
+
+
+class Many:
+    """Designs that can swing as asked. numbers: raw ones that they set. slopes: whether derivatives are asked for."""
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        swing: Swing,
+        designs: Array,
+        *,
+        slopes: bool,
+        slow: bool = False,
+        free: bool = False,
+    ) -> None:
+        """Take designs (n, 3 + k). slow: without inertia. free: without friction."""
+        raw, self.loads = fullest_inputs(mechanism)
+        self.mechanism, self.swing = mechanism, replace(swing, law="slow", duration=None) if slow else swing
+        self.numbers: Numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
+        self.rubs = mechanism.fullest.friction.acts and not free
+        self.path: Path = path_of(self.swing, rubbing=self.rubs)
+        self.blocks, self.steps = derived(raw, self.loads, self.numbers.columns, self.numbers.values, steps=slopes)
+        self.plain: Complexes = self.blocks.astype(np.complex128)
+        self.designs, self.count, self.columns = designs, len(designs), len(self.numbers.columns)
+        self.sign = 1.0 if mechanism.branch == "open" else -1.0
+        # Alike on both ways is what depends on the position alone: laws are the same backwards.
+        self.both = self.rubs or not all(load.by_position for load in mechanism.loads)
+
+    def states(self, which: Any, share: Any, inside: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
+        """Return states (..., 8) at shares of any shape. which: designs. step: of which raw number the slope is."""
+        shape = np.broadcast_shapes(*(np.shape(each) for each in (which, share, inside, back, slip)))
+        share, slip, inside, back = (
+            np.ascontiguousarray(np.broadcast_to(each, shape), dtype=np.float64).ravel()
+            for each in (share, slip, inside, back)
+        )
+        rows = np.ascontiguousarray(np.broadcast_to(which, shape), dtype=np.int64).ravel()
+        stepped = rows if step is None else rows * self.columns + step
+        blocks = self.plain if step is None else self.steps
+        found = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, inside, back))
+        return found.reshape(*shape, found.shape[1])
+
+    def locked(self) -> Bools:
+        """Return which designs friction may lock somewhere on the swing."""
+        if not self.rubs:
+            return np.zeros(self.count, np.bool_)
+        d = design_at(self.blocks.transpose(1, 2, 0).reshape(self.blocks.shape[1], -1), slice(None))
+        if self.swing.driver == "slider":
+            least = driven_angles(self.swing, self.sign, self.designs).values.min(axis=1)
+            pins = d.crank_pin_circle + d.slider_pin_circle + d.crank_pivot_circle > 0.0
+            return np.asarray(pins & (least <= locking_angle(d)))
+        reach = np.max([np.abs(d.e - d.r * np.sin(angle)) for angle in extreme_angles(self.swing)], axis=0)
+        return np.asarray(drives(np.sqrt(d.l * d.l - reach * reach), reach, d) <= 0.0)
+
+    def ways(self) -> tuple[bool, ...]:
+        """Return the ways that differ: forth, and back unless it is alike."""
+        return (False, True) if self.both else (False,)
+
+    def pieces(self, *, back: bool, forces: bool = True) -> Pieces:
+        """Return the pieces of one way. forces: whether cuts that only forces have are wanted too."""
+        found = list(self._corners()) + (list(self._kinks()) if forces else [])
+        shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in found)]
+        state = np.tile(np.array([-1, -1, *(code for _, code in found)], dtype=np.int64), (self.count, 1))
+        cuts = np.stack(shares, axis=1)
+        cuts = np.where((cuts > _THIN) & (cuts < 1.0 - _THIN), cuts, np.where(cuts < 0.5, 0.0, 1.0))
+        cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
+        own = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
+        touching = forces and self.rubs and self.mechanism.fullest.friction.guide > 0.0
+        return self._with_contacts(own) if touching else own
+
+    def _corners(self) -> Any:
+        for share in corners(self.swing.law):
+            yield np.full(self.count, share), -1
+
+    def _kinks(self) -> Any:
+        """Yield every cut that forces have: its share on the way forth (n,), and the state with a value there."""
+        friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
+        if self.rubs:
+            for angle in (0.5 * np.pi, 1.5 * np.pi):
+                yield from self._at_angle(np.full(self.count, angle), ANGLE)
+            if slider and friction.crank_pin.circle:
+                yield self._at_place(np.zeros(self.count)), PLACE
+        if self.both and not slider:
+            r, l, e = self.designs[:, :3].T
+            for reach, ahead in ((r + l, True), (r - l, False)):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    angle = np.arcsin(e / reach)
+                yield from self._at_angle(angle if ahead == (self.sign > 0.0) else np.pi - angle, PACE)
+        for k, kind in enumerate(self.loads.kind.tolist()):
+            for knot in self.loads.at[self.loads.start[k] : self.loads.start[k + 1]].tolist():
+                if kind == int(Enters.ANGLE_TABLE):
+                    yield from self._at_angle(np.full(self.count, knot), ANGLE)
+                elif slider:
+                    yield self._at_place(np.full(self.count, self.sign * knot)), PLACE
+                else:
+                    r, l, e = self.designs[:, :3].T
+                    size = np.hypot(knot, e)
+                    with np.errstate(divide="ignore", invalid="ignore"):
+                        half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
+                    for way in (-1.0, 1.0):
+                        angle = np.arctan2(e, self.sign * knot) + way * half
+                        yield from self._at_angle(angle, PLACE)
+
+    def _at_angle(self, angle: Array, state: int) -> Any:
+        theta = within(self.swing, angle)
+        if np.isnan(theta).all():
+            return
+        first, last = self.swing.start, self.swing.end
+        if self.swing.driver == "crank":
+            share = shares_of(self.swing.law, np.clip((theta - first) / (last - first), 0.0, 1.0))
+            yield np.where(np.isnan(theta), np.nan, share), state
+        else:
+            yield self._at_place(self._place(theta)), state
+
+    def _place(self, theta: Any) -> Array:
+        r, l, e = self.designs[:, :3].T
+        with np.errstate(invalid="ignore"):
+            return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
+
+    def _at_place(self, x: Array) -> Array:
+        first, last = self._place(self.swing.start), self._place(self.swing.end)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = (x - first) / (last - first)
+        inside = (s >= 0.0) & (s <= 1.0)
+        return np.where(inside, shares_of(self.swing.law, np.where(inside, s, 0.0)), np.nan)
+
+    def _with_contacts(self, own: Pieces) -> Pieces:
+        """Return pieces cut where the guide's force changes sides, between neighbours of a row of samples in each."""
+        u = np.linspace(0.0, 1.0, _SCAN)
+        a, span = own.cuts[:, :-1, None], np.diff(own.cuts, axis=1)[:, :, None]
+        share = a + span * u
+        inside = np.broadcast_to(own.inside[:, :, None], share.shape)
+        which = np.broadcast_to(np.arange(self.count)[:, None, None], share.shape)
+        guide = self.states(which, share, inside, float(own.back))[..., GUIDE].real
+        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & own.live[:, :, None]
+        design, piece, left = np.nonzero(change)
+        if not len(design):
+            return own
+        low, high = share[design, piece, left], share[design, piece, left + 1]
+        at = self._root(design, low, high, inside[design, piece, left], float(own.back))
+        rank = np.zeros(len(design), np.int64)
+        for i in range(1, len(design)):
+            rank[i] = rank[i - 1] + 1 if design[i] == design[i - 1] else 0
+        kept = rank < _CONTACTS
+        more = np.ones((self.count, int(rank[kept].max()) + 1))
+        more[design[kept], rank[kept]] = at[kept]
+        state = np.where(more < 1.0, GUIDE, -1)
+        cuts, states_of = np.concatenate([own.cuts, more], axis=1), np.concatenate([own.state, state], axis=1)
+        return _sorted(Pieces(own.back, cuts, states_of))
+
+    def _root(self, design: Integers, low: Array, high: Array, inside: Array, back: float) -> Array:
+        """Return the shares between two at which the guide's force is zero, by bisection and Newton's iteration."""
+        rising = self.states(design, high, inside, back)[:, GUIDE].real > 0.0
+        at = 0.5 * (low + high)
+        for _ in range(_ROOTS):
+            found = self.states(design, at, inside, back, STEP)[:, GUIDE]
+            above = (found.real > 0.0) == rising
+            low, high = np.where(above, low, at), np.where(above, at, high)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                trial = at - found.real / (found.imag / STEP)
+            new = np.where((trial > low) & (trial < high), trial, 0.5 * (low + high))
+            settled = np.abs(new - at) <= 2e-16
+            at = new
+            if settled.all():
+                break
+        return at
+
+    def moved(self, own: Pieces, design: Integers, cut: Integers, inside: Array) -> Array:
+        """Return by how much cuts (p,) of designs move in share per unit of each raw number, (p, c)."""
+        state = own.state[design, cut]
+        slips = np.zeros((len(design), self.columns))
+        rows = np.flatnonzero(state >= 0)
+        if not len(rows):
+            return slips
+        at, side, way = own.cuts[design[rows], cut[rows]], inside[rows], float(own.back)
+        place = np.arange(len(rows))
+        rise = self.states(design[rows], at, side, way, STEP)[place, state[rows]].imag / STEP
+        for v in range(self.columns):
+            change = self.states(design[rows], at, side, way, 0.0, v)[place, state[rows]].imag / STEP
+            slips[rows, v] = -change / rise
+        return slips
+
+
+def _sorted(own: Pieces) -> Pieces:
+    order = np.argsort(own.cuts, axis=1, kind="stable")
+    cuts = np.take_along_axis(own.cuts, order, axis=1)
+    state = np.take_along_axis(own.state, order, axis=1)
+    ends = (cuts <= 0.0) | (cuts >= 1.0)  # what does not lie on the way counts as its end
+    return Pieces(own.back, cuts, np.where(ends, -1, state))
+
+
+def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Bools:
+    """Return which designs (n, 3 + k) can swing as asked; see `require_swing` of one."""
+    sign = 1.0 if mechanism.branch == "open" else -1.0
+    found = passes(swing, sign, designs)
+    if swing.driver == "crank" and mechanism.fullest.friction.crank_pin.circle and found.any():
+        # The rod turns as fast as the crank where the slider is at the pivot.
+        theta = np.linspace(swing.start, swing.end, 361)
+        r, l, e = (designs[found, i : i + 1] for i in range(3))
+        found[found] = (sign * motion(np.sin(theta), np.cos(theta), r, l, e, sign).x > 0.0).all(axis=1)
+    return found

@@ -1,0 +1,216 @@
+"""States of many swinging designs at many shares of the time: one kernel, complex throughout for its derivatives."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.contact import sides_of
+from ..dynamics.rubbing import joint_forces
+from ..dynamics.segments import Watch, enter, load_on_slider
+from ..dynamics.torque import balance
+from ..kernel.arithmetic import analytic, inverse, magnitude
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, kernel
+from ..kinematics.position import motion
+from ..machine.design import Design, design_at
+from ..machine.raw import Loads
+from ..signals.position_error import influences, worst_case
+from .law import code_of, way_at
+from .push import PinSides, bend, free_pin, newton_step, pin_rows
+from .swing import Swing
+
+Array = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
+"""Columns of states: drive, power, error of the driven side, guide force, slider position and its derivative by crank
+angle, crank angle, derivative of the driver's place by the share."""
+_STATES = 8
+_STILL = 1e-200  # rad/s: says which way the crank turns, and has no inertia
+_NEWTON = 40
+_SETTLED = 1e-15
+_SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
+_NO_WATCH = Watch(0, 0.0, 1.0, False)
+
+
+class Path(NamedTuple):
+    """A swing as the kernel takes it. slider: whether the slider drives. law: code. per_time: 1 / s, 0 where slow."""
+
+    start: float
+    end: float
+    slider: bool
+    law: int
+    per_time: float
+    tolerance: float
+    rubbing: bool
+
+
+def path_of(swing: Swing, *, rubbing: bool, slow: bool = False) -> Path:
+    """Return a swing for the kernel. rubbing: whether friction counts. slow: whether it is taken without inertia."""
+    per_time = 0.0 if slow or swing.duration is None else 1.0 / swing.duration
+    law = code_of("slow" if slow else swing.law)
+    return Path(swing.start, swing.end, swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing)
+
+
+@analytic
+def slider_at(theta: Any, d: Any) -> Any:
+    """Return the slider position at a crank angle, m."""
+    m = motion(math.sin(theta), math.cos(theta), d.r, d.l, d.e, d.branch)
+    return m.x
+
+
+@analytic
+def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, path: Path) -> Any:
+    """Return the crank angle of a swing without dead point that puts the slider at x; see `forces.angles_at`."""
+    size = math.sqrt(x * x + e * e)
+    ratio = (r * r + size * size - l * l) / (2.0 * r * size)
+    half = math.acos(min(1.0, max(-1.0, ratio)))
+    middle = 0.5 * (path.start + path.end)
+    sine, cosine = math.sin(middle), math.cos(middle)
+    side = bend(sine, cosine, motion(sine, cosine, r, l, e, branch))
+    theta = math.atan2(e, x) + (half if side > 0.0 else -half)
+    theta = theta + 2.0 * math.pi * math.floor((middle - theta) / (2.0 * math.pi) + 0.5)
+    low, high = min(path.start, path.end), max(path.start, path.end)
+    for _ in range(2):
+        m = motion(math.sin(theta), math.cos(theta), r, l, e, branch)
+        theta = min(high, max(low, theta - (m.x - x) / m.x_1))
+    return theta
+
+
+@analytic
+def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, rubbing: bool) -> Any:
+    """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide."""
+    b = balance(sine, cosine, m, d, load)
+    bx, by = free_pin(sine, cosine, m, d, b)
+    turn = 1.0 if d.speed.real > 0.0 else -1.0
+    if rubbing:
+        over, swings = (1.0 if m.rod_1.real < 1.0 else -1.0), (1.0 if m.rod_1.real > 0.0 else -1.0)
+        sides = PinSides(
+            d.crank_pin_circle * (over * turn), d.slider_pin_circle * (swings * turn), d.crank_pivot_circle * turn
+        )
+        size = math.inf
+        for _ in range(_NEWTON):
+            step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
+            bx, by = bx + step_x, by + step_y
+            size = abs(step_x.real) + abs(step_y.real)
+            if size <= _SETTLED * (abs(bx.real) + abs(by.real)):
+                break
+        if not size <= 1e-9 * (abs(bx.real) + abs(by.real)):
+            bx = bx * math.nan
+        else:  # the imaginary part follows one step behind
+            step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
+            bx, by = bx + step_x, by + step_y
+    guide = -by - d.slider_mass * d.gravity_y
+    slide = turn if m.x_1.real > 0.0 else -turn
+    mu = d.guide_friction * (slide if rubbing else 0.0)
+    return b.pull + mu * magnitude(guide) - bx, guide
+
+
+@kernel
+def _states(
+    blocks: Cube,
+    steps: ComplexCube,
+    which: Integers,
+    stepped: Integers,
+    share: Row,
+    slip: Row,
+    inside: Row,
+    back: Row,
+    loads: Loads,
+    path: Path,
+    out: ComplexTable,
+) -> None:
+    rows = blocks.shape[1]
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    watch = Watch(0, 0.0, 1.0, False, False)
+    last, last_step = -1, -1
+    for p in range(share.shape[0]):
+        if which[p] != last:
+            last = which[p]
+            block[:, :] = blocks[last]
+        if stepped[p] != last_step:
+            last_step = stepped[p]
+            own[:, :] = steps[last_step]
+        turning = (1.0 if path.end > path.start else -1.0) * (1.0 - 2.0 * back[p])
+        # Where the piece lies: stroke, pieces of tables, side of the guide.
+        d = design_at(block, 0)
+        s, _, _, _ = way_at(path.law, inside[p], inside[p])
+        s = 1.0 - s if back[p] > 0.5 else s
+        if path.slider:
+            first, final = slider_at(path.start, d), slider_at(path.end, d)
+            within = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, path)
+        else:
+            within = path.start + (path.end - path.start) * s
+        # The state itself.
+        z = design_at(own, 0)
+        w, w_1, w_2, w_3 = way_at(path.law, share[p], inside[p])
+        if back[p] > 0.5:
+            w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
+        a, a_1 = complex(w, w_1 * slip[p]), complex(w_1, w_2 * slip[p])
+        a_2 = complex(w_2, w_3 * slip[p])
+        begin, ending = complex(path.start, 0.0), complex(path.end, 0.0)
+        if path.slider:
+            sine, cosine = math.sin(path.start), math.cos(path.start)
+            begin = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch).x
+            sine, cosine = math.sin(path.end), math.cos(path.end)
+            ending = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch).x
+        place = begin + (ending - begin) * a
+        rate = (ending - begin) * a_1
+        velocity = rate * path.per_time
+        acceleration = (ending - begin) * a_2 * (path.per_time * path.per_time)
+        theta, moved = place.real, place.imag
+        if path.slider:
+            theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, path)
+            sine, cosine = math.sin(theta), math.cos(theta)
+            at = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch)
+            moved = (place.imag - at.x.imag) / at.x_1.real
+        sine, cosine = math.sin(theta), math.cos(theta)
+        zs, zc = complex(sine, cosine * moved), complex(cosine, -sine * moved)
+        m = motion(zs, zc, z.r, z.l, z.e, z.branch)
+        speed, rise = velocity, acceleration
+        if path.slider:
+            speed = velocity * inverse(m.x_1)
+            rise = (acceleration - m.x_2 * speed * speed) * inverse(m.x_1)
+        if speed.real == 0.0:
+            speed = speed + turning * _STILL
+        block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(speed.real), _STILL), rise.real
+        own[_SPEED, 0], own[_ACCELERATION, 0] = speed, rise
+        d, z = design_at(block, 0), design_at(own, 0)
+        _, outward = enter(d, block, 0, within, loads, watch, piece, shift)
+        load = load_on_slider(m, z, own, 0, complex(theta, moved), outward, loads, piece, shift)
+        j = influences(zs, zc, m, z.l)
+        if path.slider:
+            drive, guide = _pushed(zs, zc, m, z, load, path.rubbing)
+            power = drive * m.x_1 * speed
+            off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
+            off = off + magnitude(j.offset) * z.offset_error + path.tolerance
+            error = off * inverse(magnitude(m.x_1))
+        else:
+            sides = sides_of(within, d, block, 0, outward, loads, piece, shift, path.rubbing)
+            f = joint_forces(zs, zc, m, z, load, sides)
+            drive, guide, power = f.torque, f.guide, f.torque * speed
+            error = worst_case(j, z)
+        out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
+        out[p, 4], out[p, 5], out[p, 6], out[p, 7] = m.x, m.x_1, complex(theta, moved), rate
+
+
+def states(
+    blocks: Array,
+    steps: Complexes,
+    loads: Loads,
+    path: Path,
+    points: tuple[NDArray[np.int64], NDArray[np.int64], Array, Array, Array, Array],
+) -> Complexes:
+    """Return states (p, 8) at points: numbers of block and stepped block, share and its imaginary part, piece, way.
+
+    blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
+    steps. The piece is told by a share within it; way: 0 forth, 1 back. Shares count from the start of the way.
+    """
+    which, stepped, share, slip, inside, back = points
+    out = np.empty((len(share), _STATES), np.complex128)
+    _states(blocks, steps, which, stepped, share, slip, inside, back, loads, path, out)
+    return out

@@ -1,0 +1,126 @@
+"""Work of the drive over a swing, and efficiency, for many designs with exact derivatives.
+
+Gauss's quadrature on the pieces between cuts, graded towards their ends: next to a dead point the drive grows as the
+inverse root of the way from it. The nodes move with the cuts, so that the complex step differentiates the quadrature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import STEP
+from ..kernel.batches import in_chunks
+from ..machine.mechanism import Mechanism
+from .many import Many, Pieces, able
+from .points import DRIVE, RATE
+from .swing import Swing
+
+Array = NDArray[np.float64]
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_PANELS, _GRADED = 8, 1
+_CHUNK = 64
+_EQUAL = 1e-12
+
+
+@dataclass(frozen=True)
+class Work:
+    """A number of n designs. values: (n,), NaN where a design cannot swing, inf where friction locks it.
+
+    gradients: (n, v); None unless asked for.
+    """
+
+    values: Array
+    gradients: Array | None
+
+
+def graded() -> tuple[Array, Array]:
+    """Return nodes (g,) from 0 to 1, dense towards both ends, and their weights."""
+    edges, half = np.linspace(0.0, 1.0, _PANELS + 1), 0.5 / _PANELS
+    u, w = (edges[:-1, None] + half + half * _NODES).ravel(), np.tile(half * _WEIGHTS, _PANELS)
+    for _ in range(_GRADED):
+        w = w * 6.0 * u * (1.0 - u)
+        u = u * u * (3.0 - 2.0 * u)
+    return u, w
+
+
+def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
+    """Return the work of the drive on the way forth, J, for designs (n, 3 + k)."""
+    return _gathered(mechanism, swing, designs, gradients, lambda rows: _forth(mechanism, swing, rows, gradients))
+
+
+def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
+    """Return the work without friction over the work of the slow way forth, (n,).
+
+    Of the way back where only that is driven; NaN where neither is.
+    """
+    return _gathered(mechanism, swing, designs, gradients, lambda rows: _efficiency(mechanism, swing, rows, gradients))
+
+
+def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, of: Any) -> Work:
+    designs = np.ascontiguousarray(designs, dtype=np.float64)
+    values = np.full(len(designs), np.nan)
+    slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))
+    rows = np.flatnonzero(able(mechanism, swing, designs))
+
+    def work(begin: int, end: int) -> None:
+        own = rows[begin:end]
+        stuck = Many(mechanism, swing, designs[own], slopes=False).locked()
+        values[own[stuck]] = np.inf
+        own = own[~stuck]
+        if len(own):
+            values[own], found = of(designs[own])
+            if gradients:
+                slopes[own] = found
+
+    in_chunks(len(rows), work, size=_CHUNK)
+    return Work(values, slopes if gradients else None)
+
+
+def _forth(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
+    many = Many(mechanism, swing, designs, slopes=gradients)
+    values, slopes = _work(many, many.pieces(back=False), gradients)
+    return values, many.numbers.chain(slopes[:, None])[:, 0]
+
+
+def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
+    found, slope = np.full(len(designs), np.nan), np.zeros((len(designs), designs.shape[1] if gradients else 0))
+    rubbing, free = (Many(mechanism, swing, designs, slopes=gradients, slow=True, free=each) for each in (False, True))
+    for back in (True, False):  # forth has the last word
+        spent, by_spent = _work(rubbing, rubbing.pieces(back=back), gradients)
+        least, by_least = _work(free, free.pieces(back=back), gradients)
+        driven = (least > 0.0) & (spent > 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.where(driven, least / spent, found)
+            own = (by_least - (least / spent)[:, None] * by_spent) / spent[:, None]
+        if gradients:
+            slope = np.where(driven[:, None], rubbing.numbers.chain(own[:, None])[:, 0], slope)
+    return found, slope
+
+
+def _work(many: Many, own: Pieces, gradients: bool) -> tuple[Array, Array]:
+    """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
+    u, w = graded()
+    design, piece = np.nonzero(own.live)
+    a, b, inside = own.cuts[design, piece], own.cuts[design, piece + 1], own.inside[design, piece]
+    share = a[:, None] * (1.0 - u) + b[:, None] * u
+    rows = np.broadcast_to(design[:, None], share.shape)
+    side, back = np.broadcast_to(inside[:, None], share.shape), float(own.back)
+    found = many.states(rows, share, side, back)
+    parts = (b - a)[:, None] * w * (found[..., DRIVE] * found[..., RATE]).real
+    values, gross = np.zeros(many.count), np.zeros(many.count)
+    np.add.at(values, design, parts.sum(axis=1))
+    np.add.at(gross, design, np.abs(parts).sum(axis=1))
+    slopes = np.zeros((many.count, many.columns if gradients else 0))
+    if gradients:
+        starts, ends = many.moved(own, design, piece, inside), many.moved(own, design, piece + 1, inside)
+        for v in range(many.columns):
+            slip = starts[:, v : v + 1] * (1.0 - u) + ends[:, v : v + 1] * u
+            found = many.states(rows, share, side, back, STEP * slip, v)
+            span = (b - a) + 1j * STEP * (ends[:, v] - starts[:, v])
+            parts_of = (span[:, None] * w * found[..., DRIVE] * found[..., RATE]).imag / STEP
+            np.add.at(slopes[:, v], design, parts_of.sum(axis=1))
+    return np.where(np.abs(values) <= _EQUAL * gross, 0.0, values), slopes

@@ -1,0 +1,98 @@
+"""Drive of a limited swing: force or torque, what holds the linkage, power, work and efficiency."""
+
+from functools import partial
+
+from ..model.swing.points import DRIVE, POWER
+from .kinds import ENERGY, FORCE, RATIO, TORQUE
+from .kinds import POWER as POWER_KIND
+from .quantity import Group
+from .swing_quantity import SwingIntegral, SwingPeak
+
+_peak = partial(SwingPeak, group=Group.DRIVE, picture="torque")
+
+PEAK_ACTUATOR_FORCE = _peak(
+    name="peak_actuator_force",
+    title="peak actuator force",
+    kind=FORCE,
+    state=DRIVE,
+    driver="slider",
+    instead="peak_actuator_torque",
+    place=310,
+    sentence="The greatest force that the actuator needs on the slider, on the way forth or back.",
+    advice="It grows without bound towards a dead point.",
+    formula="max over the swing of |P|",
+    example="20 kN",
+)
+PEAK_ACTUATOR_TORQUE = _peak(
+    name="peak_actuator_torque",
+    title="peak actuator torque",
+    kind=TORQUE,
+    state=DRIVE,
+    driver="crank",
+    instead="peak_actuator_force",
+    place=311,
+    sentence="The greatest torque that the drive needs on the swinging crank, on the way forth or back.",
+    formula="max over the swing of |T|",
+)
+HOLDING_FORCE = _peak(
+    name="holding_force",
+    title="holding force",
+    kind=FORCE,
+    state=None,
+    driver="slider",
+    instead="holding_torque",
+    place=312,
+    sentence="The greater force on the slider at the two ends of the swing, without inertia.",
+    advice="With friction it is what moves the linkage there; less holds it.",
+    formula="max of |P| at both ends, x' w and alpha towards 0",
+    example="20 kN",
+)
+HOLDING_TORQUE = _peak(
+    name="holding_torque",
+    title="holding torque",
+    kind=TORQUE,
+    state=None,
+    driver="crank",
+    instead="holding_force",
+    place=313,
+    sentence="The greater torque on the crank at the two ends of the swing, without inertia.",
+    advice="With friction it is what moves the linkage there; less holds it.",
+    formula="max of |T| at both ends, w and alpha towards 0",
+)
+PEAK_ACTUATOR_POWER = _peak(
+    name="peak_actuator_power",
+    title="peak actuator power",
+    kind=POWER_KIND,
+    state=POWER,
+    timed=True,
+    place=314,
+    sentence="The greatest power of what drives the swing, given or taken.",
+    formula="max over the swing of |P dx/dt|, or |T w|",
+)
+SWING_ENERGY = SwingIntegral(
+    name="swing_energy",
+    title="energy of the way forth",
+    kind=ENERGY,
+    of="work",
+    signed=True,
+    group=Group.DRIVE,
+    place=315,
+    sentence="The work of the drive on the way forth: below zero where it has to brake.",
+    formula="integral of P dx, or T dtheta, over the way forth",
+)
+SWING_EFFICIENCY = SwingIntegral(
+    name="swing_efficiency",
+    title="efficiency of the swing",
+    kind=RATIO,
+    of="efficiency",
+    rubbing=True,
+    group=Group.DRIVE,
+    place=316,
+    sentence=(
+        "What the swing takes without friction over what it takes: of the way forth, or of the way back where only "
+        "that is driven; without inertia."
+    ),
+    formula="integral of P dx without friction / integral of P dx",
+    example=0.8,
+    better="high",
+)

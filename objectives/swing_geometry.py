@@ -1,0 +1,48 @@
+"""Geometry of a limited swing: transmission angle of the driven side, way of the slider."""
+
+import math
+
+import numpy as np
+
+from .kinds import ANGLE, LENGTH
+from .quantity import Domain, Group
+from .swing_quantity import SwingForm
+
+SWING_TRANSMISSION_ANGLE = SwingForm(
+    name="swing_transmission_angle",
+    title="least transmission angle of the swing",
+    short="transmission angle",
+    kind=ANGLE,
+    of="angle",
+    place=300,
+    group=Group.PROPORTIONS,
+    sentence=(
+        "The least transmission angle of the driven side over the swing: between rod and crank where the slider "
+        "drives, zero at a dead point; between rod and the normal of the slider line where the crank drives."
+    ),
+    advice="The linkage keeps this margin from its dead points, or from opening. Forces grow without bound towards 0.",
+    formula="min over the swing of asin|sin(theta - phi)|, or acos(|e - r sin(theta)| / l)",
+    picture="transmission angle",
+    example="30 deg",
+    better="high",
+    domain=Domain(
+        lower=0.0,
+        upper=0.5 * math.pi,
+        rule="the transmission angle of a swing lies between 0 and 90 deg, ends excluded",
+        remedy="20 to 50 deg are usual (a plain number is in rad)",
+    ),
+    floor=float(np.radians(10.0)),
+)
+ACTUATOR_TRAVEL = SwingForm(
+    name="actuator_travel",
+    title="travel of the slider",
+    kind=LENGTH,
+    of="travel",
+    place=301,
+    group=Group.MOTION,
+    sentence="The distance of the slider between the two ends of the swing.",
+    advice="It is what an actuator on the slider must be able to travel.",
+    formula="|x(end) - x(start)|",
+    picture="speed",
+    example="2 m",
+)

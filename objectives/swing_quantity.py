@@ -1,0 +1,146 @@
+"""Quantities over a limited swing of the crank.
+
+They exist where the motion of a job is a swing; a `Problem` has them among its own quantities.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from ..model.swing.closure import driven_angles, passes, travels
+from ..model.swing.peaks import SwingPeaks, holding_peaks, swing_peaks
+from ..model.swing.swing import Swing
+from ..model.swing.words import Driver
+from ..model.swing.work import swing_efficiency, swing_work
+from .needs import Without
+from .quantity import MECHANICS, Array, Pieces, Quantity, Values
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwingQuantity(Quantity):
+    """A number of a swing.
+
+    swing: None where no job has said yet which: facts without values. driver: what must drive, either if None. timed:
+    whether the swing must have a duration. tolerated: whether it comes from tolerances, those of the actuator among
+    them. rubbing: whether it is one without friction.
+    """
+
+    swing: Swing | None = None
+    driver: Driver | None = field(default=None, compare=False)
+    timed: bool = field(default=False, compare=False)
+    tolerated: bool = field(default=False, compare=False)
+    rubbing: bool = field(default=False, compare=False)
+    turning: bool = field(default=False, compare=False)
+    section: str = field(default="16. Crank not at constant speed", compare=False)
+    source: str = field(default=MECHANICS, compare=False)
+    table: ClassVar[str] = "motion"
+
+    @property
+    def _given(self) -> Swing:
+        assert self.swing is not None
+        return self.swing
+
+    def unfit(self, swing: Swing) -> str | None:
+        """Return rule, value and remedy where a swing does not define the quantity; None if it does."""
+        if self.driver is not None and swing.driver != self.driver:
+            return (
+                f'it is of a swing that the {self.driver} drives; got driver = "{swing.driver}"; use {self.instead}, '
+                f'or set [motion] driver = "{self.driver}"'
+            )
+        if self.timed and swing.duration is None:
+            return (
+                "a slow swing takes as little power as one likes; got no duration; give [motion] a law and a duration"
+            )
+        return None
+
+    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+        """Return why a machine does not define it; see `Quantity`."""
+        if without == "undefined" and self.swing is not None:
+            reason = self.unfit(self.swing)
+            if reason is not None:
+                return reason
+            if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
+                return (
+                    'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+                )
+        if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
+            return "it is 1 without friction; got none; add for example [friction] guide = 0.1, or leave it out"
+        return super().lacks(mechanism, without)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwingPeak(SwingQuantity):
+    """The greatest size of a state over both ways. state: of `points`; None for the drive at rest at the ends."""
+
+    state: int | None
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        found = self._peaks(mechanism, dimensions, gradients, kept=1)
+        return Values(found.values[:, 0], None if found.gradients is None else found.gradients[:, 0])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the highest local peaks; see `Quantity`."""
+        found = self._peaks(mechanism, dimensions, True, kept=6)
+        assert found.gradients is not None
+        return Pieces(found.values, found.gradients, found.places)
+
+    def _peaks(self, mechanism: Mechanism, dimensions: Array, gradients: bool, *, kept: int) -> SwingPeaks:
+        if self.state is None:
+            return holding_peaks(mechanism, self._given, dimensions, gradients=gradients)
+        return swing_peaks(mechanism, self._given, self.state, dimensions, gradients=gradients, kept=kept)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwingIntegral(SwingQuantity):
+    """A number from the work of the drive. of: the work on the way forth, or the efficiency."""
+
+    of: Literal["work", "efficiency"]
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        take = swing_work if self.of == "work" else swing_efficiency
+        found = take(mechanism, self._given, dimensions, gradients=gradients)
+        return Values(found.values, found.gradients)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwingForm(SwingQuantity):
+    """A closed form of crank, rod and offset: the least transmission angle, or the way of the slider."""
+
+    of: Literal["angle", "travel"]
+
+    @property
+    def of_dimensions(self) -> bool:
+        """True."""
+        return True
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        found = self.pieces(mechanism, dimensions)
+        return Values(found.values[:, 0], found.gradients[:, 0] if gradients else None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the angles at the places where the least may be, lowest first; see `Quantity`."""
+        sign = 1.0 if mechanism.branch == "open" else -1.0
+        designs = np.ascontiguousarray(dimensions, dtype=np.float64)
+        rows = np.flatnonzero(passes(self._given, sign, designs))
+        if self.of == "travel":
+            one, slope = travels(self._given, sign, designs[rows])
+            own, slopes = one[:, None], slope[:, None]
+        else:
+            angles = driven_angles(self._given, sign, designs[rows])
+            own, slopes = angles.values, angles.slopes
+        order = np.argsort(own, axis=1, kind="stable")
+        values = np.full((len(designs), own.shape[1]), np.inf)
+        values[:, 0] = np.nan
+        gradients = np.zeros((*values.shape, designs.shape[1]))
+        labels = np.zeros(values.shape)
+        values[rows] = np.take_along_axis(own, order, axis=1)
+        gradients[rows, :, :3] = np.take_along_axis(slopes, order[:, :, None], axis=1)
+        labels[rows] = order
+        return Pieces(values, gradients, labels, least=self.of == "angle")

@@ -1,0 +1,77 @@
+"""Quantities of a swing, and their columns for designs that need not turn through."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.kinematics.in_line import without_rounding
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
+from ..formula.quantity import leaves_of
+from ..quantity import Array, Quantity
+from ..registry import FACTS, QUANTITIES
+from ..swing_quantity import SwingQuantity
+from .varying_column import varying_column
+
+
+def swing_facts() -> tuple[SwingQuantity, ...]:
+    """Return the facts of all quantities that a swing may have."""
+    return tuple(of for of in FACTS.values() if isinstance(of, SwingQuantity))
+
+
+def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
+    """Return the quantities that a swing has."""
+    return tuple(replace(of, swing=swing) for of in swing_facts() if of.unfit(swing) is None)
+
+
+def require_loads(mechanism: Mechanism) -> None:
+    """Raise `InputError` for a load that is counted from a dead centre, which a swing need not have."""
+    for load in mechanism.loads:
+        datum = getattr(load, "datum", "")
+        if datum.endswith("dead centre"):
+            raise InputError(
+                f"a load is measured from the {datum} of a full turn, which a swing need not have; "
+                "measure it from the crank pivot"
+            )
+
+
+def require_of_swing(key: str, quantity: Quantity) -> None:
+    """Raise `InputError` for a quantity of a crank that turns through."""
+    for leaf in leaves_of([quantity]):
+        if leaf.turning:
+            known = ", ".join(of.name for of in swing_facts())
+            raise InputError(
+                f'{key}: {leaf.name} is of a crank that turns through; got [motion] kind = "swing"; '
+                f"use a quantity of a swing ({known}), or leave it out"
+            )
+
+
+def swinging(own: Sequence[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities that designs of a swing have, by place. own: of the problem."""
+    every: Iterable[Quantity] = (*QUANTITIES.values(), *own)
+    kept = [of for of in every if not any(leaf.turning for leaf in leaves_of([of]))]
+    return tuple(sorted(kept, key=lambda of: of.place))
+
+
+def columns_of(mechanism: Mechanism, dimensions: Array, own: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
+    """Return the columns (n,) of designs (n, 3 + k) that swing, as `analysis.columns_of` of those that turn."""
+    dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
+    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+    columns: dict[str, NDArray[Any]] = {
+        name: 1e3 * dimensions[:, place] for place, name in enumerate(("crank_mm", "rod_mm", "offset_mm"))
+    }
+    for place, item in enumerate(mechanism.varying):
+        key, unit = varying_column(item)
+        columns[key] = unit.factor * dimensions[:, 3 + place]
+    for quantity in swinging(own):
+        if quantity.undefined_because([mechanism]):
+            columns[quantity.field] = np.full(len(dimensions), np.nan)
+        else:
+            columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
+    return columns

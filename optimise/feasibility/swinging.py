@@ -1,0 +1,58 @@
+"""No design of the ranges swings as asked: why, in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...model.errors import InputError
+from ...model.swing.closure import closes, passes
+from ...model.swing.many import Many
+from ...objectives.tables.evaluate import moving
+from ..problem.problem import Problem
+from ..search.elimination import sheets
+from ..search.sampling import first_samples
+
+_SAMPLES = 4096
+
+
+def require_swinging(problem: Problem) -> None:
+    """Raise `InputError` if of many designs of the ranges none can swing as asked, or friction locks all that can."""
+    message = unswung(problem)
+    if message:
+        raise InputError(message)
+
+
+def unswung(problem: Problem) -> str:
+    """Return why no design of the ranges swings as asked, in words; "" if one of many does."""
+    motion = problem.motion
+    assert motion is not None
+    closing = passing = running = 0
+    for index, sheet in enumerate(sheets(problem)):
+        part = problem.part(sheet.variant)
+        machine, sign = part.mechanism, 1.0 if part.mechanism.branch == "open" else -1.0
+        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), problem.settings.seed, index))
+        designs = designs[np.isfinite(designs).all(axis=1)]
+        closing += int(closes(motion, designs).sum())
+        passing += int(passes(motion, sign, designs).sum())
+        able = designs[moving(machine, motion, designs)]
+        if len(able):
+            running += int((~Many(machine, motion, able, slopes=False).locked()).sum())
+        if running:
+            return ""
+    asked = f"the swing from {math.degrees(motion.start):.6g} to {math.degrees(motion.end):.6g} deg"
+    if not closing:
+        return (
+            f"no design of the ranges closes over {asked}: rod > |offset - crank sin(crank angle)|; "
+            "lengthen the rod's range, let the offset come nearer to the crank pin, or swing less far"
+        )
+    if not passing:
+        return (
+            f"in every design of the ranges that closes, {asked} has a dead point, where crank and rod are in line and "
+            "a slider cannot drive the crank; stay on one side of it, change the ranges, or drive the crank"
+        )
+    return (
+        f"friction may lock every design of the ranges that can make {asked}; lessen the friction, lengthen the rod, "
+        "or drive the other end"
+    )

@@ -1,0 +1,120 @@
+"""Quantities of a swing: against single designs, dense sweeps and extrapolated differences."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.swing.forces import swing_curves
+from slidercrank.model.swing.summary import summarise
+from slidercrank.model.swing.swing import Swing
+from slidercrank.objectives.swing_quantity import SwingQuantity
+from slidercrank.objectives.tables.swinging import swing_facts, swing_quantities
+from tests.model.cases import Array
+from tests.model.swing.swings import Case, random_swings
+from tests.objectives.richardson import derivatives
+
+TOLERANCES = Tolerances(
+    crank=Tolerance(fraction=1e-3), rod=Tolerance(absolute=2e-4), crank_angle=Tolerance(absolute=1e-3)
+)
+
+
+def cases(count: int, *, seed: int, friction: bool) -> list[Case]:
+    """Return random swings whose loads are counted from the crank pivot, with tolerances."""
+    found = []
+    for machine, linkage, swing in random_swings(3 * count, seed=seed, friction=friction):
+        if not any(getattr(load, "datum", "").endswith("dead centre") for load in machine.loads):
+            actuator = 1e-3 if swing.driver == "slider" else 0.0
+            found.append(
+                (replace(machine, tolerances=TOLERANCES), linkage, replace(swing, actuator_tolerance=actuator))
+            )
+    assert len(found) >= count
+    return found[:count]
+
+
+def design_of(linkage: Linkage) -> Array:
+    return np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+
+
+def values(machine: Mechanism, swing: Swing, design: Array) -> dict[str, float]:
+    own = swing_quantities(swing)
+    return {of.name: float(of.evaluate(machine, design).values[0]) for of in own if not of.lacks(machine, "equal")}
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
+    for machine, linkage, swing in cases(14, seed=71, friction=friction):
+        one = summarise(machine, linkage, swing)
+        found = values(machine, swing, design_of(linkage))
+        kind = "force" if swing.driver == "slider" else "torque"
+        error = "swing_angle_error" if swing.driver == "slider" else "swing_position_error"
+        assert one.position_error is not None
+        expected = {
+            f"peak_actuator_{kind}": abs(one.peak_drive.value),
+            f"holding_{kind}": max(map(abs, one.drive_start + one.drive_end)),
+            error: one.position_error.value,
+            "swing_energy": one.energy_forth,
+            "swing_transmission_angle": one.least_transmission.value,
+            "actuator_travel": one.travel,
+        }
+        if one.peak_power is not None:
+            expected["peak_actuator_power"] = abs(one.peak_power.value)
+        if friction and one.efficiency is not None:
+            expected["swing_efficiency"] = one.efficiency
+        for name, value in expected.items():
+            assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forth)), name
+        assert not set(found) - {"swing_efficiency"}
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_peaks_are_not_below_a_dense_sweep(friction: bool) -> None:
+    share = np.linspace(0.0, 1.0, 20_001)
+    for machine, linkage, swing in cases(4, seed=72, friction=friction):
+        found = values(machine, swing, design_of(linkage))
+        peak = found["peak_actuator_force" if swing.driver == "slider" else "peak_actuator_torque"]
+        curves = [swing_curves(machine, linkage, swing, share, back=back) for back in (False, True)]
+        swept = max(np.abs(curve.drive).max() for curve in curves)
+        assert swept <= peak * (1.0 + 1e-12)
+        assert swept == pytest.approx(peak, rel=1e-3)
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_gradients_are_those_of_extrapolated_differences(friction: bool) -> None:
+    """Cuts move with the design: knots, sides of friction, dead points that a crank passes."""
+    misses = []
+    for machine, linkage, swing in cases(7, seed=73, friction=friction):
+        design = design_of(linkage)
+        for of in swing_quantities(swing):
+            if of.lacks(machine, "equal"):
+                continue
+
+            def function(displaced: Array, _: object, of: SwingQuantity = of, machine: Mechanism = machine) -> Array:
+                return of.evaluate(machine, displaced).values
+
+            expected, _ = derivatives(function, design, np.full((1, 3), 2e-3 * float(linkage.crank)))
+            found = of.evaluate(machine, design, gradients=True)
+            slopes = found.gradients
+            if not np.isfinite(found.values).all():
+                continue
+            assert slopes is not None
+            size = np.abs(expected).max() + 1e-9
+            misses.append((float(np.abs(slopes - expected).max() / size), of.name, swing.driver, swing.law))
+    assert max(misses)[0] < 1e-7, max(misses)
+
+
+def test_what_cannot_swing_has_no_value_and_every_fact_has_a_place() -> None:
+    closing, opening = [0.1, 0.25, 0.02], [0.1, 0.05, 0.2]
+    for driver in ("crank", "slider"):
+        swing = Swing(start=0.5, end=1.5, driver=driver)
+        machine = Mechanism(slider_mass=1.0, gravity=(-9.81, 0.0), tolerances=TOLERANCES)
+        for of in swing_quantities(swing):
+            if of.lacks(machine, "equal"):
+                continue
+            found = of.evaluate(machine, np.array([closing, opening, [np.nan, 0.2, 0.0]])).values
+            assert np.isfinite(found).tolist() == [True, False, False], of.name
+            assert np.isnan(of.pieces(machine, np.array([opening])).values[0, 0]), of.name
+    assert len({of.place for of in swing_facts()}) == len(swing_facts())

@@ -1,0 +1,130 @@
+"""Jobs whose crank swings: what is read, what is refused, and a front that nothing dominates."""
+
+from __future__ import annotations
+
+import math
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import AssemblyError, InputError, JobError
+from slidercrank.optimise.certificate.certify import certify_designs
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.solve import solve
+
+JOB: dict[str, Any] = {
+    "name": "Column",
+    "mechanism": {
+        "speed": "0.1 rpm",
+        "crank": {"mass": "180 kg"},
+        "rod": {"mass": "220 kg"},
+        "slider": {"mass": "400 kg"},
+        "gravity": "9.81 m/s^2",
+    },
+    "motion": {"kind": "swing", "from": "11 deg", "to": "101 deg", "driver": "slider", "actuator_tolerance": "1 mm"},
+    "load": [{"force": "25 kN", "direction": "inward"}],
+    "tolerances": {"crank": "0.1 %", "rod": "0.1 %"},
+    "variables": {"crank": ["1.2 m", "1.5 m"], "rod": ["0.9 m", "3 m"], "offset": ["-600 mm", "600 mm"]},
+    "constraints": {"actuator_travel": {"min": "2 m", "max": "2.5 m"}},
+    "objectives": {"peak_actuator_force": "minimise", "swing_angle_error": "minimise"},
+    "optimiser": {"designs": 8, "samples": 1024},
+}
+
+FITTED = {"crank": "1.4 m", "rod": "1.8 m", "offset": "-50 mm"}
+
+
+def changed(**tables: Any) -> dict[str, Any]:
+    """Return the job with tables changed; a table within [motion] is merged."""
+    job = deepcopy(JOB)
+    for name, table in tables.items():
+        job[name] = {**job[name], **table} if name == "motion" else table
+    return job
+
+
+def test_a_swing_is_read_with_its_margin() -> None:
+    problem = parse_job(changed(motion={"margin": "20 deg", "law": "harmonic", "duration": "30 s"}))
+    swing = problem.motion
+    assert swing is not None
+    assert (swing.driver, swing.law, swing.duration, swing.actuator_tolerance) == ("slider", "harmonic", 30.0, 1e-3)
+    assert swing.end - swing.start == pytest.approx(0.5 * math.pi)
+    (margin,) = (c for c in problem.constraints if c.quantity == "swing_transmission_angle")
+    assert margin.lower == pytest.approx(math.radians(20.0))
+    assert parse_job(changed(motion={"margin": "20 deg"})).quantity("peak_actuator_force").kind.unit == "N"
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"motion": {"kind": "turn"}}, "turns through has none of what a swing has; got"),
+        ({"motion": {"to": None}}, "motion.to: must have a value"),
+        ({"motion": {"to": "11 deg"}}, "two different crank angles"),
+        ({"motion": {"to": "400 deg"}}, "less than a turn apart"),
+        ({"motion": {"duration": "0 s", "law": "harmonic"}}, "motion.duration: must be positive"),
+        ({"motion": {"law": "harmonic"}}, "needs its duration"),
+        ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "has a dead point"),
+        ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design of the ranges closes"),
+        ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it is of a swing that the slider drives"),
+        ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
+        (
+            {"motion": {"margin": "20 deg"}, "constraints": {"swing_transmission_angle": {"min": "30 deg"}}},
+            "motion.margin: it is the min of",
+        ),
+        ({"objectives": {"time_ratio": "maximise"}}, "time_ratio is of a crank that turns through"),
+        ({"objectives": {"peak_torque / 2": "minimise"}}, "peak_torque is of a crank that turns through"),
+        ({"constraints": {"slow_stroke": "inward"}}, "slow_stroke: it is of a crank that turns through"),
+        ({"objectives": {"peak_actuator_power": "minimise"}}, "give .motion. a law and a duration"),
+        ({"robust": {}}, "robust: it is of a crank that turns through"),
+        ({"friction": {"crank_pin": {"radius": "1 m", "coefficient": 1.5}}}, "friction may lock every design"),
+        (
+            {"load": [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "0 N"], "measured_from": "inner dead centre"}]},
+            "measure it from the crank pivot",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: str) -> None:
+    with pytest.raises(JobError, match=words):
+        parse_job(changed(**tables))
+
+
+def test_quantities_of_a_swing_are_refused_without_one() -> None:
+    job = changed()
+    del job["motion"]
+    with pytest.raises(JobError, match="peak_actuator_force: it is of a crank that swings; got one that turns through"):
+        parse_job(job)
+
+
+def random_designs(problem: Problem, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    random = np.random.default_rng(3)
+    ends = (problem.crank, problem.rod, problem.offset)
+    return np.stack([random.uniform(end.lower, end.upper, count) for end in ends], axis=1)
+
+
+def test_nothing_dominates_the_front_of_a_swing_and_all_of_it_is_stationary() -> None:
+    limits = {"actuator_travel": {"min": "1.7 m", "max": "2.5 m"}, "rod / crank": {"max": 1.2}}
+    problem = parse_job(changed(constraints=limits))
+    front = solve(problem)
+    assert front.status == "done"
+    assert set(front.columns["status"]) == {"stationary"}
+    turning = front.dimensions[:, 1] > front.dimensions[:, 0] + np.abs(front.dimensions[:, 2])
+    assert not turning.all()  # designs that cannot turn through are among the best
+    designs = random_designs(problem, 20_000)
+    names = ["actuator_travel", "swing_transmission_angle", "rod_to_crank", "peak_actuator_force", "swing_angle_error"]
+    values = problem.evaluate(designs, names)
+    with np.errstate(invalid="ignore"):
+        feasible = (values[:, 0] >= 1.7) & (values[:, 0] <= 2.5) & (values[:, 1] >= math.radians(10.0))
+        feasible &= values[:, 2] <= 1.2
+    assert feasible.sum() > 500
+    for own in front.values:
+        assert not (values[feasible][:, 3:] < own * (1.0 - 1e-9)).all(axis=1).any()
+    again = solve(problem)
+    assert np.array_equal(front.dimensions, again.dimensions)
+    one = problem.analyse(front.dimensions[0])
+    assert one["peak_actuator_force"] == pytest.approx(front.values[0, 0], rel=1e-12)
+    assert "peak_torque" not in one
+    with pytest.raises(InputError, match="a certificate is of a crank that turns through"):
+        certify_designs(problem, front.dimensions)
+    with pytest.raises(AssemblyError, match="must close over the whole swing"):
+        problem.analyse([1.4, 0.5, 0.0])
