@@ -14,8 +14,9 @@ import numpy as np
 
 from ...objectives.quantity import Array
 from ..front.answer import Answer
+from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
-from ..front.hypervolume import Stand, choose, nondominated
+from ..front.hypervolume import Stand, choose
 from ..front.rounded import written
 from ..problem.problem import Problem
 from .combinations import Axes, Judged, every, judged, neighbours, robust, with_values

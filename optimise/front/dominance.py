@@ -1,4 +1,4 @@
-"""Which designs dominate which: no worse in every objective, better in one; all objectives are minimised."""
+"""Domination between designs: no worse in every objective, better in one; all objectives are minimised."""
 
 from __future__ import annotations
 

@@ -229,7 +229,7 @@ def _require_number(cell: str, where: str) -> None:
 
 def _unbeaten(columns: Sequence[_Column], rows: Sequence[Sequence[str]]) -> list[int]:
     """Return the places of rows that no other one beats; of equal ones the first."""
-    from ..front.hypervolume import nondominated  # brings what computes
+    from ..front.dominance import nondominated  # brings what computes
 
     numbers = np.array([[float(row[column.place]) for column in columns] for row in rows])
     limits = np.array([column.monotone for column in columns])

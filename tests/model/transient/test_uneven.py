@@ -62,7 +62,7 @@ def test_over_a_turn_the_torque_does_the_work_of_the_loads(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_power_in_is_energy_gained_and_work_done_at_every_angle(seed: int) -> None:
-    """Slope of J w^2 / 2 + V is T + F x'; the energies come from the positions of the bodies."""
+    """Slope of the bodies' energy J w^2 / 2 + V over the crank angle is T + F x'."""
     machine, linkage = random_uneven(seed)
     equation = CrankEquation(replace(machine, acceleration=0.0), linkage)
     theta = np.random.default_rng(seed).uniform(0.0, TURN, 40)
