@@ -25,6 +25,8 @@ declare namespace Page {
   interface Axis extends Omit<Scale, "ticks"> {
     ticks: [number, string][];
     column: Heading;
+    /** In words, of an objective. */
+    better?: string;
   }
   interface Heading {
     title: string;
@@ -54,6 +56,8 @@ declare namespace Page {
     colour: string;
     width?: number;
     name?: string;
+    /** Whether its values are written at the axes. */
+    read?: boolean;
   }
   /** A design as its view shows it. */
   interface Machine {

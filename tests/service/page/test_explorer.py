@@ -165,8 +165,12 @@ def test_words_are_ticked(open_page: Open, solved: Solved) -> None:
 
 def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved))
+    ratio = page.locator(".axis-head", has_text="time ratio")
+    expect(ratio).to_contain_text("↑ better")
+    expect(page.get_by_role("columnheader", name="time ratio")).to_contain_text("more is better")
     page.get_by_role("button", name="Flip: time ratio").click()
     expect(page).to_have_url(re.compile(r"-time_ratio"))
+    expect(ratio).to_contain_text("↓ better")
     page.get_by_role("button", name="Move left: time ratio").click()
     page.get_by_role("button", name="Leave out: crank").click()
     page.get_by_text("Axes", exact=True).click()

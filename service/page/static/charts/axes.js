@@ -33,7 +33,7 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   context.textBaseline = "top";
   for (const [value, text] of x.ticks) context.fillText(text, x.at(value), bottom + 6);
   context.fillStyle = ink.text;
-  context.fillText(headed(x.column), (area.left + right) / 2, bottom + 24, right - area.left);
+  context.fillText(titled(x), (area.left + right) / 2, bottom + 24, right - area.left);
   context.fillStyle = ink.quiet;
   context.textAlign = "right";
   context.textBaseline = "middle";
@@ -43,6 +43,11 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   context.rotate(-Math.PI / 2);
   context.textAlign = "center";
   context.fillStyle = ink.text;
-  context.fillText(headed(y.column), 0, 0, bottom - area.top);
+  context.fillText(titled(y), 0, 0, bottom - area.top);
   context.restore();
+}
+
+/** Return the heading of an axis, and which way is better. @param {Page.Axis} axis */
+function titled({ column, better }) {
+  return better ? `${headed(column)} (${better})` : headed(column);
 }

@@ -2,6 +2,8 @@
 
 import { h } from "../lib/dom.js";
 
+const VIRIDIS = ["#440154", "#482475", "#414487", "#355f8d", "#2a788e", "#21918c", "#22a884", "#44bf70", "#7ad151", "#bddf26", "#fde725"]; // tenth by tenth
+
 /**
  * Return layers over each other: {place, resize(width, height), contexts}; lengths are pixels of the page.
  * @param {number} count @param {string} label
@@ -74,9 +76,14 @@ export function rgb(colour) {
   return [digits >> 16, (digits >> 8) & 255, digits & 255];
 }
 
-/** Return `count` colours from low to high: from one to another colour of the style, through a third. @param {Page.Ink} ink @param {number} count */
+/**
+ * Return `count` colours from low to high: viridis, by S. van der Walt and N. Smith (public domain), whose steps look alike,
+ * without the end that cannot be told from the ground.
+ * @param {Page.Ink} ink @param {number} count
+ */
 export function ramp(ink, count) {
-  const stops = [rgb(ink["series-1"]), rgb(ink["series-4"]), rgb(ink["series-2"])];
+  const dark = rgb(ink.panel).reduce((sum, part) => sum + part, 0) < 384;
+  const stops = (dark ? VIRIDIS.slice(3) : VIRIDIS.slice(0, -2)).map(rgb);
   return Array.from({ length: count }, (_, index) => {
     const at = (index / Math.max(1, count - 1)) * (stops.length - 1);
     const left = Math.min(stops.length - 2, Math.floor(at));

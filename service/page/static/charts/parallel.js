@@ -1,11 +1,12 @@
 /** Parallel coordinates on canvas: every design a line, every axis a quantity; dragging on an axis sets limits. */
 
-import { inShown } from "../lib/numbers.js";
+import { inShown, text } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
 import { line, nearestLine } from "./lines.js";
 import { layers, rgb } from "./paint.js";
 import { colours, scale } from "./scale.js";
+import { shadesOf } from "./shades.js";
 
 /** @import { FrontData } from "../front/data.js" */
 /** @import { Limits } from "../front/limits.js" */
@@ -14,6 +15,7 @@ import { colours, scale } from "./scale.js";
  * @property {FrontData} data
  * @property {Limits} limits
  * @property {() => { key: string, flipped: boolean }[]} axes
+ * @property {() => string} colour key of the column that colours the lines; of many lines all have one
  * @property {() => Page.Mark[]} marks
  * @property {(key: string, limit: Page.Limit | null) => void} limit
  * @property {(row: number | null) => void} point
@@ -31,6 +33,7 @@ import { colours, scale } from "./scale.js";
  * @property {boolean} backed
  * @property {{ density: Density, mask: Uint8Array } | null} chosen as it was drawn last
  * @property {Page.Ink} ink
+ * @property {ReturnType<typeof shadesOf>} shades
  */
 
 const ROOM = 12; // pixels above and below the axes
@@ -73,11 +76,12 @@ export function parallel(chart) {
         if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(zero + factor * numbers[row]);
       }
     });
+    const ink = colours();
     const all = data.count > FEW ? new Density(width, height, across, heights) : null;
     stack.resize(width, height, all ? [BACK, FRONT] : []);
-    view = { width, height, axes, across, scales, heights, all, backed: false, chosen: null, ink: colours() };
+    view = { width, height, axes, across, scales, heights, all, backed: false, chosen: null, ink, shades: shadesOf(data, chart.colour(), ink) };
     if (all) for (let row = 0; row < data.count; row += 1) all.add(row, 1);
-    else lines(contexts[BACK], (row) => row >= 0, view.ink.line, 1);
+    else lines(contexts[BACK], (row) => row >= 0, () => ink.line, 1);
   }
 
   /** Draw all designs behind the chosen ones, once; of many, they are seen only while some are left out. */
@@ -87,13 +91,16 @@ export function parallel(chart) {
     view.all.paint(contexts[BACK], rgb(view.ink.quiet), strength(chart.data.count) / 3);
   }
 
-  /** @param {Page.Canvas} context @param {(row: number) => boolean} wanted @param {string} colour @param {number} width @param {number} alpha */
+  /** @param {Page.Canvas} context @param {(row: number) => boolean} wanted @param {(row: number) => string} colour @param {number} width @param {number} alpha */
   function lines(context, wanted, colour, width, alpha = 1) {
     const { axes, across, heights } = view;
-    context.strokeStyle = colour;
     context.lineWidth = width;
     context.globalAlpha = alpha;
-    for (let row = 0; row < chart.data.count; row += 1) if (wanted(row)) line(context, row, axes.length, across, heights);
+    for (let row = 0; row < chart.data.count; row += 1) {
+      if (!wanted(row)) continue;
+      context.strokeStyle = colour(row);
+      line(context, row, axes.length, across, heights);
+    }
     context.globalAlpha = 1;
   }
 
@@ -105,7 +112,8 @@ export function parallel(chart) {
     if (some) drawBack();
     if (!view.all) {
       stack.clear(FRONT);
-      lines(contexts[FRONT], (row) => mask[row] === 1, view.ink.accent, 1.2, chosen > 60 ? 0.45 : 0.8);
+      const { of, colours: inks } = view.shades;
+      lines(contexts[FRONT], (row) => mask[row] === 1, (row) => inks[of[row]], 1.2, chosen > 60 ? 0.6 : 0.85);
       return;
     }
     if (!view.chosen) {
@@ -153,11 +161,31 @@ export function parallel(chart) {
         context.fillRect(x - 3, y - 0.5, 6, 1);
       }
     });
-    for (const { row, colour, width = 2.5 } of chart.marks()) {
+    for (const { row, colour, width = 2.5, read = false } of chart.marks()) {
       context.strokeStyle = colour;
       context.lineWidth = width;
       line(context, row, axes.length, across, heights);
+      if (read) drawValues(context, row);
     }
+  }
+
+  /** Write the values of a design at the axes, on the side where no ticks stand. @param {Page.Canvas} context @param {number} row */
+  function drawValues(context, row) {
+    const { ink, axes, across, heights, height } = view;
+    context.textAlign = "right";
+    context.font = "600 12px system-ui, sans-serif";
+    axes.forEach(({ key }, axis) => {
+      const y = heights[row * axes.length + axis];
+      if (y < 0) return;
+      const words = text(chart.data.cell(key, row), chart.data.column(key).unit, 4);
+      const place = /** @type {const} */ ([words, across[axis] - 9, Math.min(height - 8, Math.max(8, y))]);
+      context.lineWidth = 5;
+      context.strokeStyle = ink.panel;
+      context.strokeText(...place);
+      context.fillStyle = ink.text;
+      context.fillText(...place);
+    });
+    context.textAlign = "left";
   }
 
   /** @param {Page.Canvas} context @param {number} axis @param {Page.Limit | undefined} limit */

@@ -3,8 +3,9 @@
 import { inShown } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
-import { layers, palette, ramp, squares } from "./paint.js";
+import { layers, squares } from "./paint.js";
 import { colours, range, scale } from "./scale.js";
+import { shadesOf } from "./shades.js";
 
 /** @import { FrontData } from "../front/data.js" */
 /** @import { Limits } from "../front/limits.js" */
@@ -27,7 +28,6 @@ import { colours, range, scale } from "./scale.js";
 
 const NEAR = 10; // pixels within which a design is pointed at
 const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
-const SHADES = 24;
 const [BACK, FRONT, OVER] = [0, 1, 2];
 const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
 
@@ -56,8 +56,9 @@ export function scatter(chart) {
     const across = data.numbers(chart.x()).map(x.at);
     const up = data.numbers(chart.y()).map(y.at);
     const many = data.count > FEW;
+    const ink = colours();
     stack.resize(width, height, many ? [BACK, FRONT] : []);
-    view = { width, height, x, y, across, up, many, ink: colours(), shades: shades() };
+    view = { width, height, x, y, across, up, many, ink, shades: shadesOf(data, chart.colour(), ink) };
     const context = contexts[BACK];
     // Squares replace what is there, so they come first.
     if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
@@ -76,22 +77,7 @@ export function scatter(chart) {
     const factor = inShown(1, column.unit);
     const shown = scale(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
     const ticks = words ? wordTicks(words) : shown.ticks.map((tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]));
-    return { ...drawn, column, ticks };
-  }
-
-  /** Return the shade of every design as a place in `colours`. */
-  function shades() {
-    const { data } = chart;
-    const key = chart.colour();
-    const ink = colours();
-    if (!key) return { of: new Uint8Array(data.count), colours: [ink.accent] };
-    const numbers = data.numbers(key);
-    const words = data.words(key);
-    if (words) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
-    const { low, high } = data.range(key);
-    const of = new Uint8Array(numbers.length);
-    for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
-    return { of, colours: ramp(ink, SHADES) };
+    return { ...drawn, column, ticks, better: data.better(key) };
   }
 
   /** @param {Page.Canvas} context @param {number} row */

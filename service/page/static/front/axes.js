@@ -41,11 +41,19 @@ export function axisFields(explorer) {
       } }, sign);
     return h("div", { class: "axis-head" },
       h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
+      h("span", { class: "way" }, wayOf(key, flipped)),
       h("div", { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
-        act(flipped ? "↑" : "↓", "Flip", () => explorer.flipAxis(index)),
+        act("⇅", "Flip", () => explorer.flipAxis(index)),
         act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
         act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
+  }
+
+  /** Return an arrow to the better end of an axis; in words for a value to come near to. @param {string} key @param {boolean} flipped */
+  function wayOf(key, flipped) {
+    const better = explorer.data.better(key);
+    if (!better || better.startsWith("best near")) return better;
+    return (explorer.data.sense(key) === "maximise") !== flipped ? "↑ better" : "↓ better";
   }
 
   /** @param {string} key */

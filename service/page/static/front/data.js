@@ -2,6 +2,7 @@
 
 import { get } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
+import { withUnit } from "../lib/numbers.js";
 
 /** @typedef {{ numbers: Float64Array, words: string[] | null, range: Page.Range }} Kept A column as it is kept. */
 
@@ -81,6 +82,14 @@ export class FrontData {
   /** Return the best sense of a column: "maximise" where more is better, else "minimise". @param {string} key */
   sense(key) {
     return this.objectives.find(({ column }) => column === key)?.sense ?? "minimise";
+  }
+
+  /** Return in words which way is better of a column; empty where no objective says so. @param {string} key */
+  better(key) {
+    const objective = this.objectives.find(({ column }) => column === key);
+    if (!objective) return "";
+    if (typeof objective.target === "number") return `best near ${withUnit(objective.target, objective.unit, 4)}`;
+    return objective.sense === "maximise" ? "more is better" : "less is better";
   }
 
   /** Return all designs in the order of a column, smallest first, those without a value last. @param {string} key */

@@ -83,7 +83,7 @@ export class Explorer {
     this.saving = saving(this);
     this.fields = axisFields(this);
     this.lines = parallel({
-      data, limits, axes: () => chosen.axes, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
+      data, limits, axes: () => chosen.axes, colour: () => chosen.colour, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
     });
     this.dots = scatter({
@@ -236,7 +236,7 @@ export class Explorer {
     else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
     if (this.picked !== null) found.push({ row: this.picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
     for (const number of this.chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
-    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${this.pointed + 1}` : "" });
+    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${this.pointed + 1}` : "", read: true });
     return found;
   }
 

@@ -57,7 +57,7 @@ export function scatterPanel(explorer, dots) {
       return;
     }
     const [low, high] = ends(data.range(chosen.colour), column.unit);
-    fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
+    fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades", title: "viridis: equal steps look alike" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
   }
 
   return { place, draw, legend };

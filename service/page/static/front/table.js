@@ -67,7 +67,8 @@ export function designTable(explorer) {
     return h("th", { scope: "col", class: words ? null : "number", "aria-sort": sorted },
       h("button", { type: "button", class: "sort", "data-act": `sort-${key}`, title: `Sort by ${column.title}`, onclick: () => explorer.sortBy(key) },
         headed(column), h("span", { "aria-hidden": "true" }, { ascending: " ▲", descending: " ▼", none: "" }[sorted])),
-      h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"));
+      h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"),
+      h("div", { class: "way" }, explorer.data.better(key)));
   }
 
   /** @param {number} row @param {string[]} columns @param {Map<number, string[]>} names */

@@ -1,0 +1,21 @@
+/** The colours that designs have by one of their columns, the same in every chart of a front. */
+
+import { palette, ramp } from "./paint.js";
+
+/** @import { FrontData } from "../front/data.js" */
+
+const SHADES = 24;
+
+/**
+ * Return {of, colours}: the shade of every design as a place among the colours, low to high; of words, one for each.
+ * @param {FrontData} data @param {string} key of the column; empty for one colour @param {Page.Ink} ink
+ */
+export function shadesOf(data, key, ink) {
+  if (!key || !data.has(key)) return { of: new Uint8Array(data.count), colours: [ink.accent] };
+  const numbers = data.numbers(key);
+  if (data.words(key)) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
+  const { low, high } = data.range(key);
+  const of = new Uint8Array(numbers.length);
+  for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
+  return { of, colours: ramp(ink, SHADES) };
+}
