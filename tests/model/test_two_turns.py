@@ -19,6 +19,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.two_turns import halves
+from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -111,6 +112,27 @@ def test_slopes_of_quantities_are_those_of_differences(seed: int) -> None:
             ends = [QUANTITIES[name].evaluate(machine, end).values for end in (designs + step, designs - step)]
             slope = (ends[0] - ends[1]) / 2e-7
             assert np.abs(found.gradients[:, column] - slope).max() <= 2e-5 * np.abs(found.gradients).max() + 1e-4
+
+
+def test_numbers_that_vary_have_slopes_too() -> None:
+    machine, _, designs = random_case(4)
+    names = ("slider_mass", "speed")
+    ends = (0.5, 2.0), tuple(sorted((machine.speed, 2.0 * machine.speed)))
+    varying = [
+        Varying(name=name, sets=((name, 1.0),), lower=low, upper=high)
+        for name, (low, high) in zip(names, ends, strict=True)
+    ]
+    machine = replace(machine, acceleration=0.0, varying=tuple(varying))
+    wide = np.column_stack([designs, [1.0, 1.5], [1.2 * machine.speed, 1.7 * machine.speed]])
+    for name in ("peak_torque", "rms_torque"):
+        found = QUANTITIES[name].evaluate(machine, wide, gradients=True)
+        assert found.gradients is not None
+        for column in (3, 4):
+            step = 1e-6 * np.eye(5)[column]
+            sides = [QUANTITIES[name].evaluate(machine, end).values for end in (wide + step, wide - step)]
+            assert found.gradients[:, column] == pytest.approx((sides[0] - sides[1]) / 2e-6, rel=1e-5, abs=1e-6)
+        one = QUANTITIES[name].evaluate(machine.at(wide[0, 3:].tolist()), wide[:1, :3]).values[0]
+        assert found.values[0] == pytest.approx(one, rel=1e-12)
 
 
 def test_a_table_that_repeats_after_one_turn_is_that_of_one_turn() -> None:
