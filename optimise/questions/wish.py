@@ -45,7 +45,7 @@ from .wished import Wished, outcomes_of
 from .wishes import Wish, aimed, read_wishes
 
 _NEAREST, _MORE = 3, 6  # starts on a sheet, and those tried where the first end in different optima
-_SHEETS = 12  # that are tried, the best ones
+_SHEETS, _FINAL = 12, 2  # that are tried, the best ones; at first from one start each, then the best of them
 _WORSE = 0.5  # of the ranges: a sheet whose best start is worse than the best of all by more is left out
 _DIFFER = 1e-9  # of the ranges: optima that are not one
 _OUTSIDE = 10.0  # what a start counts for that lies above a ceiling, or outside the requirements
@@ -146,22 +146,23 @@ class Wishes:
         free = replace(form, ceilings=np.full(len(form.weights), np.inf))
         worth = free.value(scaled) + _OUTSIDE * (over + ~self._starts.met)
         sheet, tried = self._starts.sheet, np.zeros(len(worth), np.bool_)
-        ends: list[tuple[float, int, Array]] = []
+        ends: list[tuple[float, int, Array]] = []  # the best first
         chosen = self._promising(worth)
-        for count in (_NEAREST, _MORE):
+        for count in (_NEAREST, _MORE) if len(chosen) == 1 else (1, _NEAREST, _MORE):
             for index in chosen:
                 own = np.flatnonzero((sheet == index) & ~tried)
                 rows = own[apart(worth[own], self._starts.u[own], sheet[own], count)]
                 tried[rows] = True
                 ends += self._ends(form, evaluators[index], index, rows)
-            values = sorted(value for value, _, _ in ends)
-            if values and (len(values) < 2 or values[-1] - values[0] <= _DIFFER):
+            ends.sort(key=lambda end: end[0])
+            order = list(dict.fromkeys(index for _, index, _ in ends))
+            same = [value for value, index, _ in ends if index == order[0]] if ends else []
+            if len(same) > 1 and same[-1] - same[0] <= _DIFFER:
                 break
-            best = {index for value, index, _ in ends if value <= values[0] + _DIFFER} if values else set(chosen)
-            chosen = [index for index in chosen if index in best]
+            chosen = order[:_FINAL] or chosen
         if not ends:
             return None
-        value, index, u = min(ends, key=lambda end: end[0])
+        value, index, u = ends[0]
         return index, u, value
 
     def _promising(self, worth: Array) -> list[int]:
