@@ -189,6 +189,15 @@ def test_wishes_that_make_no_sense_are_refused(case: str) -> None:
     assert words in str(refused.value)
 
 
+def test_a_front_of_one_design_takes_wishes() -> None:
+    """Without a range over the front, objectives are counted in their size."""
+    of = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, samples=256, designs=1))
+    answer = wish(of, {"peak_torque": 0.5 * of.values[0, 0]})
+    assert len(of) == 1
+    assert answer.found.columns["residual"][0] <= 1e-6
+    assert answer.found.values[0, 0] <= of.values[0, 0] * (1.0 + 1e-9)
+
+
 def test_one_objective_or_no_design_is_refused() -> None:
     alone = solve(problem({"peak_torque": "minimise"}, HELD, samples=256))
     with pytest.raises(InputError, match="for several objectives; got one, peak_torque"):
