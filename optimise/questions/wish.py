@@ -191,7 +191,8 @@ class Wishes:
                 of = self.front.problem.quantity(self.front.objectives[column].quantity)
                 best = self.front.columns[of.field][int(np.argmin(self.front.values[:, column]))]
                 allowed = f"{(wish.value or 0.0) * of.unit.factor:.4g} {of.unit.symbol}".rstrip()
-                told.append(f"{of.title} {allowed} or better, where the front has {best:.4g}")
+                has = f"{best:.4g} {of.unit.symbol}".rstrip()
+                told.append(f"{of.title} {allowed} or better, where the front has {has} at best")
         return f"no design was found with {' and '.join(told)}; allow more"
 
 
