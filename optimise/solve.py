@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -81,6 +81,7 @@ class _One:
     stages: Callback | None
     fronts: Callable[[Array], None] | None
     resumes: bool
+    runs: list[Run] = field(default_factory=list)
 
     def begun(self, problem: Problem) -> tuple[list[Evaluator], Run]:
         """Return the evaluators of a problem and its run."""
@@ -96,7 +97,9 @@ class _One:
             if self.told is not None:
                 self.told(entry)
 
-        run = Run(problem, 1, with_front if heard else None, self.checkpoints, stages=self.stages)
+        last = self.runs[-1] if self.runs else None
+        run = Run(problem, 1, with_front if heard else None, self.checkpoints, stages=self.stages, after=last)
+        self.runs.append(run)
         return evaluators, run
 
     def solve(self, problem: Problem) -> ParetoFront:

@@ -186,12 +186,17 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
 
     The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
     and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
-    and with `eliminate` for an offset of both signs.
+    for one with discrete values, and with `eliminate` for an offset of both signs.
     """
     if problem.variants:
         raise InputError(
             f"other optimisers take no choices ({', '.join(problem.choices)}); got {len(problem.variants)} variants; "
             "take one of problem.parts()"
+        )
+    if problem.discrete:
+        raise InputError(
+            "other optimisers take ranges; got values of "
+            f"{', '.join(item.name for item in problem.discrete)}; leave out step, series and values"
         )
     asked = constraints_of(problem)
     sheet = _sheet(problem) if eliminate else None

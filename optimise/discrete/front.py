@@ -140,6 +140,6 @@ def _told(problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen:
         evaluations=continuous.evaluations + front.evaluations + answer.judged,
         discrete=answer,
     )
-    return replace(
-        found, message=f"{found_in_words(found)}; {front.message}" if not len(found) else found_in_words(found)
-    )
+    if front.status == "cancelled":
+        return found
+    return replace(found, message=found_in_words(found) if len(found) else f"{found_in_words(found)}; {front.message}")

@@ -56,8 +56,14 @@ def rounded(
     steps = _steps(to, ranges)
     moved = {name: step for name, step in steps.items() if ranges[name][0] < ranges[name][1]}
     told = [*notes, *_stays(given, ranges, steps)]
+    own = {item.name: item.rule for item in part.discrete if item.name in moved}
+    moved = {name: step for name, step in moved.items() if name not in own}
+    told += [f"{name} has values of the job, {rule}, and stays" for name, rule in own.items()]
     if not moved:
-        raise InputError(f"a step is for a number that varies; got {', '.join(steps)}, fixed in this job; name another")
+        raise InputError(
+            f"a step is for a number that varies; got {', '.join(steps)}, fixed in this job or with values of its own; "
+            "name another"
+        )
     search = _Search(part, given, span, moved, ranges)
     best = search.best()[:count]
     return Rounded(

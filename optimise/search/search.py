@@ -124,7 +124,7 @@ class Run:
     archive: what the search has found on the others. finished: the designs of the settled ones, and what the polish
     has made of the archive. fronts: objectives of feasible designs of each round, of many some hundreds. progress:
     called after every round. stages: called in long stages between two. Where neither is given, a round's hypervolume
-    is not computed, and told as 0.
+    is not computed, and told as 0. after: an earlier run for the same answer, whose rounds and hypervolume go on.
     """
 
     problem: Problem
@@ -135,13 +135,15 @@ class Run:
     fronts: list[Array] = field(default_factory=list)
     settled: list[Evaluator] = field(default_factory=list)
     stages: Callback | None = None
+    after: Run | None = None
 
     def __post_init__(self) -> None:
         count = len(self.problem.objectives)
         self.archive, self.finished = Archive.empty(count), Finished.none(np.ones(count))
         self._targets = np.array([objective.target or 0.0 for objective in self.problem.objectives])
-        self._growth = Growth(self._targets)
+        self._growth: Growth = Growth(self._targets) if self.after is None else self.after._growth
         self._heard = time.monotonic()
+        self._passed: int = 0 if self.after is None else self.after._passed + len(self.after.told)
 
     def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
         """Record the end of a round; evaluators: those that the archive's designs are from.
@@ -153,8 +155,8 @@ class Run:
         feasible = np.concatenate([archive.values[archive.met], self.finished.values])
         entry = Progress(
             stage,
-            len(self.told) + 1,
-            max(self.rounds, len(self.told) + 1),
+            self._passed + len(self.told) + 1,
+            self._passed + max(self.rounds, len(self.told) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
             archive.feasible + int((~self.finished.free).sum()),
             self._growth.take(feasible) if self.progress or self.stages else 0.0,

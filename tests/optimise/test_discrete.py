@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
+from slidercrank.optimise.adapters.standard_form import standard_form
 from slidercrank.optimise.discrete import front as discrete
 from slidercrank.optimise.discrete.combinations import Axes, neighbours
+from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.grids import SERIES
 from slidercrank.optimise.problem.discrete import Discrete
@@ -108,7 +110,8 @@ def test_designs_have_the_values_as_they_are_written() -> None:
         r"(peak torque [\d.]+ N m|time ratio [\d.]+) \(here [\d.]+\), (peak torque|time ratio) [^;]*",
         front.message,
     )
-    assert front.rounded(0, 1e-3).met in (True, False)
+    with pytest.raises(InputError, match="fixed in this job or with values of its own"):
+        front.rounded(0, 1e-3)
 
 
 def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
@@ -129,6 +132,7 @@ def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
 
 def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
     problem = parse_job(job({"offset": ["0 mm", "40 mm"]}))
+    assert "crank has values of the job, multiples of 0.5 mm, and stays" in solve(problem).rounded(0, 1e-3).notes
     found = neighbours(Axes.of(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
     assert found[:, :2].tolist() == [[0.0505, 0.125], [0.05, 0.125], [0.0505, 0.112], [0.05, 0.112]]
     assert np.isnan(found[:, 2]).all()
@@ -144,6 +148,20 @@ def test_a_search_that_was_stopped_ends_with_the_same_designs(stop: int) -> None
     again = solve(given, resume=records[: len(records) * stop // 4])
     assert again.dimensions.tobytes() == whole.dimensions.tobytes()
     assert again.message == whole.message
+
+
+def test_progress_of_both_searches_goes_on() -> None:
+    told: list[Progress] = []
+    given = parse_job(job({"offset": ["5 mm", "40 mm"], "rod": {"values": ["140 mm", "150 mm"]}, "crank": "48 mm"}))
+    front = solve(given, progress=told.append)
+    assert [entry.round for entry in told] == list(range(1, len(told) + 1))
+    assert len(told) > len(front.history) > 0
+    assert (np.diff([entry.hypervolume for entry in told]) >= 0.0).all()
+
+
+def test_other_optimisers_are_refused() -> None:
+    with pytest.raises(InputError, match="other optimisers take ranges; got values of crank, rod, offset"):
+        standard_form(parse_job(job()))
 
 
 def test_a_cancelled_search_gives_no_designs_of_other_values() -> None:
