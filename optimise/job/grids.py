@@ -42,12 +42,15 @@ class Grid:
 
 
 def says_values(given: object) -> bool:
-    """Return whether a value of a job says which values a variable may have."""
-    return isinstance(given, Mapping) and bool(given) and set(given) <= KEYS
+    """Return whether a value of a job has a key of a table of values."""
+    return isinstance(given, Mapping) and not KEYS.isdisjoint(given)
 
 
 def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     """Return the values that a table says. read: gives a value in SI, by the rules of its key. Raises `InputError`."""
+    for key in given:
+        if key not in KEYS:
+            raise InputError(f"values have the keys {', '.join(sorted(KEYS))}; got {shown(key)}; correct or remove it")
     words = [key for key in ("step", "series", "values") if key in given]
     if len(words) != 1:
         raise InputError(
