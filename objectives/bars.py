@@ -166,3 +166,20 @@ def net_section(link: str, pin: str) -> Formula:
     """Return the formula of the net section of a link's eye, (w - D) t, m^2."""
     own = LINKS[link]
     return lambda number: (number(own.width) - number(PINS[pin])) * number(own.depth)
+
+
+def constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+    """Return a number as a closed form of designs (n, 3 + k)."""
+    return np.full(len(designs), value), np.zeros(designs.shape) if gradients else None
+
+
+def over(force: Part, area: tuple[Array, Array | None], by: float = 1.0) -> Part:
+    """Return a force over an area times a number; infinite where there is no area."""
+    values, slopes = area
+    there = values > 0.0
+    safe = np.where(there, values, 1.0)
+    inverse = by / safe
+    found = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
+    filled = np.where(there[:, None] | ~np.isfinite(found.values), found.values, np.inf)
+    blank = None if found.gradients is None else np.where(there[:, None, None], found.gradients, 0.0)
+    return Part(filled, blank, found.labels)

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from ..model.machine.mechanism import Mechanism
-from .bars import LINKS, NEAR, OfBars, Part, closed, net_section, pin_force, strength_of, stress
+from .bars import LINKS, NEAR, OfBars, Part, closed, constant, net_section, over, pin_force, strength_of, stress
 from .kinds import PRESSURE, RATIO
 from .needs import A_BAR, CRANK_BAR, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array, Group
@@ -29,36 +27,20 @@ class LinkStress(OfBars):
         found = []
         for name in self.bars(mechanism):
             along = stress(mechanism, name, designs, STATIC, kept, gradients)
-            found.append(along.into(_constant(own, designs, gradients)) if self.least else along)
+            found.append(along.into(constant(own, designs, gradients)) if self.least else along)
             for pin in (NEAR, LINKS[name].far):
                 force = pin_force(mechanism, pin, designs, kept, gradients)
                 area = closed(mechanism, designs, net_section(name, pin), gradients)
                 if self.least:
                     found.append(force.into(_scaled(area, own / strength.eye_concentration)))
                 else:
-                    found.append(_over(force, area, strength.eye_concentration))
+                    found.append(over(force, area, strength.eye_concentration))
         return found
-
-
-def _constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-    return np.full(len(designs), value), np.zeros(designs.shape) if gradients else None
 
 
 def _scaled(factor: tuple[Array, Array | None], by: float) -> tuple[Array, Array | None]:
     values, slopes = factor
     return by * values, None if slopes is None else by * slopes
-
-
-def _over(force: Part, area: tuple[Array, Array | None], by: float) -> Part:
-    """Return force over area times a number; infinite where the pin is as wide as the eye."""
-    values, slopes = area
-    there = values > 0.0
-    safe = np.where(there, values, 1.0)
-    inverse = by / safe
-    found = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
-    filled = np.where(there[:, None] | ~np.isfinite(found.values), found.values, np.inf)
-    blank = None if found.gradients is None else np.where(there[:, None, None], found.gradients, 0.0)
-    return Part(filled, blank, found.labels)
 
 
 _SOURCE = "Shigley, Mechanical Engineering Design, 9th ed., sec. 3-10 and 3-13; section forces derived there"

@@ -22,6 +22,7 @@ from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
 from .raw import LOAD_SLOTS, Raw, raw_vector
+from .varying import Varying
 
 Array = NDArray[np.float64]
 
@@ -113,7 +114,12 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bo
     found = {slot: value for slot, value in _raw(mechanism, designs).items() if slot < room}
     columns = np.array(list(found), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(found.values()), axis=1))
-    slopes = np.empty((len(designs) if gradients else 0, len(columns), designs.shape[1]))
+    shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
+    rates = _rates(mechanism.varying)
+    if rates is not None:
+        own = np.array([rates[slot] for slot in found])
+        return Numbers(columns, values, np.array(np.broadcast_to(own, shape)))
+    slopes = np.empty(shape)
     for v in range(designs.shape[1] if gradients else 0):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += 1j * STEP
@@ -142,25 +148,28 @@ def of_numbers(
     formula: of a function that gives the raw number of a slot (`Raw`, `PINS`), each (n,) or one for all designs. It is
     smooth, and takes complex numbers too.
     """
-    require_width(mechanism, designs)
+    numbers = numbers_of(mechanism, designs, room=10**9, gradients=gradients)
     base = raw_vector(mechanism.nominal)
     pins = (
         {} if mechanism.strength is None else {slot: getattr(mechanism.strength, name) for name, slot in PINS.items()}
     )
+    found: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
+    asked: dict[int, None] = {}
 
-    def values(given: Any) -> Any:
-        found = _raw(mechanism, given)
-        return formula(lambda slot: found[slot] if slot in found else pins[slot] if slot in pins else base[slot])
+    def number(slot: int) -> Any:
+        asked[slot] = None
+        return found[slot] if slot in found else pins[slot] if slot in pins else base[slot]
 
-    plain = values(designs) + np.zeros(len(designs))
+    plain = formula(number) + np.zeros(len(designs))
     if not gradients:
         return plain, None
-    slopes = np.empty(designs.shape)
-    for v in range(designs.shape[1]):
-        stepped = designs.astype(np.complex128)
-        stepped[:, v] += 1j * STEP
-        slopes[:, v] = np.imag(values(stepped)) / STEP
-    return plain, slopes
+    by_number = np.zeros((len(designs), len(found)))
+    for place, slot in enumerate(found):
+        if slot in asked:
+            found[slot] = found[slot] + 1j * STEP
+            by_number[:, place] = np.imag(formula(number)) / STEP
+            found[slot] = found[slot].real
+    return plain, numbers.chain(by_number)
 
 
 def require_width(mechanism: Mechanism, designs: Array) -> None:
@@ -171,6 +180,19 @@ def require_width(mechanism: Mechanism, designs: Array) -> None:
             f"a design of this machine has {3 + len(mechanism.varying)} numbers: crank, rod, offset{more}; "
             f"got {designs.shape[1]}"
         )
+
+
+@cache
+def _rates(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
+    """Return the derivatives (3 + k,) of each raw number that designs set; None where they are not constant."""
+    rates = {column: {column: 1.0} for column in range(3)}
+    for column, item in enumerate(varying):
+        for path, factor in item.sets:
+            if path in _POLAR:
+                return None
+            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # to the rounding of a complex step
+    count = 3 + len(varying)
+    return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 
 
 def _raw(mechanism: Mechanism, designs: Any) -> dict[int, Any]:

@@ -59,7 +59,7 @@ Array = NDArray[np.float64]
 KEPT = 8
 """Maxima kept of a design, highest first."""
 _ANGLES, _STATIONS = 128, 9
-_NEAR, _WIDE = 0.05, 0.4  # how far below the highest sample a maximum is refined: for the value, for pieces
+_NEAR, _WIDE = 0.05, 0.2  # how far below the highest sample a maximum is refined: for the value, for pieces
 _LISTED = 6  # local maxima of a place's stress over the cycle
 _ITERATIONS = 60
 _TURN = 2.0 * math.pi
@@ -67,7 +67,8 @@ _THIN = 1e-13  # rad: breakpoints closer than this are one
 _EDGE = 1e-11  # rad, from a breakpoint: on it
 _SETTLED = 1e-11  # share of the length
 _SAME = 1e-7
-APART, CLASSES = 10.0, 12
+_OTHER = 7.0  # weight of the second angle in a label, more than a turn
+APART, CLASSES = 60.0, 12
 """Distance of the labels of maxima that are no neighbours, more than a turn; how many classes there are of these."""
 
 
@@ -311,8 +312,9 @@ def _find(
                                 break
                             xi = trial
                         number = (f * criteria.shape[0] + g) * 3 + (1 if xi == 0.0 else 2 if xi == 1.0 else 0)
-                        own = (at[0] if p > 0.0 else 0.0) + (3.0 * at[1] if q > 0.0 else 0.0)
-                        own += APART * number - _TURN * math.floor(own / _TURN)
+                        own = APART * number
+                        own += at[0] - _TURN * math.floor(at[0] / _TURN) if p > 0.0 else 0.0
+                        own += _OTHER * (at[1] - _TURN * math.floor(at[1] / _TURN)) if q > 0.0 else 0.0
                         known = False
                         for i in range(found):
                             known = known or (

@@ -1,0 +1,109 @@
+"""Safety of crank and rod as bars against fatigue and against buckling."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from .bars import LINKS, Formula, OfBars, Part, closed, constant, strength_of, stress
+from .kinds import RATIO
+from .needs import A_BAR, LOADED, STRENGTH
+from .quantity import Array, Group
+
+_COMPRESSION = ((0.0, 1.0),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FatigueSafety(OfBars):
+    """1 / (amplitude / S_e + mean / S_m) of the point of a bar where that is least, over its own cycle of stress."""
+
+    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+        """Return the safety of each bar; see `OfBars`."""
+        strength = strength_of(mechanism)
+        worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
+        # Of amplitude and mean in terms of greatest and least stress; and of the amplitude alone.
+        criteria = ((worn + steady, worn - steady), (worn, worn))
+        one = constant(1.0, designs, gradients)
+        return [stress(mechanism, name, designs, criteria, kept, gradients).into(one) for name in self.bars(mechanism)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BucklingSafety(OfBars):
+    """Critical stress over the greatest compression, least of bars and planes."""
+
+    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+        """Return the safety of each bar in the plane of motion and out of it; see `OfBars`."""
+        material = strength_of(mechanism).material
+        found = []
+        for name in self.bars(mechanism):
+            own = LINKS[name]
+            pressed = stress(mechanism, name, designs, _COMPRESSION, kept, gradients, bending=False)
+            for side in (own.width, own.depth):
+                critical = critical_stress(own.length, side, own.held, material.elasticity, material.yield_strength)
+                found.append(pressed.into(closed(mechanism, designs, critical, gradients)))
+        return found
+
+
+def critical_stress(length: int, side: int, held: float, elasticity: float, strength: float) -> Formula:
+    """Return the formula of the mean stress at which a bar of rectangular section buckles, Pa.
+
+    With the slenderness s = L sqrt(12) / side: Euler's C pi^2 E / s^2 beyond s_1 = sqrt(2 pi^2 C E / S_y), Johnson's
+    parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; value and slope agree there, at S_y / 2. length, side: slots of
+    the raw numbers. held: the end condition C.
+    """
+    limit = math.sqrt(2.0 * math.pi**2 * held * elasticity / strength)
+
+    def formula(number: Any) -> Any:
+        slender = number(length) * math.sqrt(12.0) / number(side)
+        euler = held * math.pi**2 * elasticity / slender**2
+        johnson = strength - (strength * slender / (2.0 * math.pi)) ** 2 / (held * elasticity)
+        return np.where(np.real(slender) > limit, euler, johnson)
+
+    return formula
+
+
+FATIGUE_SAFETY = FatigueSafety(
+    name="fatigue_safety",
+    title="fatigue safety",
+    kind=RATIO,
+    least=True,
+    group=Group.STRENGTH,
+    place=446,
+    sentence=(
+        "By how much all stresses could grow until the worst point of crank and rod tires: amplitude and mean are of "
+        "the same point's stress over a turn."
+    ),
+    advice="1.3 to 2 are usual. The endurance strength has the stress raisers of the eyes in it.",
+    formula="1 / max(sigma_a / S_e + max(sigma_m, 0) / S_u) over place; S_y in place of S_u with Soderberg's criterion",
+    section="22. Strength of crank and rod",
+    source="Shigley, Mechanical Engineering Design, 9th ed., eq. 6-46 (Goodman) and 6-45 (Soderberg)",
+    picture="rod",
+    example=1.5,
+    better="high",
+    needs=(STRENGTH, A_BAR, LOADED),
+)
+BUCKLING_SAFETY = BucklingSafety(
+    name="buckling_safety",
+    title="buckling safety",
+    kind=RATIO,
+    least=True,
+    group=Group.STRENGTH,
+    place=448,
+    sentence=(
+        "The load at which a bar buckles over its greatest compression, in the plane of motion and out of it: "
+        "Euler's for a slender bar, Johnson's for a short one. Infinite where nothing is compressed."
+    ),
+    advice="3 and more are usual. A rod of square section is as safe in both planes.",
+    formula="P_cr / max(-N): C pi^2 E I / L^2 or Johnson's parabola; C = 1 of the rod in both planes, 1/4 of the crank",
+    section="22. Strength of crank and rod",
+    source="Shigley, Mechanical Engineering Design, 9th ed., sec. 4-12 and 4-13, table 4-2",
+    picture="rod",
+    example=3.0,
+    better="high",
+    needs=(STRENGTH, A_BAR, LOADED),
+)
