@@ -21,7 +21,8 @@ from .machines import Array
 from .peers import EVALUATIONS, PEERS, run_peer
 from .report import Row
 
-JOBS = ("feeder", "sieve", "support")
+JOBS = ("feeder", "sieve", "turning_support")
+FOLDERS = {"turning_support": "tests/data"}
 FIGURE = Path(__file__).parent / "output" / "methods.png"
 
 
@@ -44,7 +45,7 @@ def compare(
     names = methods or tuple(name for name, method in known().items() if method.takes(4) and not method.polishes)
     rows, courses = [], {}
     for job in jobs:
-        given = load_job(f"runs/{job}.toml")
+        given = load_job(FOLDERS.get(job, "runs") + f"/{job}.toml")
         best = solve(given)
         ideal, span = scaling(best.values)
         whole = best.hypervolume

@@ -76,6 +76,7 @@ SWING_ENERGY = SwingIntegral(
     of="work",
     signed=True,
     group=Group.DRIVE,
+    picture="power",
     place=315,
     sentence="The work of the drive on the way forth: below zero where it has to brake.",
     formula="integral of P dx, or T dtheta, over the way forth",
@@ -87,6 +88,7 @@ SWING_EFFICIENCY = SwingIntegral(
     of="efficiency",
     rubbing=True,
     group=Group.DRIVE,
+    picture="power",
     place=316,
     sentence=(
         "What the swing takes without friction over what it takes: of the way forth, or of the way back where only "

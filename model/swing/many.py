@@ -72,13 +72,14 @@ class Many:
         slopes: bool,
         slow: bool = False,
         free: bool = False,
+        forces: bool = True,
     ) -> None:
-        """Take designs (n, 3 + k). slow: without inertia. free: without friction."""
+        """Take designs (n, 3 + k). slow: without inertia. free: without friction. forces: whether states need them."""
         raw, self.loads = fullest_inputs(mechanism)
         self.mechanism, self.swing = mechanism, replace(swing, law="slow", duration=None) if slow else swing
         self.numbers: Numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
         self.rubs = mechanism.fullest.friction.acts and not free
-        self.path: Path = path_of(self.swing, rubbing=self.rubs)
+        self.path: Path = path_of(self.swing, rubbing=self.rubs, forces=forces)
         self.blocks, self.steps = derived(raw, self.loads, self.numbers.columns, self.numbers.values, steps=slopes)
         self.plain: Complexes = self.blocks.astype(np.complex128)
         self.designs, self.count, self.columns = designs, len(designs), len(self.numbers.columns)
@@ -115,8 +116,11 @@ class Many:
         """Return the ways that differ: forth, and back unless it is alike."""
         return (False, True) if self.both else (False,)
 
-    def pieces(self, *, back: bool, forces: bool = True) -> Pieces:
-        """Return the pieces of one way. forces: whether cuts that only forces have are wanted too."""
+    def pieces(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
+        """Return the pieces of one way.
+
+        forces: whether cuts that only forces have are wanted too. contacts: of these, those of the guide's force.
+        """
         found = list(self._corners()) + (list(self._kinks()) if forces else [])
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in found)]
         state = np.tile(np.array([-1, -1, *(code for _, code in found)], dtype=np.int64), (self.count, 1))
@@ -124,7 +128,7 @@ class Many:
         cuts = np.where((cuts > _THIN) & (cuts < 1.0 - _THIN), cuts, np.where(cuts < 0.5, 0.0, 1.0))
         cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
         own = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
-        touching = forces and self.rubs and self.mechanism.fullest.friction.guide > 0.0
+        touching = forces and contacts and self.rubs and self.mechanism.fullest.friction.guide > 0.0
         return self._with_contacts(own) if touching else own
 
     def _corners(self) -> Any:
@@ -210,17 +214,18 @@ class Many:
     def _root(self, design: Integers, low: Array, high: Array, inside: Array, back: float) -> Array:
         """Return the shares between two at which the guide's force is zero, by bisection and Newton's iteration."""
         rising = self.states(design, high, inside, back)[:, GUIDE].real > 0.0
-        at = 0.5 * (low + high)
+        at, rows = 0.5 * (low + high), np.arange(len(low))
         for _ in range(_ROOTS):
-            found = self.states(design, at, inside, back, STEP)[:, GUIDE]
-            above = (found.real > 0.0) == rising
-            low, high = np.where(above, low, at), np.where(above, at, high)
+            here = at[rows]
+            found = self.states(design[rows], here, inside[rows], back, STEP)[:, GUIDE]
+            above = (found.real > 0.0) == rising[rows]
+            low[rows[~above]], high[rows[above]] = here[~above], here[above]
             with np.errstate(divide="ignore", invalid="ignore"):
-                trial = at - found.real / (found.imag / STEP)
-            new = np.where((trial > low) & (trial < high), trial, 0.5 * (low + high))
-            settled = np.abs(new - at) <= 2e-16
-            at = new
-            if settled.all():
+                trial = here - found.real / (found.imag / STEP)
+            good = (trial > low[rows]) & (trial < high[rows])
+            at[rows] = np.where(good, trial, 0.5 * (low[rows] + high[rows]))
+            rows = rows[np.abs(at[rows] - here) > 2e-16]
+            if not len(rows):
                 break
         return at
 

@@ -8,6 +8,7 @@ a peak on a cut moves with it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
 from .many import Many, Pieces, able
-from .points import DRIVE
+from .points import DRIVE, ERROR
 from .swing import Swing
 
 Array = NDArray[np.float64]
@@ -64,7 +65,8 @@ def swing_peaks(
 
     kept: peaks returned of a design.
     """
-    return _gathered(mechanism, swing, designs, kept, gradients, lambda many: _peaks(many, state, kept, gradients))
+    found = partial(_peaks, state=state, kept=kept, gradients=gradients)
+    return _gathered(mechanism, swing, designs, kept, gradients, found, forces=state != ERROR)
 
 
 def holding_peaks(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> SwingPeaks:
@@ -74,7 +76,15 @@ def holding_peaks(mechanism: Mechanism, swing: Swing, designs: Array, *, gradien
 
 
 def _gathered(
-    mechanism: Mechanism, swing: Swing, designs: Array, kept: int, gradients: bool, of: Any, *, slow: bool = False
+    mechanism: Mechanism,
+    swing: Swing,
+    designs: Array,
+    kept: int,
+    gradients: bool,
+    of: Any,
+    *,
+    slow: bool = False,
+    forces: bool = True,
 ) -> SwingPeaks:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     n = len(designs)
@@ -85,12 +95,12 @@ def _gathered(
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]
-        many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow)
+        many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, forces=forces)
         stuck = many.locked()
         if stuck.any():
             values[own[stuck], 0] = np.inf
             own = own[~stuck]
-            many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow)
+            many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, forces=forces)
         if len(own):
             values[own], places[own], found = of(many)
             if gradients:
@@ -101,7 +111,11 @@ def _gathered(
 
 
 def _peaks(many: Many, state: int, kept: int, gradients: bool) -> tuple[Array, Array, Array]:
-    parts = [_of_way(many, many.pieces(back=back, forces=state <= 1), state, kept, gradients) for back in many.ways()]
+    # A force on the slider has the guide's friction by its size: without slopes its kink needs no cut.
+    contacts = gradients or many.swing.driver == "crank"
+    cut = partial(many.pieces, forces=state != ERROR, contacts=contacts)
+    ways = many.ways() if state != ERROR else (False,)
+    parts = [_of_way(many, cut(back=back), state, kept, gradients) for back in ways]
     values, places, slopes = (np.concatenate(each, axis=1) for each in zip(*parts, strict=True))
     order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
     first, where = np.take_along_axis(values, order, axis=1), np.take_along_axis(places, order, axis=1)

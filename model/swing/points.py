@@ -46,13 +46,16 @@ class Path(NamedTuple):
     per_time: float
     tolerance: float
     rubbing: bool
+    forces: bool
 
 
-def path_of(swing: Swing, *, rubbing: bool, slow: bool = False) -> Path:
-    """Return a swing for the kernel. rubbing: whether friction counts. slow: whether it is taken without inertia."""
-    per_time = 0.0 if slow or swing.duration is None else 1.0 / swing.duration
-    law = code_of("slow" if slow else swing.law)
-    return Path(swing.start, swing.end, swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing)
+def path_of(swing: Swing, *, rubbing: bool, forces: bool) -> Path:
+    """Return a swing for the kernel. rubbing: whether friction counts. forces: whether they are needed."""
+    per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
+    law = code_of(swing.law)
+    return Path(
+        swing.start, swing.end, swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces
+    )
 
 
 @analytic
@@ -180,19 +183,24 @@ def _states(
         block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(speed.real), _STILL), rise.real
         own[_SPEED, 0], own[_ACCELERATION, 0] = speed, rise
         d, z = design_at(block, 0), design_at(own, 0)
-        _, outward = enter(d, block, 0, within, loads, watch, piece, shift)
-        load = load_on_slider(m, z, own, 0, complex(theta, moved), outward, loads, piece, shift)
+        load, outward = 0j, False
+        if path.forces:
+            _, outward = enter(d, block, 0, within, loads, watch, piece, shift)
+            load = load_on_slider(m, z, own, 0, complex(theta, moved), outward, loads, piece, shift)
+        drive, guide, power = 0j, 0j, 0j
         j = influences(zs, zc, m, z.l)
         if path.slider:
-            drive, guide = _pushed(zs, zc, m, z, load, path.rubbing)
-            power = drive * m.x_1 * speed
+            if path.forces:
+                drive, guide = _pushed(zs, zc, m, z, load, path.rubbing)
+                power = drive * m.x_1 * speed
             off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
             off = off + magnitude(j.offset) * z.offset_error + path.tolerance
             error = off * inverse(magnitude(m.x_1))
         else:
-            sides = sides_of(within, d, block, 0, outward, loads, piece, shift, path.rubbing)
-            f = joint_forces(zs, zc, m, z, load, sides)
-            drive, guide, power = f.torque, f.guide, f.torque * speed
+            if path.forces:
+                sides = sides_of(within, d, block, 0, outward, loads, piece, shift, path.rubbing)
+                f = joint_forces(zs, zc, m, z, load, sides)
+                drive, guide, power = f.torque, f.guide, f.torque * speed
             error = worst_case(j, z)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
         out[p, 4], out[p, 5], out[p, 6], out[p, 7] = m.x, m.x_1, complex(theta, moved), rate

@@ -26,13 +26,15 @@ _MOST_POINTS = 100
 
 
 def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None:
-    """Return the problem of crank, rod and offset that a job states; None while their ranges cannot be read.
+    """Return the problem of crank, rod and offset that a job states; None while there is none.
+
+    None while their ranges cannot be read, and of a swing.
 
     whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
     the machine are left out without it, those that only a search can afford always.
     """
-    ranges = _ranges(tables.get("variables"))
-    if ranges is None:
+    ranges, motion = _ranges(tables.get("variables")), tables.get("motion")
+    if ranges is None or (isinstance(motion, Mapping) and motion.get("kind") == "swing"):
         return None
     machine = _turning(tables.get("mechanism")) if whole is None else whole.part(0).mechanism.nominal
     with_machine = whole is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS

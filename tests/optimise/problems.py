@@ -19,8 +19,9 @@ from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 from slidercrank.optimise.solve import solve
 
-JOBS = ("feeder", "sieve", "support", "compressor")
+JOBS = ("feeder", "sieve", "turning_support", "compressor")
 RUNS = Path(__file__).parents[2] / "runs"
+DATA = Path(__file__).parents[1] / "data"
 
 MACHINE = Mechanism(
     speed=30.0,
@@ -95,7 +96,7 @@ def polish_few(patch: pytest.MonkeyPatch) -> None:
 @cache
 def shipped(job: str) -> Problem:
     """Return the problem of a shipped job."""
-    return load_job(RUNS / f"{job}.toml")
+    return load_job((DATA if job == "turning_support" else RUNS) / f"{job}.toml")
 
 
 @cache

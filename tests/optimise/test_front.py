@@ -37,7 +37,7 @@ def with_values(values: list[list[float]]) -> ParetoFront:
 
 
 def test_the_table_is_sorted_by_the_first_objective() -> None:
-    for front in (pair(), shipped_front("feeder"), shipped_front("support")):
+    for front in (pair(), shipped_front("feeder"), shipped_front("turning_support")):
         assert (np.diff(front.values[:, 0]) >= 0.0).all()
         assert len(front) == len(front.designs) == len(front.dimensions) == len(front.goals) == len(front.active)
         assert front.designs["crank_mm"].to_numpy() == pytest.approx(1e3 * front.dimensions[:, 0], rel=1e-15)
@@ -151,7 +151,7 @@ def test_what_cannot_gain_has_no_rates() -> None:
 CHANGE = re.compile(r"([\d.e+-]+)(?: (?:N m|N|deg|mm|m\^2))? (?:less|more) ([a-z, ]+?)(?= costs| and|$)")
 
 
-@pytest.mark.parametrize("name", ["pair", "feeder", "sieve", "support"])
+@pytest.mark.parametrize("name", ["pair", "feeder", "sieve", "turning_support"])
 def test_trade_offs_stay_within_the_front(name: str) -> None:
     """No step beyond the best value of the front, no cost beyond its worst. At an extreme this is said instead."""
     front = pair() if name == "pair" else shipped_front(name)

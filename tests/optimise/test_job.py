@@ -30,6 +30,7 @@ from slidercrank.optimise.problem.requirements import Constraint, Objective, Ran
 
 RUNS = Path(__file__).parents[2] / "runs"
 AIR = {"bore": "70 mm", "suction": "1 bar", "discharge": "8 bar", "clearance": 0.05}
+TURNING = Path(__file__).parents[1] / "data" / "turning_support.toml"
 SHIPPED = ["feeder", "sieve", "support", "compressor"]
 
 # The smallest job that says something.
@@ -106,8 +107,8 @@ def test_the_sieve_is_read_in_si() -> None:
     assert problem.rod == Range(lower=0.2, upper=0.6)
 
 
-def test_the_support_is_read_in_si() -> None:
-    problem = load_job(RUNS / "support.toml")
+def test_the_turning_support_is_read_in_si() -> None:
+    problem = load_job(TURNING)
     mechanism = problem.mechanism
     assert mechanism.speed == pytest.approx(math.pi / 300.0, rel=1e-15)
     assert mechanism.loads == (
@@ -147,7 +148,7 @@ def test_figures_in_the_comments_of_the_shipped_jobs_are_right() -> None:
     assert float(support.stroke) == pytest.approx(2.803, abs=5e-4)
     assert float(support.time_ratio) == pytest.approx(1.07, abs=5e-3)
     assert math.degrees(support.least_transmission_angle) == pytest.approx(36.3, abs=0.05)
-    assert support.slow_stroke(direction=load_job(RUNS / "support.toml").mechanism.speed) == "outward"
+    assert support.slow_stroke(direction=load_job(TURNING).mechanism.speed) == "outward"
     feeder = Linkage(0.04, 0.064, 0.02)
     assert math.degrees(feeder.least_transmission_angle) == pytest.approx(20.4, abs=0.05)
     assert feeder.slow_stroke(direction=load_job(RUNS / "feeder.toml").mechanism.speed) == "outward"
@@ -155,7 +156,7 @@ def test_figures_in_the_comments_of_the_shipped_jobs_are_right() -> None:
 
 def test_the_torques_that_the_comments_of_the_shipped_jobs_speak_of_are_right() -> None:
     torque = QUANTITIES["peak_torque"]
-    support = load_job(RUNS / "support.toml").mechanism
+    support = load_job(TURNING).mechanism
     fitted = torque.evaluate(support, np.array([[1.4, 1.8, -0.05]])).values
     assert fitted[0] == pytest.approx(46.6e3, abs=50.0)
     # The feeder with 80 mm of stroke: the shortest rod that is allowed, one in between, the longest.

@@ -15,7 +15,7 @@ from slidercrank.optimise.job import load_job
 from tests.model.swing.swings import random_swings
 from tests.service.conftest import Command
 
-SUPPORT = Path("runs/support.toml")
+SUPPORT = Path("tests/data/turning_support.toml")
 SIZES = ("--crank", "1.4 m", "--rod", "1.8 m", "--offset", "-50 mm")
 OVER = ("--from", "11.16 deg", "--to", "101.16 deg")
 
