@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from ...objectives.proportions import STROKE
 from ...optimise.search.fingerprint import version_of
-from ..designs.columns import DIMENSIONS, find_column
+from ..designs.columns import DIMENSIONS, find_column, metric_key
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
 from .design_section import design_section, numbers_section
@@ -46,7 +46,8 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
+    shown = (*DIMENSIONS, STROKE.name) if STROKE.field in map(metric_key, row) else DIMENSIONS
+    columns = [find_column(name, list(row)) for name in shown]
     lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(
