@@ -356,6 +356,12 @@ def test_an_address_with_nonsense_shows_the_front(open_page: Open, solved: Solve
 def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved), viewport={"width": 390, "height": 800})
     expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    for width in (390, 820, 1280):  # no menu leaves the screen
+        page.set_viewport_size({"width": width, "height": 800})
+        for menu in ("Axes", "Columns", "Download"):
+            page.get_by_text(menu, exact=True).click()
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (menu, width)
+            page.get_by_text(menu, exact=True).click()
     page.set_viewport_size({"width": 1200, "height": 800})
     x, top, bottom = axis(page, 4, 5)
     page.mouse.move(x, bottom)

@@ -414,6 +414,9 @@ def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: O
         fold.click()
     page.get_by_role("button", name="What is stroke?").first.click()
     require_accessible(page)
+    page.set_viewport_size({"width": 390, "height": 800})
+    page.evaluate("scrollTo(0, 0)")
+    expect(page.get_by_role("button", name="Start the search")).to_be_in_viewport(ratio=1)
 
 
 def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: Open, store: Store) -> None:

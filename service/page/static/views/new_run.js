@@ -202,7 +202,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     "form",
     { class: "new-run", novalidate: true, autocomplete: "off", onsubmit: submit },
     h("div", { class: "head" }, h("h1", {}, title), h("div", { class: "row" }, h("label", { for: "preset" }, "Begin with a shipped job"), from, over, undo)),
-    h("div", { class: "both" }, h("div", {}, body, file.node), h("aside", { class: "beside panel", "aria-label": "What this allows" }, h("h2", {}, "What this allows"), drawn.node, facts, general, status, start, refusal)),
+    h("div", { class: "both" }, h("div", {}, body, file.node), h("aside", { class: "beside panel", "aria-label": "What this allows" }, h("h2", {}, "What this allows"), drawn.node, facts, general, h("div", { class: "go" }, status, start, refusal))),
   );
   whole.addEventListener("dragover", (event) => event.preventDefault());
   whole.addEventListener("drop", (event) => {
