@@ -20,7 +20,7 @@ _COMPRESSION = ((0.0, 1.0),)
 
 @dataclass(frozen=True, kw_only=True)
 class FatigueSafety(OfBars):
-    """1 / (amplitude / S_e + mean / S_m) of the point of a bar where that is least, over its own cycle of stress."""
+    """1 / (amplitude / S_e + mean / S_m), least of all points of a bar."""
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar; see `OfBars`."""

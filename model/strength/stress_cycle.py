@@ -388,7 +388,7 @@ def stress_peaks(
     gradients: bool = False,
     kept: int = KEPT,
 ) -> StressPeaks:
-    """Return the greatest p sigma - q sigma of rod (`ROD`) or crank, for designs (n, 3 + k).
+    """Return the greatest p sigma - q sigma of rod or crank of designs (n, 3 + k).
 
     criteria: (m, 2), p and q of each, none negative. bending: whether moments count, else the axial stress alone.
     kept: maxima returned a design; with one only the highest ones are followed. The link must be a `Bar`.

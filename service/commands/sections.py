@@ -35,7 +35,7 @@ def sections(
     material, limits = load_sections(job)
     linkage = size.linkage(problem)
     with waiting("sizing the sections"):
-        found = size_sections(problem.mechanism, linkage, material, limits)
+        found = size_sections(problem.mechanism.nominal, linkage, material, limits)
     if json:
         give(json_text(_numbers(found, linkage)))
     else:
