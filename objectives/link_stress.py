@@ -25,11 +25,14 @@ class LinkStress(OfBars):
         strength = strength_of(mechanism)
         own = strength.material.yield_strength
         found = []
-        for name in self.bars(mechanism):
+        bars = self.bars(mechanism)
+        pins = dict.fromkeys(pin for name in bars for pin in (NEAR, LINKS[name].far))
+        forces = {pin: pin_force(mechanism, pin, designs, kept, gradients) for pin in pins}
+        for name in bars:
             along = stress(mechanism, name, designs, STATIC, kept, gradients)
             found.append(along.into(constant(own, designs, gradients)) if self.least else along)
             for pin in (NEAR, LINKS[name].far):
-                force = pin_force(mechanism, pin, designs, kept, gradients)
+                force = forces[pin]
                 area = closed(mechanism, designs, net_section(name, pin), gradients)
                 if self.least:
                     found.append(force.into(_scaled(area, own / strength.eye_concentration)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
@@ -10,14 +12,14 @@ from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.sections import size_sections
 from slidercrank.optimise.solve import solve
 
-PINS = {"crank_pivot": 0.03, "crank_pin": 0.025, "slider_pin": 0.022}
+SIZES: dict[str, Any] = {"crank_pivot": 0.03, "crank_pin": 0.025, "slider_pin": 0.022}
 BAR = {"width": "60 mm", "depth": "20 mm", "density": 7850.0}
 JOB = {
     "name": "Least mass",
     "mechanism": {"speed": "90 rpm", "crank": BAR, "rod": BAR, "slider": {"mass": "3 kg"}, "gravity": "9.81 m/s^2"},
     "load": [{"force": "20 kN", "opposes": "outward stroke"}],
     "sections": {
-        "pins": PINS,
+        "pins": SIZES,
         "material": {
             "density": 7850.0,
             "elasticity": "207 GPa",
@@ -50,7 +52,7 @@ def test_least_mass_of_the_search_is_that_of_the_geometric_programme() -> None:
     problem = parse_job(JOB)
     strength = problem.mechanism.strength
     assert strength is not None
-    limits = SectionLimits(**PINS, width=(0.01, 0.2), depth=(0.003, 0.1), fatigue_safety=1.0)
+    limits = SectionLimits(**SIZES, width=(0.01, 0.2), depth=(0.003, 0.1), fatigue_safety=1.0)
     linkage = Linkage(0.005, 0.09, 0.002)
     convex = size_sections(problem.mechanism.nominal, linkage, strength.material, limits)
     active = {name for name, used in convex.utilisation.items() if used > 1.0 - 1e-6}
