@@ -46,10 +46,10 @@ class _Task(NamedTuple):
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
     """Compile the kernels of packages, or modules, that are missing and that no other process is at.
 
-    What somebody waits for comes first, then those of `modules`; of these what has mostly formulas of kernels that this
+    What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas of kernels that this
     process has compiled, then what is urgent. How far it is stands in the file of `building`.
     """
-    everything = _tasks(folder, packages, modules)
+    everything = _tasks(folder, packages, modules, seldom=False)
     tasks = [*everything]
     compiled: set[int] = set()
     parent, complete = os.getppid(), False
@@ -57,7 +57,9 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         names = wanted_files(folder)
         known = {task.file.name for task in everything}
         if not complete and (not tasks or not known.issuperset(names)):
-            found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
+            found = _tasks(
+                folder, packages, [name for package in packages.split() for name in _modules(package)], seldom=True
+            )
             new = [task for task in found if task.file.name not in known]
             tasks, everything, complete = [*tasks, *new], [*everything, *new], True
         if not tasks:
@@ -87,12 +89,13 @@ def _modules(package: str) -> list[str]:
     return [package, *(found.name for found in pkgutil.walk_packages(parts, f"{package}."))]
 
 
-def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
-    """Return the kernels of packages that modules have, or import."""
+def _tasks(folder: Path, packages: str, modules: Iterable[str], *, seldom: bool) -> list[_Task]:
+    """Return the kernels of packages that modules have, or import. seldom: those too that few jobs need."""
     for name in modules:
         import_module(name)
-    asked = [kernel.wanted() for kernel in KERNELS if kernel.function.__module__.startswith(tuple(packages.split()))]
-    return [_Task(wanted, wanted.file(folder), codes(wanted.function)) for wanted in asked]
+    here = tuple(packages.split())
+    asked = [each for each in KERNELS if each.function.__module__.startswith(here) and (seldom or not each.seldom)]
+    return [_Task(wanted, wanted.file(folder), codes(wanted.function)) for wanted in (each.wanted() for each in asked)]
 
 
 if __name__ == "__main__":

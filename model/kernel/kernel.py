@@ -49,7 +49,16 @@ def kernel(function: Function) -> Function:
     Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
     returns a number or nothing.
     """
-    compiled = Kernel(function)
+    return _kept(function, seldom=False)
+
+
+def seldom_kernel(function: Function) -> Function:
+    """Compile a function as `kernel` does, after all others: few jobs need it, and it takes long."""
+    return _kept(function, seldom=True)
+
+
+def _kept(function: Function, *, seldom: bool) -> Function:
+    compiled = Kernel(function, seldom=seldom)
     KERNELS.append(compiled)
     return cast(Function, compiled)
 
@@ -57,9 +66,9 @@ def kernel(function: Function) -> Function:
 class Kernel:
     """A function that runs as machine code."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        """Take a function, that is not yet compiled."""
-        self.function = function
+    def __init__(self, function: Callable[..., Any], *, seldom: bool = False) -> None:
+        """Take a function, that is not yet compiled. seldom: whether others are compiled before it."""
+        self.function, self.seldom = function, seldom
         self.__doc__ = function.__doc__
         self._flat: list[Callable[[Any], Flat]] = []
         self._loaded: tuple[Callable[[bytes, int], int], Callable[..., bytes], Any] | None = None

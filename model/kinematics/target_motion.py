@@ -24,7 +24,7 @@ from ..checks import keep_tuples
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
 from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import Row, Table, kernel
+from ..kernel.kernel import Row, Table, seldom_kernel
 from .position import motion
 
 Array = NDArray[np.float64]
@@ -255,7 +255,7 @@ def _least_square(
     return found
 
 
-@kernel
+@seldom_kernel
 def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool, shifts: bool, out: Table) -> None:
     d, cells, points = np.empty(at.shape[0]), np.empty((3, 4 * _PHASES)), (np.sin(angles), np.cos(angles), at)
     slope, bend, grid = np.empty(at.shape[0]), np.empty(at.shape[0]), np.empty(_PHASES)

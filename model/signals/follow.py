@@ -15,7 +15,7 @@ from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.batches import in_chunks
-from ..kernel.kernel import ComplexCube, ComplexTable, Row, kernel
+from ..kernel.kernel import ComplexCube, ComplexTable, Row, seldom_kernel
 from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
@@ -26,7 +26,7 @@ Complex = NDArray[np.complex128]
 _WIDE = len(Forces._fields) + 1
 
 
-@kernel
+@seldom_kernel
 def _follow(
     raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool
 ) -> None:

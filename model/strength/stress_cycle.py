@@ -44,7 +44,7 @@ from ..dynamics.segments import (
 )
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
+from ..kernel.kernel import ComplexCube, Cube, Row, Table, seldom_kernel
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
@@ -128,7 +128,7 @@ def _listed(row: Any, first: Any, count: Any, sign: Any, found: Any) -> int:
     return n
 
 
-@kernel
+@seldom_kernel
 def _find(
     part: int,
     blocks: Cube,

@@ -13,7 +13,7 @@ from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import balance
 from ..kernel.arithmetic import analytic, inverse, magnitude
-from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, kernel
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, seldom_kernel
 from ..kinematics.position import motion
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
@@ -112,7 +112,7 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, rubbing: bool) ->
     return b.pull + mu * magnitude(guide) - bx, guide
 
 
-@kernel
+@seldom_kernel
 def _states(
     blocks: Cube,
     steps: ComplexCube,
