@@ -34,7 +34,7 @@ class Group(Enum):
     PROPORTIONS = "Transmission and proportions"
     DRIVE = "Drive"
     FORCES = "Forces"
-    STRENGTH = "Strength, mass and wear"
+    STRENGTH = "Strength and mass"
     ACCURACY = "Accuracy"
     FURTHER = "Further quantities"
 

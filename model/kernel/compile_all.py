@@ -46,8 +46,8 @@ class _Task(NamedTuple):
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
     """Compile the kernels of packages, or modules, that are missing and that no other process is at.
 
-    What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas of kernels that this
-    process has compiled, then what is urgent. How far it is stands in the file of `building`.
+    What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas
+    of kernels that this process has compiled, then what is urgent. How far it is stands in the file of `building`.
     """
     everything = _tasks(folder, packages, modules, seldom=False)
     tasks = [*everything]

@@ -47,8 +47,7 @@ class Strength:
     """Material of the bars of a machine, and its pins.
 
     crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
-    net section of an eye. criterion: how mean stresses count in fatigue. wear: depth worn off over pressure and
-    sliding distance, 1/Pa (Archard); none if 0.
+    net section of an eye. criterion: how mean stresses count in fatigue.
     """
 
     material: Material
@@ -57,13 +56,11 @@ class Strength:
     slider_pin: float
     eye_concentration: float = 1.0
     criterion: Criterion = "goodman"
-    wear: float = 0.0
 
     def __post_init__(self) -> None:
         names = ("crank_pivot", "crank_pin", "slider_pin")
         require_numbers(self, *names, what="the diameter of the {}", above=0.0, unit="m")
         require_numbers(self, "eye_concentration", what="{}", least=1.0)
-        require_numbers(self, "wear", what="the coefficient of {}", least=0.0)
         require_word("criterion", self.criterion, Criterion)
 
     @property

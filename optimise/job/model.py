@@ -159,7 +159,7 @@ class Job(Part):
         "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}
     )
     sections: SectionsPart | None = optional(
-        "material, pins and safety of crank and rod, for stress, safety and wear and the sizing of sections", SECTIONS
+        "material, pins and safety of crank and rod, for stress and safety and the sizing of sections", SECTIONS
     )
     optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
 from ...model.errors import InputError
 from ...model.machine.strength import Criterion, Material, Strength
@@ -25,7 +25,7 @@ EXAMPLE = {
 """The least that the table holds."""
 
 
-_OF_STRENGTH = ("criterion", "eye_concentration", "wear")
+_OF_STRENGTH = ("criterion", "eye_concentration")
 
 
 def _raised(factor: float) -> float:
@@ -71,9 +71,6 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
         "Shigley's fig. A-15-12 has it",
         2.5,
         default=1.0,
-    )
-    wear: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = optional(
-        "depth worn off a bearing over pressure times sliding distance, 1/Pa (Archard)", 1e-15, default=0.0
     )
 
     def build(self) -> tuple[Material, SectionLimits]:

@@ -130,7 +130,6 @@ STRENGTH = Strength(
     crank_pin=0.007,
     slider_pin=0.006,
     eye_concentration=2.5,
-    wear=1e-15,
 )
 BARS_OF = {STRONG, ROD_BAR, CRANK_BAR, A_BAR, CRANK_WEIGHS, ROD_WEIGHS}
 

@@ -24,6 +24,7 @@ from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
 from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
+from slidercrank.optimise.job.sections import EXAMPLE as SECTIONS
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
@@ -47,6 +48,9 @@ SMALL: dict[str, Any] = {
 
 
 TARGET = {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["140 mm", "120 mm", "100 mm"]}
+
+
+BAR = {"width": "30 mm", "depth": "20 mm", "density": "7850 kg/m^3"}
 
 
 def small(**parts: Any) -> dict[str, Any]:
@@ -286,7 +290,9 @@ def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
         tolerances={"crank": "0.05 mm"},
         friction={"guide": 0.1},
         load=[AIR],
+        sections=SECTIONS,
     )
+    job["mechanism"] = job["mechanism"] | {"crank": BAR, "rod": BAR}
     problem = parse_job(job)
     assert problem.constraints == (Constraint(quantity=name, lower=value),)
     assert problem.objectives == (Objective(quantity=name, sense="minimise"),)
@@ -337,6 +343,7 @@ def test_the_examples_of_the_schema_are_valid() -> None:
                 rubs = {key: given[key] for key in ("tolerances", "friction")}
                 parse_job(small(**rubs, motion=swing, objectives={name: example}))
             else:
+                given |= {"sections": SECTIONS, "mechanism": SMALL["mechanism"] | {"crank": BAR, "rod": BAR}}
                 parse_job(small(**given, load=[AIR], objectives={name: example}))
 
 
