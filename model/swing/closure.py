@@ -49,7 +49,19 @@ def passes(swing: Swing, sign: float, designs: Array) -> Bools:
     """
     found = closes(swing, designs)
     if swing.driver == "slider" and found.any():
+        found &= ~_dead(swing, sign, designs)
         found[found] = driven_angles(swing, sign, designs[found]).values.min(axis=1) > 0.0
+    return found
+
+
+def _dead(swing: Swing, sign: float, designs: Array) -> Bools:
+    """Return which designs have a dead point in the swing: beyond two of them the angle is above zero again."""
+    r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
+    found = np.zeros(len(designs), np.bool_)
+    for reach, side in ((r + l, sign), (r - l, -sign)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            angle = np.arcsin(e / reach)
+        found |= np.isfinite(within(swing, angle if side > 0.0 else np.pi - angle))
     return found
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ...model.kinematics.in_line import without_rounding
+from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ..formula.quantity import leaves_of
@@ -31,13 +32,22 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
 
 
 def require_loads(mechanism: Mechanism) -> None:
-    """Raise `InputError` for a load that is counted from a dead centre, which a swing need not have."""
+    """Raise `InputError` for what is of a full turn: loads counted from a dead centre, cylinders, speed profiles."""
+    of_turns = {"cylinders": mechanism.arrangement, "speed_profile": mechanism.speed_profile}
+    for key, given in of_turns.items():
+        if given is not None:
+            raise InputError(f"mechanism.{key}: it is of a crank that turns through; got it with a swing; leave it out")
     for load in mechanism.loads:
+        if load.enters is Enters.CYLINDER:
+            raise InputError(
+                "the cycle of a cylinder runs between the dead centres of a full turn; got one with a swing; leave it "
+                "out, or give its pressures over the slider position"
+            )
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre"):
             raise InputError(
                 f"a load is measured from the {datum} of a full turn, which a swing need not have; "
-                "measure it from the crank pivot"
+                "measure it from the crank pivot, or leave it out"
             )
 
 

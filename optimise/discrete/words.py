@@ -29,6 +29,8 @@ def found_in_words(front: ParetoFront) -> str:
     if not len(front):
         return f"no design of {answer.judged} combinations of {rules} keeps every requirement"
     count = f"{len(front)} design{'' if len(front) == 1 else 's'}"
+    if len(front) >= problem.settings.designs:
+        count += ", as many as are asked for"
     if answer.exact:
         text = f"{count}, exact: all {answer.combinations} combinations of {rules} judged"
     else:

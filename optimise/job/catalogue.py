@@ -33,6 +33,7 @@ MOST_OPTIONS = 200
 _UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
 _COLUMN = re.compile(rf"(?P<name>[^#()]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?", re.ASCII)
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
 _FORMULA = ("=", "+", "@")
 _LONGEST = 60
 
@@ -89,6 +90,8 @@ def _filled(part: Any, place: int, folder: Path, own: frozenset[str]) -> Any:
 
 def _text(path: Path, name: str) -> str:
     try:
+        if path.is_dir():
+            raise JobError(f"{name} must be a file; got a folder; name a file in it")
         if not path.is_file():
             raise JobError(f"{name} must be a file; got none of that name; put it beside the job file")
         size = path.stat().st_size
@@ -223,8 +226,13 @@ def _require_number(cell: str, where: str) -> None:
         raise JobError(f"{where}: must have a number; got an empty cell; fill it, or leave out the row")
     if cell.startswith("="):
         raise JobError(f"{where}: must be a number; got the formula {shown(cell)}; save values instead of formulas")
-    comma = "a decimal point instead of the comma" if "," in cell else "the number alone; its unit stands in the header"
-    raise JobError(f"{where}: must be a number; got {shown(cell)}; write {comma}")
+    if _THOUSANDS.fullmatch(cell):
+        write = "leave the comma out if it parts thousands, or write a decimal point instead"
+    elif "," in cell:
+        write = "write a decimal point instead of the comma"
+    else:
+        write = "write the number alone; its unit stands in the header"
+    raise JobError(f"{where}: must be a number; got {shown(cell)}; {write}")
 
 
 def _unbeaten(columns: Sequence[_Column], rows: Sequence[Sequence[str]]) -> list[int]:

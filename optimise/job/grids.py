@@ -73,7 +73,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     if not values:
         raise InputError(
             f"must have a value within {shown(given['min'])} to {shown(given['max'])}; none of {rule} is; widen the "
-            "range"
+            "range, or let it have other values"
         )
     return Grid(tuple(values), rule)
 
@@ -96,7 +96,10 @@ def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
 def _multiples(
     given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
-    step = read(given["step"])
+    try:
+        step = read(given["step"])
+    except InputError as error:
+        raise InputError(f"step {error}") from None
     if not step > 0.0:
         raise InputError(f"step must be above zero; got {shown(given['step'])}; give its size")
     if (upper - lower) / step > MOST:

@@ -109,7 +109,7 @@ def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
     if kind == "literal_error":
-        words = list(_words(_at(schema, path)))
+        words = list(dict.fromkeys(_words(_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
         meant = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {got}{meant}"

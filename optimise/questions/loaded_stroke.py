@@ -28,6 +28,8 @@ def expected_warnings(problem: Problem) -> list[str]:
 
     The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
     """
+    if problem.motion is not None:  # forth and back are told apart by their drive alone
+        return []
     fast, turning, sides = 0, 0, []
     for sheet in sheets(problem)[:_SHEETS]:
         part = problem.part(sheet.variant)
@@ -54,7 +56,7 @@ def front_warnings(front: ParetoFront) -> list[str]:
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
-    if front.problem.motion is not None:  # forth and back are told apart by their drive alone
+    if front.problem.motion is not None:
         return []
     slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
     found = free & _fast(slow, loaded)

@@ -8,6 +8,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
+from ..designs.turning import require_turning
 from ..runs.result import json_text
 from ..text.options import Dimensions, Figures, JobFile, Json, value_option
 from ..text.screen import console, give, say, write_figure
@@ -34,6 +35,7 @@ def allocate(
     from ..topics.allocation import analysis
 
     problem = load_job(job)
+    require_turning(problem, "allocate")
     if problem.costs is None:
         raise InputError(
             "an allocation needs what the tolerances cost; got a job without [costs]; "

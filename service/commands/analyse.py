@@ -13,6 +13,7 @@ from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
 from ..designs.shown_units import record_in, row_in
+from ..designs.turning import require_turning
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -92,10 +93,12 @@ def analyse(
     problem: Problem | None
     if design is None:
         problem = problem_of_job(job, put or [])
+        require_turning(problem, "analyse")
         mechanism = Mechanism() if problem is None else problem.mechanism.nominal
         lengths = size.lengths(problem)
     else:
         stored = design_of_run("analyse", job, design, runs, {**vars(size), "set": put or None})
+        require_turning(stored.part, "analyse")
         problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
@@ -192,8 +195,9 @@ def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: Syst
 
     if str(file) == "-":
         raise InputError("--cycle writes a file; got -; name one")
-    write_file(file, cycle_csv(mechanism, linkage, units, machine=machine))
-    say(f"{file}: the cycle at 360 crank angles")
+    text = cycle_csv(mechanism, linkage, units, machine=machine)
+    write_file(file, text)
+    say(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:

@@ -8,6 +8,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, MASS, Kind
+from ..designs.turning import require_turning
 from ..runs.result import json_text
 from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, value_option
 from ..text.screen import console, give, say, write_figure
@@ -40,6 +41,7 @@ def balance(
     from ..topics.counterweight import analysis
 
     problem = load_job(job)
+    require_turning(problem, "balance")
     linkage, mechanism = size.linkage(problem), problem.mechanism
 
     def given(option: str, text: str | None, kind: Kind) -> float | None:

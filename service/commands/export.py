@@ -10,6 +10,7 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, System
 from ..designs.selection import chosen_rows, none_meets, numbered, part_of
+from ..designs.turning import require_turning
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
@@ -77,6 +78,8 @@ def export(
         of_table = csv is not None or json is not None
         number = choice.number(result, run, None if choice.design is not None and of_table else where)
         found = stored_design(problem_of(folder, result), result, number)
+        for option in files.keys() & {"--cycle", "--motion", "--gif"}:
+            require_turning(found.part, option)
         named = {"name": result.name, "design": f"design {number}"}
         with waiting("drawing"):
             made = {file: _content(option, found, angle, units, **named) for option, file in files.items()}

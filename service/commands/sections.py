@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
+from ..designs.turning import require_turning
 from ..runs.result import json_text
 from ..text.options import Dimensions, JobFile, Json
 from ..text.screen import console, give, waiting
@@ -32,6 +33,7 @@ def sections(
     from ...optimise.sizing.sections import size_sections
 
     problem = load_job(job)
+    require_turning(problem, "sections")
     material, limits = load_sections(job)
     linkage = size.linkage(problem)
     with waiting("sizing the sections"):

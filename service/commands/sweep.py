@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, System, shown_in
 from ..designs.columns import key_in
 from ..designs.shown_units import rows_in
+from ..designs.turning import require_turning
 from ..runs.result import json_text, rows_of
 from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option, value_option
 from ..text.screen import console, give, say, write_figure
@@ -52,6 +53,7 @@ def sweep(
     from ...optimise.job import load_job
 
     problem = load_job(job)
+    require_turning(problem, "sweep")
     axes = [parse_axis(text) for text in over]
     if len(axes) > 2:
         raise InputError(f"a sweep is over one or two parameters; got {len(axes)} --over; leave out some")

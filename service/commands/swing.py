@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,22 +21,28 @@ from .job_or_run import design_of_run, problem_of_job
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...model.swing.swing import Swing
 
 
 def swing(
-    start: Annotated[
-        str, typer.Option("--from", metavar="ANGLE"), 'Crank angle at which the way forth starts, such as "11 deg".'
-    ],
-    end: Annotated[str, typer.Option("--to", metavar="ANGLE"), "Crank angle at which it ends; less is clockwise."],
     job: Annotated[
         Path | None,
         typer.Argument(metavar="JOB"),
-        "A job file: what masses, loads, friction and tolerances come from. A run with --design.",
+        "A job file: what masses, loads, friction and tolerances come from, and the swing of its [motion]. A run with "
+        "--design.",
     ] = None,
     *,
     size: Dimensions,
-    driver: Annotated[Driver, "What is driven: the crank by a torque, or the slider by a force."] = "crank",
-    law: Annotated[Law, "How the driver moves over time; slow is without inertia."] = "slow",
+    start: Annotated[
+        str | None,
+        typer.Option("--from", metavar="ANGLE"),
+        'Crank angle at which the way forth starts, such as "11 deg".',
+    ] = None,
+    end: Annotated[
+        str | None, typer.Option("--to", metavar="ANGLE"), "Crank angle at which it ends; less is clockwise."
+    ] = None,
+    driver: Annotated[Driver | None, "What is driven: the crank by a torque, or the slider by a force."] = None,
+    law: Annotated[Law | None, "How the driver moves over time; slow is without inertia."] = None,
     duration: Annotated[
         str | None, typer.Option(metavar="TIME"), 'Time of one way, such as "4 s": for a law other than slow.'
     ] = None,
@@ -51,10 +58,10 @@ def swing(
 
     The linkage need not turn through: it must close over the whole swing, and may not pass a dead point where the
     slider drives. Drive forces and torques are along +x and counter-clockwise; peaks are of the continuous crank
-    angle. Without JOB nothing has mass. Loads that act on the slider are those of JOB; its speed does not matter.
+    angle. Without JOB nothing has mass. Loads that act on the slider are those of JOB; its speed does not matter. What
+    is not given is as in [motion] of JOB; without it the crank drives, slowly.
     """
     from ...model.swing.summary import summarise
-    from ...model.swing.swing import Swing
     from ..swing.record import swing_record, swing_rows
     from ..swing.text import show_swing
 
@@ -64,17 +71,17 @@ def swing(
     for option, file, ending in (("--curves", curves, ".csv"), ("--figure", figure, ".png")):
         if file is not None and (file.is_dir() or file.suffix.lower() != ending):
             raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
-    mechanism, linkage = _machine(job, size, design, runs)
-    asked = Swing(
-        start=value_option("--from", start, ANGLE),
-        end=value_option("--to", end, ANGLE),
-        driver=driver,
-        law=law,
-        duration=None if duration is None else value_option("--duration", duration, TIME, sign="positive"),
-        actuator_tolerance=0.0
-        if actuator_tolerance is None
-        else value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
-    )
+    mechanism, linkage, motion = _machine(job, size, design, runs)
+    given: dict[str, Any] = {
+        "start": start and value_option("--from", start, ANGLE),
+        "end": end and value_option("--to", end, ANGLE),
+        "driver": driver,
+        "law": law,
+        "duration": duration and value_option("--duration", duration, TIME, sign="positive"),
+        "actuator_tolerance": actuator_tolerance
+        and value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
+    }
+    asked = _swing({name: value for name, value in given.items() if value is not None}, motion)
     record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
     if json:
         give(json_text(record))
@@ -85,7 +92,7 @@ def swing(
         say(f"{curves}: the curves of both ways")
     if figure is not None:
         from ..figures.panels import save_sheet
-        from ..swing.figure import swing_sheet
+        from ..figures.swing import swing_sheet
 
         with disk(figure.parent), waiting("drawing the figure"):
             figure.parent.mkdir(parents=True, exist_ok=True)
@@ -93,15 +100,34 @@ def swing(
         say(f"figure: {figure}")
 
 
-def _machine(job: Path | None, size: Dimensions, design: int | None, runs: Path | None) -> tuple[Mechanism, Linkage]:
+def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
+    """Return the swing of options, else of a job's [motion]."""
+    from ...model.swing.swing import Swing
+
+    if motion is not None:
+        if given.get("law") == "slow":
+            given["duration"] = None
+        return replace(motion, **given)
+    for option, name in (("--from", "start"), ("--to", "end")):
+        if name not in given:
+            raise InputError(
+                f"a swing runs from one crank angle to another; got no {option}; give one, or a JOB with [motion]"
+            )
+    return Swing(**given)
+
+
+def _machine(
+    job: Path | None, size: Dimensions, design: int | None, runs: Path | None
+) -> tuple[Mechanism, Linkage, Swing | None]:
+    """Return the machine, the linkage, and the swing of its job, None without one."""
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
 
     if design is not None:
         stored = design_of_run("swing", job, design, runs, vars(size))
-        return stored.mechanism, stored.linkage
+        return stored.mechanism, stored.linkage, stored.part.motion
     problem = problem_of_job(job)
     if problem is not None:
-        return problem.mechanism.nominal, size.linkage(problem)
+        return problem.mechanism.nominal, size.linkage(problem), problem.motion
     crank, rod, offset = size.lengths(None)
-    return Mechanism(), Linkage(crank, rod, offset)
+    return Mechanism(), Linkage(crank, rod, offset), None

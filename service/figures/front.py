@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,12 @@ from ..designs.variation import Variation
 from ..resources.garbage import uncollected
 from .comparison import robustness_figure
 from .marks import marks
+from .panels import draw_sheet
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 from .style import save
+from .swing import swing_sheet
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,10 @@ def sheet_of(
         subtitle = f"design {row + 1} of {len(front)}"
     else:
         design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
+    title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
+    if swing is not None:
+        made = swing_sheet(design.mechanism, linkage, swing, system)
+        return draw_sheet(replace(made, title=title, subtitle=f"{subtitle}; {made.subtitle}"))
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     bold = {of.field: of.short_title for of in wanted}
-    title, linkage = f"{front.problem.name}: {label}", design.linkage
     return design_sheet(design.mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 
 from ...objectives.proportions import STROKE
 from ...optimise.search.fingerprint import version_of
-from ..designs.columns import DIMENSIONS, find_column, metric_key
+from ..designs.columns import DIMENSIONS, find_column
+from ..designs.turning import require_turning
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
 from .design_section import design_section, numbers_section
@@ -22,7 +23,11 @@ _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 
 def design_report(subject: Subject, *, made: float | None = None) -> Report:
-    """Return the report of a design. made: when, seconds since 1970; now if None."""
+    """Return the report of a design. made: when, seconds since 1970; now if None.
+
+    Raises `InputError` for a crank that swings.
+    """
+    require_turning(subject.design.part, "a report")
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(made))
     tolerances = tolerance_section(subject)
     return Report(
@@ -46,8 +51,7 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    shown = (*DIMENSIONS, STROKE.name) if STROKE.field in map(metric_key, row) else DIMENSIONS
-    columns = [find_column(name, list(row)) for name in shown]
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
     lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
     rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
     objectives = tuple(

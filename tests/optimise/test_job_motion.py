@@ -13,6 +13,7 @@ from slidercrank.model.errors import AssemblyError, InputError, JobError
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {
@@ -65,6 +66,7 @@ def test_a_swing_is_read_with_its_margin() -> None:
         ({"motion": {"duration": "0 s", "law": "harmonic"}}, "motion.duration: must be positive"),
         ({"motion": {"law": "harmonic"}}, "needs its duration"),
         ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "has a dead point"),
+        ({"motion": {"from": "-170 deg"}}, "has a dead point"),
         ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design of the ranges closes"),
         ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it is of a swing that the slider drives"),
         ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
@@ -82,6 +84,15 @@ def test_a_swing_is_read_with_its_margin() -> None:
             {"load": [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "0 N"], "measured_from": "inner dead centre"}]},
             "measure it from the crank pivot",
         ),
+        ({"load": [{"bore": "50 mm", "suction": "1 bar", "discharge": "5 bar"}]}, "between the dead centres of a full"),
+        (
+            {"mechanism": JOB["mechanism"] | {"cylinders": {"phases": ["0 deg", "180 deg"]}}},
+            "mechanism.cylinders: it is of a crank that turns through",
+        ),
+        (
+            {"mechanism": JOB["mechanism"] | {"speed_profile": {"cosines": [0.1]}}},
+            "mechanism.speed_profile: it is of a crank that turns through",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: str) -> None:
@@ -94,6 +105,11 @@ def test_quantities_of_a_swing_are_refused_without_one() -> None:
     del job["motion"]
     with pytest.raises(JobError, match="peak_actuator_force: it is of a crank that swings; got one that turns through"):
         parse_job(job)
+
+
+def test_a_load_along_the_line_is_no_reason_for_warnings() -> None:
+    for load in ({"force": "300 N", "direction": "inward"}, {"force": "300 N", "opposes": "outward stroke"}):
+        assert expected_warnings(parse_job(changed(load=[load]))) == []
 
 
 def random_designs(problem: Problem, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:

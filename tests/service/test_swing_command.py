@@ -110,6 +110,42 @@ def test_a_design_of_a_run_swings_with_its_own_machine(command: Command) -> None
     assert refused.exit_code == 2
 
 
+def test_what_is_not_given_is_as_the_job_has_it(command: Command) -> None:
+    problem = load_job("runs/support.toml")
+    assert problem.motion is not None
+    found = numbers_of(command, "runs/support.toml", *SIZES)
+    names = ["peak_actuator_force", "swing_angle_error", "actuator_travel", "swing_transmission_angle"]
+    force, error, travel, angle = problem.evaluate([[1.4, 1.8, -0.05]], names)[0]
+    assert abs(found["peak_drive_N"]) == pytest.approx(force, rel=1e-9)
+    assert found["crank_position_error_deg"] == pytest.approx(math.degrees(error), rel=1e-9)
+    assert found["travel_mm"] == pytest.approx(1e3 * travel, rel=1e-12)
+    assert found["least_transmission_angle_deg"] == pytest.approx(math.degrees(angle), rel=1e-9)
+    other = numbers_of(command, "runs/support.toml", *SIZES, "--to", "60 deg", "--actuator-tolerance", "0 mm")
+    assert other["end_crank_angle_deg"] == pytest.approx(60.0)
+    assert other["crank_position_error_deg"] < found["crank_position_error_deg"]
+    bare = command("swing", *SIZES, "--to", "60 deg")
+    assert (bare.exit_code, "got no --from" in bare.stderr) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("analyse",),
+        ("sweep", "--over", "offset=-60 mm..0 mm:3", "--of", "peak_actuator_force"),
+        ("sections",),
+        ("allocate", "--limit", "1 mm"),
+        ("balance",),
+    ],
+    ids=lambda given: given[0],
+)
+def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, given: tuple[str, ...]) -> None:
+    name, *options = given
+    sizes = SIZES if name != "sweep" else SIZES[:4]
+    done = command(name, "runs/support.toml", *sizes, *options)
+    assert done.exit_code == 2
+    assert f"{name} is of a crank that turns through; got a job whose crank swings" in " ".join(done.stderr.split())
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

@@ -135,8 +135,8 @@ class AngleTable(Load):
     def text(self) -> str:
         """The size of the table."""
         datum = f" from the {self.datum}" if self.turns else ""
-        cycle = f", cycle of {self.cycle}" if self.cycle_turns > 1 else ""
-        return f"table of {len(self.angles)} crank angles{datum}{cycle}, {self.during}"
+        during = f"cycle of {self.cycle}" if self.cycle_turns > 1 and self.during == "cycle" else self.during
+        return f"table of {len(self.angles)} crank angles{datum}, {during}"
 
 
 def _built(

@@ -9,9 +9,9 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import ANGLE, LENGTH, POWER, Face, Kind, System
-from ..figures.numerals import shown, with_unit
-from ..figures.sheets import CRANK_ANGLE, Line, Panel, Sheet
-from .record import both_ways, drive_kind, error_kind
+from ..swing.record import both_ways, drive_kind, error_kind
+from .numerals import shown, with_unit
+from .sheets import CRANK_ANGLE, Line, Panel, Sheet
 
 
 def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Sheet:

@@ -1,0 +1,15 @@
+"""Analyses of a full turn, which designs of a crank that swings do not have."""
+
+from __future__ import annotations
+
+from ...model.errors import InputError
+from ...optimise.problem.problem import Problem
+
+
+def require_turning(problem: Problem | None, what: str) -> None:
+    """Refuse the problem of a crank that swings. what: it is of a full turn, as the subject of the sentence."""
+    if problem is not None and problem.motion is not None:
+        raise InputError(
+            f"{what} is of a crank that turns through; got a job whose crank swings; "
+            "`slidercrank swing` analyses its designs, of a job with --crank, --rod, --offset, of a run with --design"
+        )
