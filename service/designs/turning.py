@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ...model.errors import InputError
-from ...optimise.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
 
 
 def require_turning(problem: Problem | None, what: str) -> None:

@@ -9,7 +9,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import ANGLE, LENGTH, POWER, Face, Kind, System
-from ..swing.record import both_ways, drive_kind, error_kind
+from ..designs.swing_curves import both_ways, drive_kind, error_kind
 from .numerals import shown, with_unit
 from .sheets import CRANK_ANGLE, Line, Panel, Sheet
 

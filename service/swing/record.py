@@ -9,15 +9,14 @@ import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Window
-from ...model.swing.forces import JOINTS, SwingCurves, swing_curves
+from ...model.swing.forces import JOINTS
 from ...model.swing.over import At
 from ...model.swing.summary import SwingSummary
-from ...model.swing.swing import Swing, require_swing
-from ...objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE, Kind
+from ...model.swing.swing import Swing
+from ...objectives.kinds import ANGLE
+from ..designs.swing_curves import POINTS, both_ways, drive_kind, driven, error_kind
 from ..text.tables import plain
 
-POINTS = 181
-"""Of one way, in curves and figures."""
 WITHOUT_LOADS = (
     "the drive is zero: no load acts and no mass weighs or is moved; "
     "give a JOB with a load, or with masses and gravity or a law of motion"
@@ -27,21 +26,6 @@ LOCKED = (
 )
 WINDOW = "the position error is that of the whole swing: during and part_of_stroke of [tolerances] do not limit it"
 COASTS = "forces at the ends, where the speed jumps, are left out: the driver's acceleration is not stated there"
-
-
-def drive_kind(swing: Swing) -> Kind:
-    """Return the kind of what the driver brings: a torque or a force."""
-    return TORQUE if swing.driver == "crank" else FORCE
-
-
-def error_kind(swing: Swing) -> Kind:
-    """Return the kind of the driven side's error: of the slider's place or of the crank's angle."""
-    return LENGTH if swing.driver == "crank" else ANGLE
-
-
-def driven(swing: Swing) -> str:
-    """Return the side that is not the driver's."""
-    return "slider" if swing.driver == "crank" else "crank"
 
 
 def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
@@ -103,15 +87,6 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
     if found.swing.law == "constant":
         notes.append(COASTS)
     return notes
-
-
-def both_ways(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves of the way forth and of the way back, at even shares of the time."""
-    own, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
-    return (
-        swing_curves(mechanism, own, swing, share),
-        swing_curves(mechanism, own, swing, share, back=True),
-    )
 
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
