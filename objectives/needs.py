@@ -114,7 +114,8 @@ COMPRESSOR = Need(
 
 STRENGTH = Need(
     lambda machine: machine.strength is not None,
-    "it comes from a material and pins; got none; add the table [sections] with its material and its pins",
+    "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
+    "docs/sizing.md",
     without="undefined",
 )
 _BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'

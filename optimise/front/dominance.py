@@ -24,8 +24,10 @@ def nondominated(values: Array) -> NDArray[np.int64]:
     that may be as good as the design that has these places. They are compared with it.
     """
     count, objectives = values.shape
+    if not count:
+        return np.zeros(0, dtype=np.int64)
     if objectives == 1:
-        return np.array([int(np.argmin(values[:, 0]))] if count else [], dtype=np.int64)
+        return np.array([int(np.argmin(values[:, 0]))])
     if objectives < _OBJECTIVES or count > _MANY or not np.isfinite(values).all():
         import moocore
 

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 from types import FunctionType
@@ -250,7 +251,7 @@ def test_the_peaks_of_a_machine_are_those_of_the_functions_in_python(monkeypatch
     for rubbing in (False, True):
         machine = random_machine(random)
         if rubbing:
-            machine = type(machine)(**{**vars(machine), "friction": random_friction(random)})
+            machine = replace(machine, friction=random_friction(random))
         designs = random_designs(2, seed=3, least_margin=0.5)
         for kind in (Signal.TORQUE, Signal.SLIDER_JERK):
             compiled = find_peaks(machine, kind, designs, gradients=True)

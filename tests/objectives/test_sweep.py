@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def test_every_row_is_the_quantity_of_that_machine_alone() -> None:
     n = 0
     for speed in axes[0].values:
         for rod in axes[1].values:
-            machine = Mechanism(**{**vars(SMOOTH), "speed": speed})
+            machine = replace(SMOOTH, speed=speed)
             for name in names:
                 quantity = QUANTITIES[name]
                 alone = quantity.evaluate(machine, np.array([[0.04, rod, 0.03]])).values[0] * quantity.unit.factor

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
@@ -17,7 +18,7 @@ from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.kinds import RATIO
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.objectives.registry import QUANTITIES
-from tests.model.cases import AIR
+from tests.model.cases import AIR, STRENGTH
 
 Array = NDArray[np.float64]
 FOUR = ["time_ratio", "peak_torque", "transmission_angle", "position_error"]
@@ -53,7 +54,9 @@ def designs(count: int, seed: int = 1) -> Array:
 
 
 def test_every_quantity_is_that_of_its_own_evaluation() -> None:
-    of, some, names = replace(machine(), loads=(*machine().loads, AIR)), designs(40), list(QUANTITIES)
+    bar = Bar(width=0.03, depth=0.02, density=7800.0)
+    of = replace(machine(), loads=(*machine().loads, AIR), crank=bar, rod=bar, strength=STRENGTH)
+    some, names = designs(40), list(QUANTITIES)
     values, jacobian = sc.evaluate(of, some, names, gradients=True)
     assert values.shape == (40, len(names))
     assert jacobian.shape == (40, len(names), 3)

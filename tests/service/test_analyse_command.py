@@ -44,6 +44,11 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
             "work",
             "effective_pressure",
             "volumetric",
+            "mass",
+            "stress",
+            "safety",
+            "pressure",
+            "shear",
         )
         assert (value is None) == any(word in key for word in unknown), key
     assert "need masses" in done.stderr

@@ -28,7 +28,7 @@ def test_constant_acceleration_over_time_is_that_of_the_cycle(machine: Mechanism
     motion = SpeedOverTime(lambda t: w + a * t, lambda t: np.full_like(t, a), lambda t: 0.3 + w * t + 0.5 * a * t * t)
     found = over_time(machine, linkage, motion, np.linspace(0.0, 0.5, 40))
     for i in range(0, 40, 13):
-        moving = Mechanism(**(vars(machine) | {"speed": found.speed[i], "acceleration": a}))
+        moving = replace(machine, speed=found.speed[i], acceleration=a)
         expected = cycle(moving, linkage, found.curves.crank_angle[i])
         for name in ("torque", "load", "guide", "pivot_x", "slider_acceleration"):
             assert getattr(found.curves, name)[i] == pytest.approx(getattr(expected, name)[0], rel=1e-12), name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import expect
 
-from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.registry import FACTS
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
@@ -13,8 +13,9 @@ from tests.service.page.conftest import Open
 def test_the_help_lists_every_quantity_and_finds_those_of_some_words(open_page: Open, store: Store) -> None:
     page = open_page(store, "#/help")
     cards = page.locator(".quantities li")
-    expect(cards).to_have_count(len(QUANTITIES) + 5)
-    assert page.locator(".picture").count() == len(QUANTITIES) + 5
+    every = len(FACTS) + 3  # robust ones
+    expect(cards).to_have_count(every)
+    assert page.locator(".picture").count() == every
     assert page.locator(".picture:not(:has(.mark))").count() == 0  # each points something out
     page.get_by_label("Search").fill("torque motor")
     expect(page.get_by_role("link", name="RMS torque")).to_be_visible()
