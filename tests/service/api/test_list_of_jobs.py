@@ -51,8 +51,9 @@ def test_rows_of_the_shipped_jobs_have_600_bytes_at_most(client: httpx.Client, s
     assert len(jobs) == 4
     for job in jobs:
         assert job.summary is not None
-        assert job.summary["designs"] == 100 or len(job.summary["best"]) == 2  # of two, fewer are as good
-        assert len(json.dumps(job.record())) > 3000  # what a row had
+        if len(job.summary["best"]) > 2:  # of two objectives fewer designs are as good
+            assert job.summary["designs"] == 100
+            assert len(json.dumps(job.record())) > 3000  # what a row had
     assert max(sizes(client)) <= ROW
 
 
