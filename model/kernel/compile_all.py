@@ -15,7 +15,7 @@ from typing import NamedTuple
 from .closure import codes
 from .disk import INTO, MODEL, Wanted, building, compile_beside, keep, locked, read, wanted_files
 from .folder import kernel_folder
-from .kernel import KERNELS
+from .kernel import KERNELS, Kernel
 
 _MOSTLY = 0.7
 """Share of a kernel's formulas that are compiled with another one, from which on it is cheap to compile after that."""
@@ -25,6 +25,7 @@ class _Task(NamedTuple):
     wanted: Wanted
     file: Path
     codes: dict[int, int]
+    seldom: bool
 
     def size(self) -> int:
         return sum(self.codes.values())
@@ -68,6 +69,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
             tasks,
             key=lambda task: (
                 task.file.name not in names,
+                task.seldom,
                 not task.cheap_after(compiled),
                 any(task.follows(other) for other in everything),
                 task.urgency(everything),
@@ -95,7 +97,12 @@ def _tasks(folder: Path, packages: str, modules: Iterable[str], *, seldom: bool)
         import_module(name)
     here = tuple(packages.split())
     asked = [each for each in KERNELS if each.function.__module__.startswith(here) and (seldom or not each.seldom)]
-    return [_Task(wanted, wanted.file(folder), codes(wanted.function)) for wanted in (each.wanted() for each in asked)]
+    return [_task(each, folder) for each in asked]
+
+
+def _task(of: Kernel, folder: Path) -> _Task:
+    wanted = of.wanted()
+    return _Task(wanted, wanted.file(folder), codes(wanted.function), of.seldom)
 
 
 if __name__ == "__main__":

@@ -138,7 +138,7 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
             told = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
-                    _log.warning(f"slidercrank compiles its formulas: {far}")
+                    _log.warning(f"slidercrank compiles its formulas: {far}; {told - begun:.0f} s so far")
         time.sleep(_TICK)
 
 
