@@ -73,13 +73,14 @@ def swing(
             raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
     mechanism, linkage, motion = _machine(job, size, design, runs)
     given: dict[str, Any] = {
-        "start": start and value_option("--from", start, ANGLE),
-        "end": end and value_option("--to", end, ANGLE),
+        "start": None if start is None else value_option("--from", start, ANGLE),
+        "end": None if end is None else value_option("--to", end, ANGLE),
         "driver": driver,
         "law": law,
-        "duration": duration and value_option("--duration", duration, TIME, sign="positive"),
-        "actuator_tolerance": actuator_tolerance
-        and value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
+        "duration": None if duration is None else value_option("--duration", duration, TIME, sign="positive"),
+        "actuator_tolerance": None
+        if actuator_tolerance is None
+        else value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
     }
     asked = _swing({name: value for name, value in given.items() if value is not None}, motion)
     record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)

@@ -150,6 +150,7 @@ def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, g
     ("given", "words"),
     [
         (("--from", "11 deg", "--to", "11 deg"), "less than a turn apart"),
+        (("--from", "", "--to", "50 deg"), "--from must be an angle"),
         (("--from", "11", "--to", "50 deg"), "--from must be an angle with its unit"),
         (("--from", "11 deg", "--to", "50 mm"), "--to must be an angle"),
         (("--from", "-20 deg", "--to", "50 deg", "--driver", "slider"), "dead point"),
