@@ -107,7 +107,9 @@ def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
 
     if motion is not None:
         if given.get("law") == "slow":
-            given["duration"] = None
+            given.setdefault("duration", None)
+        if given.get("driver") == "crank":
+            given.setdefault("actuator_tolerance", 0.0)
         return replace(motion, **given)
     for option, name in (("--from", "start"), ("--to", "end")):
         if name not in given:
