@@ -32,7 +32,7 @@ def require_taken_up(root: Path, place: Path, code: str, package: str, name: str
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "adding", "-p", "no:cacheprovider", "-k", name, *suites],
         cwd=root,
-        env=os.environ | {"PYTHONPATH": str(place)},
+        env=os.environ | {"PYTHONPATH": str(place), "PYTEST_ADDOPTS": ""},
         capture_output=True,
         text=True,
         check=False,
