@@ -122,34 +122,30 @@ def _possible(problem: Problem, constraint: Constraint) -> str:
     """
     ranges = "within the ranges of crank, rod and offset"
     narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
-    found, kept = _nearest(problem, constraint, (constraint, *narrowing))
-    if found is None:
+    alone = (constraint, *narrowing)
+    for kept in (_rules_on_dimensions(problem), alone):
+        found = _nearest(problem, constraint, kept)
+        if found is not None:
+            break
+    else:
         return f"{ranges} it is not possible"
-    rules = (
-        ""
-        if len(kept) == 1
-        else _AND_OTHERS
-        if kept != (constraint, *narrowing)
-        else f" and constraints.{ROD_TO_OFFSET.name}"
-    )
+    rules = "" if len(kept) == 1 else _AND_OTHERS if kept != alone else f" and constraints.{ROD_TO_OFFSET.name}"
     return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
 
 
-def _nearest(
-    problem: Problem, constraint: Constraint, alone: tuple[Constraint, ...]
-) -> tuple[Relaxation | None, tuple[Constraint, ...]]:
-    """Return the reachable value for a constraint on the dimensions, and the constraints kept for it.
+def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
+    from ..feasibility.best import rules_on_dimensions
 
-    Where all of them contradict each other even then, those that are kept `alone`.
-    """
-    from ..feasibility.best import best_on_dimensions, rules_on_dimensions
+    return rules_on_dimensions(problem)
+
+
+def _nearest(problem: Problem, constraint: Constraint, kept: tuple[Constraint, ...]) -> Relaxation | None:
+    """Return the reachable value for one of the constraints that are kept; None where even then nothing is."""
+    from ..feasibility.best import best_on_dimensions
     from ..feasibility.relaxation import Relaxation, relaxations
 
-    for kept in (rules_on_dimensions(problem), alone):
-        for found in relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions):
-            if isinstance(found, Relaxation):
-                return found, kept
-    return None, ()
+    found = relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions)
+    return next((one for one in found if isinstance(one, Relaxation)), None)
 
 
 def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
@@ -166,14 +162,16 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     ):
         return None
     held = f"with a least transmission angle of {_shown(TRANSMISSION_ANGLE, angle.lower)}"
-    (ratios, kept), (angles, _) = (_nearest(problem, item, (ratio, angle)) for item in (ratio, angle))
-    if ratios is None or angles is None:
-        return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
-    held += _AND_OTHERS if len(kept) > 2 else ""
-    return (
-        f"{held} it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that, "
-        f"or lower constraints.{angle.quantity} to {angles.with_unit} at most"
-    )
+    for kept in (_rules_on_dimensions(problem), (ratio, angle)):
+        ratios, angles = (_nearest(problem, item, kept) for item in (ratio, angle))
+        held_too = _AND_OTHERS if len(kept) > 2 else ""
+        other = angles and f"lower constraints.{angle.quantity} to {angles.with_unit} at most"
+        if ratios is not None:
+            what = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"
+            return f"{held}{held_too} {what}{f', or {other}' if other else ''}"
+        if other:
+            return f"{held}{held_too} no linkage has it; got {_bounds(ratio)}; {other}"
+    return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:

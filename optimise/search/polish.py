@@ -238,9 +238,10 @@ class _Batch:
             trial = np.where(valid[:, None], trial, self.u[at])
             goals, limits = self._evaluate(trial)
             after = greatest(goals, m)[:, columns]
-            loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
-            worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
-            merit = (after - before[at] + (LOSS * loss if self.hold else 0.0)).sum(axis=1) + self.weight[at] * worse
+            with np.errstate(invalid="ignore"):  # infinite before and after (rod / offset at 0): no merit, not accepted
+                loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
+                worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
+                merit = (after - before[at] + (LOSS * loss if self.hold else 0.0)).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
             # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
             accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))

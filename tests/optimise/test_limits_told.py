@@ -70,7 +70,8 @@ def typed(name: str, number: str) -> str | float:
 
 NUMBER = r"(-?[\d.]+(?:e[+-]?\d+)?)"
 POSSIBLE = re.compile(rf"constraints\.(\w+): .* at (?:most|least) {NUMBER}(?: deg| mm)? is possible; got")
-BOTH = re.compile(rf"it is at most {NUMBER}; .* constraints\.transmission_angle to {NUMBER} deg at most")
+RATIO = re.compile(rf"with a least transmission angle .* it is at most {NUMBER}; ")
+ANGLE = re.compile(rf"lower constraints\.transmission_angle to {NUMBER} deg at most")
 HAD = re.compile(
     rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* can be had"
 )
@@ -90,15 +91,16 @@ def said_of(job: Job) -> str:
 def alternatives(job: Job, message: str) -> Iterator[Job]:
     """Yield the job, with the rules that a message speaks of, once for each number in it, asking for that."""
     rules = job["constraints"]
-    both, possible = BOTH.search(message), POSSIBLE.search(message)
-    if both:
+    ratio, angle, possible = RATIO.search(message), ANGLE.search(message), POSSIBLE.search(message)
+    if ratio or angle:
         kept = (
             rules
             if "other requirements" in message
             else {name: rules[name] for name in ("time_ratio", "transmission_angle")}
         )
-        for name, number in (("time_ratio", both[1]), ("transmission_angle", both[2])):
-            yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number)
+        for name, number in (("time_ratio", ratio), ("transmission_angle", angle)):
+            if number:
+                yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number[1])
     elif possible:
         name = possible[1]
         narrowed = {"rod_to_offset": rules["rod_to_offset"]} if "and constraints.rod_to_offset" in message else {}
@@ -109,9 +111,8 @@ def alternatives(job: Job, message: str) -> Iterator[Job]:
             yield asking(job, TITLES[title.strip()], KEYS[relation], number)
         together = copy.deepcopy(job)
         for title, relation, number in TOGETHER.findall(message):
-            together = asking(
-                together, TITLES[title.strip().removeprefix("and ").removeprefix("ask for ")], KEYS[relation], number
-            )
+            named = TITLES[title.rpartition("and ")[2].strip().removeprefix("ask for ")]
+            together = asking(together, named, KEYS[relation], number)
         if together != job:
             yield together
 
@@ -172,3 +173,10 @@ def test_every_number_that_is_told_can_be_had_and_no_more(monkeypatch: pytest.Mo
     random = np.random.default_rng(3)  # messages of every kind come with this seed
     counts = [tried(random_job(random)) for _ in range(50)]
     assert sum(count > 0 for count in counts) >= 12
+
+
+@pytest.mark.parametrize(("seed", "number"), [(4, 24), (6, 7)])
+def test_either_of_two_numbers_serves_with_the_rules_that_the_message_names(seed: int, number: int) -> None:
+    """Jobs where lowering one of two helps beside all other rules, lowering the other only without them."""
+    random = np.random.default_rng(seed)
+    assert tried([random_job(random) for _ in range(number + 1)][-1])
