@@ -65,6 +65,12 @@ class FormulaQuantity(Quantity):
         return all(part.of_dimensions for part in self.parts) and not self.varying
 
     @property
+    def constant(self) -> bool:
+        """Whether it is the same for every design, since it has numbers only in it."""
+        named = all(isinstance(part, FormulaQuantity) and part.constant for part in self.parts)
+        return named and not self.dimensions and not self.varying
+
+    @property
     def made_of(self) -> tuple[Quantity, ...]:
         """The quantities that it names."""
         return self.parts

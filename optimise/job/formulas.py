@@ -115,11 +115,20 @@ class Formulas:
             self._named(name)
 
     def quantity(self, text: str, key: str) -> Quantity:
-        """Return the quantity that a name or formula means. key: of the job, for messages. Raises JobError."""
+        """Return the quantity that a name or formula means. key: of the job, for messages.
+
+        Raises JobError, also for one that no design changes.
+        """
         try:
-            return self._of(text)
+            found = self._of(text)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
+        if isinstance(found, FormulaQuantity) and found.constant:
+            raise JobError(
+                f"{key}: a formula names a quantity, a dimension or a varying number; got {found.formula}, which is "
+                "the same for every design; leave it out"
+            )
+        return found
 
     def bound(self, of: Quantity, value: object, key: str) -> tuple[Quantity, float]:
         """Return the quantity and its bound; for a formula as a bound their difference, and 0.

@@ -33,10 +33,12 @@ class RowFormula:
     kind: Kind
 
     def of(self, row: Row) -> float:
-        """Return its value at a design, SI; NaN where that is not defined."""
+        """Return its value at a design, SI; NaN where that is not defined, as where it divides by zero."""
         leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
-            return float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
+            found = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
+        endless = any(np.isinf(leaf.values[0]) for leaf in leaves.values())
+        return found if endless or not math.isinf(found) else math.nan
 
 
 def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
@@ -51,6 +53,11 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
             found = find_column(key, keys)
             return replace(found, plain=None if found.unit else 1.0)  # it was called by a name without its unit
     columns = {name: _column(name, keys) for name in names_in(node)}
+    if not columns:
+        raise InputError(
+            f"a formula names a quantity or a column; got {written}, which is the same for every design; "
+            'write it like "offset - crank"'
+        )
     if isinstance(node, Name):
         return columns[node.name]
     kinds = {name: kind_for(column.unit) for name, column in columns.items()}

@@ -46,9 +46,13 @@ class Condition:
     value: float | str
     formula: RowFormula | None = None
 
+    def cell(self, row: Row) -> Cell:
+        """Return what the condition compares of a design."""
+        return row[self.column.key] if self.formula is None else self.formula.of(row)
+
     def holds(self, row: Row) -> bool:
         """Return whether a design meets it; one without a value does not. Equal means equal to 1e-8 relative."""
-        cell = row[self.column.key] if self.formula is None else self.formula.of(row)
+        cell = self.cell(row)
         if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
             return _OPERATORS[self.comparison](cell, self.value)
         if math.isnan(cell):
@@ -187,5 +191,19 @@ def part_of(result: Result, rows: Sequence[int]) -> Result:
 
 def none_meets(result: Result, where: Collection[str]) -> str:
     """Return the message for a front where no design meets the conditions."""
+    rows = result.designs
     conditions = " and ".join(text.strip() for text in where)
-    return f"none of the {len(result.designs)} designs meets {conditions}"
+    parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in where if rows)
+    reasons = dict.fromkeys(reason for condition in parsed if (reason := _never(condition, rows)))
+    return "; ".join((f"none of the {len(rows)} designs meets {conditions}", *reasons))
+
+
+def _never(condition: Condition, rows: Sequence[Row]) -> str | None:
+    """Return why a condition holds for no design whatever its value; None where another value may serve."""
+    name, cells = condition.column.key, [condition.cell(row) for row in rows]
+    if all(order_key(cell)[0] for cell in cells):
+        return f"{name} has no value for any of them"
+    words = {cell for cell in cells if isinstance(cell, str)}
+    if words and condition.value not in words:
+        return f"{name} is {' or '.join(sorted(words))} there"
+    return None

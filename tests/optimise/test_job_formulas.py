@@ -178,6 +178,11 @@ def test_the_schema_says_of_formulas_what_their_keys_are_like() -> None:
         ),
         ({"quantity": {"x": {"formula": "rod", "function": "a:b"}}}, "must be of one kind; got function and formula"),
         ({"quantity": {"x": {"formula": "rod +"}}}, "quantity.x.formula: a number, a name"),
+        ({"objectives": {"2 * 3": "maximise"}}, r'objectives."2 \* 3": .* is the same for every design; leave it out'),
+        (
+            {"quantity": {"x": {"formula": "40 mm"}, "y": {"formula": "2 * x"}}, "constraints": {"y": {"max": "1 m"}}},
+            r"constraints.y: .*got 2 \* x, which is the same for every design",
+        ),
     ],
 )
 def test_a_wrong_formula_is_refused_with_key_value_and_remedy(tables: dict[str, Any], said: str) -> None:

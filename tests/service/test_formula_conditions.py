@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.service.designs.row_formulas import RowFormula, find_formula
-from slidercrank.service.designs.selection import parse_condition, select
+from slidercrank.service.designs.selection import none_meets, parse_condition, select
+from slidercrank.service.runs.result import Result
 
 ROWS: list[dict[str, Any]] = [
     {"crank_mm": 40.0, "offset_mm": 42.0, "peak_torque_Nm": 90.0, "slider_mass_kg": 2.0, "slow_stroke": "outward"},
     {"crank_mm": 50.0, "offset_mm": 42.0, "peak_torque_Nm": 80.0, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
     {"crank_mm": 60.0, "offset_mm": 65.0, "peak_torque_Nm": None, "slider_mass_kg": 1.0, "slow_stroke": "inward"},
 ]
+STORED = cast(Result, SimpleNamespace(designs=ROWS))
 INCH: list[dict[str, Any]] = [{"crank_in": 1.0, "offset_in": 1.5, "peak_torque_lbf_in": 800.0}]
 
 
@@ -58,6 +61,7 @@ def test_a_formula_that_has_a_column_is_that_column() -> None:
         ("offset - crank >= 1", "must be a length with its unit"),
         ("offset - peak_torque >= 1 mm", "subtracts mm and N m"),
         ("offset - slow_stroke >= 1 mm", "holds words|subtracts mm and no unit"),
+        ("2 * 3 >= 1", r"got 2 \* 3, which is the same for every design"),
         ("offset - >= 1 mm", "missing at its end"),
         ("offset - crank", "a condition is a quantity or a formula, one of"),
     ],
@@ -70,3 +74,17 @@ def test_a_wrong_formula_in_a_condition_is_refused(condition: str, said: str) ->
 def test_a_condition_that_is_not_defined_is_not_met() -> None:
     condition = parse_condition("sqrt(1 - crank / offset) >= 0", list(ROWS[0]), ROWS[0])
     assert [condition.holds(row) for row in ROWS] == [True, False, True]
+
+
+@pytest.mark.parametrize("condition", ["crank / 0 > 5 mm", "1 m / (crank - crank) < 5", "sqrt(-crank / offset) > 0"])
+def test_a_formula_without_a_value_is_met_by_none_and_said_so(condition: str) -> None:
+    assert select(ROWS, [condition]) == []
+    said = none_meets(STORED, [condition])
+    assert "none of the 3 designs meets" in said
+    assert said.endswith(" has no value for any of them")
+
+
+def test_a_word_that_no_design_has_is_answered_with_those_that_there_are() -> None:
+    said = none_meets(STORED, ["slow_stroke = outwards"])
+    assert said.endswith("; slow_stroke is inward or outward there")
+    assert none_meets(STORED, ["crank > 1 m"]).endswith("meets crank > 1 m")
