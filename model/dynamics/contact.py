@@ -38,16 +38,22 @@ def _touch(
 
 
 @analytic
+def _senses(inside: Any, d: Any) -> Any:
+    """Senses in which crank and rod turn, 1 or -1."""
+    turn = 1.0 if d.speed >= 0.0 else -1.0
+    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
+    return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0
+
+
+@analytic
 def sides_of(
     inside: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
 ) -> Any:
     """Return the `Sides` of the segment, entered before, around the crank angle `inside`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0)
-    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
-    turn = 1.0 if d.speed >= 0.0 else -1.0
+    turn, swing = _senses(inside, d)
     slide = d.branch.real * (1.0 if outward else -1.0)
-    swing = 1.0 if m.rod_1 * turn > 0.0 else -1.0
     guide = _touch(inside, d, block, j, outward, loads, piece, shift, turn, swing)
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0)
 
@@ -70,29 +76,35 @@ def cut_contacts(
         b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
         if b - a < 1e-12:
             continue
-        _, outward = enter(d, block, j, within(a, b), loads, watch, piece, shift)
-        sides = sides_of(within(a, b), d, block, j, outward, loads, piece, shift, True)
+        inside = within(a, b)
+        _, outward = enter(d, block, j, inside, loads, watch, piece, shift)
+        turn, swing = _senses(inside, d)
         low, high = crowded(a, kappa), crowded(b, kappa)
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
-        left, before = a, 0.0
-        for i in range(points + 1):
-            theta = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
-            now = _touch(theta, d, block, j, outward, loads, piece, shift, sides.turn, sides.swing)
-            if i > 0 and now * before < 0.0 and n < cuts.angle.shape[0] - 2:
-                p, q, f = left, theta, before
-                for _ in range(_BISECTIONS):
-                    middle = 0.5 * (p + q)
-                    if middle <= p or middle >= q:
-                        break
-                    g = _touch(middle, d, block, j, outward, loads, piece, shift, sides.turn, sides.swing)
-                    if g * f > 0.0:
-                        p = middle
-                    else:
-                        q = middle
-                at = 0.5 * (p + q)
-                if at - a > 1e-12 and b - at > 1e-12:
-                    n = add_cut(cuts, n, at, CONTACT, 0.0, -1)
-            left, before = theta, now
+        left, before, right, after = a, 0.0, a, 0.0
+        p, q, halvings, i = a, a, 0, 0
+        # Samples and bisection share one call: it is inlined, and with it all loads.
+        while i <= points:
+            sampled = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
+            theta = sampled if halvings == 0 else 0.5 * (p + q)
+            now = _touch(theta, d, block, j, outward, loads, piece, shift, turn, swing)
+            if halvings > 0:
+                halvings += 1
+                if now * before > 0.0:
+                    p = theta
+                else:
+                    q = theta
+            else:
+                right, after = theta, now
+                if i > 0 and now * before < 0.0 and n < cuts.angle.shape[0] - 2:
+                    p, q, halvings = left, right, 1
+            at = 0.5 * (p + q)
+            if 0 < halvings <= _BISECTIONS and p < at < q:
+                continue
+            if halvings > 0 and at - a > 1e-12 and b - at > 1e-12:
+                n = add_cut(cuts, n, at, CONTACT, 0.0, -1)
+            left, before, halvings = right, after, 0
+            i += 1
     return n
 
 

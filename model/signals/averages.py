@@ -35,7 +35,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
-from .signals import Signal, signal
+from .signals import Signal, of_forces, of_motion
 from .two_turns import averaged
 from .watch import inputs_of, watch_of
 
@@ -49,7 +49,7 @@ _EVEN = 0.21
 _DEEPEST = 24  # halvings of a panel
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
-_TORQUE = int(Signal.TORQUE)
+_TORQUE, _FORCES = int(Signal.TORQUE), int(Signal.LINE_FORCE)
 _NOISE = 0.004  # of a curve's rounding, in units of _RESOLVED, times kappa^2: that of the crank angle itself
 _TURN = 2.0 * math.pi
 
@@ -90,9 +90,10 @@ def _curve(
     rough = d.l * d.l - across * across
     m = motion_of(sine, cosine, d.r, across, d.branch * root(rough + (square - rough.real)))
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-    if kind == _TORQUE:
-        return joint_forces(sine, cosine, m, d, load, sides).torque
-    return signal(kind, sine, cosine, m, d, load, sides)
+    if kind <= _FORCES:
+        f = joint_forces(sine, cosine, m, d, load, sides)
+        return f.torque if kind == _TORQUE else of_forces(kind, f, d)
+    return of_motion(kind, sine, cosine, m, d)
 
 
 @analytic
@@ -148,7 +149,8 @@ def _average(
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         first = second = 0.0
-        greatest[:] = 0.0
+        for v in range(nv + 1):
+            greatest[v] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             inside = within(a, b)
@@ -178,10 +180,12 @@ def _average(
                             z = _curve(kind, theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             slope[v, i] = z.imag / STEP
                     if rubbing:
-                        greatest[nv] = max(greatest[nv], np.abs(value[:points]).max())
+                        for i in range(points):
+                            greatest[nv] = max(greatest[nv], abs(value[i]))
                         halve = _rough(value, tail, _RESOLVED[0] * resolved * greatest[nv])
                         for v in range(nv):
-                            greatest[v] = max(greatest[v], np.abs(slope[v, :points]).max())
+                            for i in range(points):
+                                greatest[v] = max(greatest[v], abs(slope[v, i]))
                             halve = halve or _rough(slope[v], tail, _RESOLVED[1] * resolved * greatest[v])
                         if halve and depth < _DEEPEST:
                             for half in range(2):  # the left one on top: panels are added up in order

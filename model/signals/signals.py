@@ -54,20 +54,29 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, side
     sides: signs of the sliding where there is friction (`rubbing.Sides`).
     """
     if kind <= _LINE:
-        f = joint_forces(sine, cosine, m, d, load, sides)
-        if kind == _TORQUE:
-            return magnitude(f.torque)
-        if kind == _POWER:
-            return magnitude(f.torque * d.speed)
-        if kind == _PIVOT:
-            return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
-        if kind == _CRANK_PIN:
-            return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
-        if kind == _SLIDER_PIN:
-            return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
-        if kind == _LINE:
-            return magnitude(f.slider_pin_x)
-        return magnitude(f.guide)
+        return of_forces(kind, joint_forces(sine, cosine, m, d, load, sides), d)
+    return of_motion(kind, sine, cosine, m, d)
+
+
+@analytic
+def of_forces(kind: Any, f: Any, d: Design) -> Any:
+    """Return the value of a `Signal` that follows from joint forces, of these."""
+    if kind == _TORQUE:
+        return magnitude(f.torque)
+    if kind == _POWER:
+        return magnitude(f.torque * d.speed)
+    if kind == _PIVOT:
+        return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
+    if kind == _CRANK_PIN:
+        return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+    if kind == _SLIDER_PIN:
+        return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
+    return magnitude(f.slider_pin_x if kind == _LINE else f.guide)
+
+
+@analytic
+def of_motion(kind: Any, sine: Any, cosine: Any, m: Any, d: Design) -> Any:
+    """Return the value of a `Signal` that needs no joint forces."""
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:

@@ -24,8 +24,8 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
         notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
     notes += [
-        f"{part.name}: {len(part.option)} of {part.rows} rows of the file are solved; one of these beats each of the "
-        "others in every limit, or equals it"
+        f"{part.name}: of {part.rows} rows of the file {len(part.option)} {'is' if len(part.option) == 1 else 'are'} "
+        "solved; each of the others is beaten in every limit, or equalled, by one of these"
         for part in job.choice
         if part.rows is not None and part.rows > len(part.option)
     ]

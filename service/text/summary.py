@@ -190,7 +190,10 @@ def _choices(problem: Problem) -> list[str]:
     for place, name in enumerate(problem.choices):
         labels = dict.fromkeys(variant.labels[place] for variant in problem.variants)
         lines.append(f"{name}: {', '.join(labels)}")
-    return [*lines, f"{len(problem.variants)} combinations of choices, all tried"] if problem.variants else []
+    count = len(problem.variants)
+    if count > 1:
+        lines.append(f"{count} combinations of choices, all tried")
+    return lines
 
 
 def _range(bounds: Range) -> str:
