@@ -32,8 +32,12 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
 
 
 def require_loads(mechanism: Mechanism) -> None:
-    """Raise `InputError` for what is of a full turn: loads counted from a dead centre, cylinders, speed profiles."""
-    of_turns = {"cylinders": mechanism.arrangement, "speed_profile": mechanism.speed_profile}
+    """Raise `InputError` for what is of a full turn: loads from a dead centre, cylinders, how the speed goes."""
+    of_turns = {
+        "cylinders": mechanism.arrangement,
+        "speed_profile": mechanism.speed_profile,
+        "acceleration": mechanism.acceleration or None,
+    }
     for key, given in of_turns.items():
         if given is not None:
             raise InputError(f"mechanism.{key}: it is of a crank that turns through; got it with a swing; leave it out")

@@ -159,8 +159,9 @@ def _turning(speed: float) -> float:
 class MechanismPart(Part):
     """Drive and masses of the machine; lengths belong in [variables]."""
 
-    speed: Annotated[AngularSpeed, AfterValidator(_turning)] = required(
-        "of the crank, positive counter-clockwise, negative clockwise", "300 rpm"
+    speed: Annotated[AngularSpeed, AfterValidator(_turning)] | None = optional(
+        "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
+        "300 rpm",
     )
     acceleration: AngularAcceleration = optional(
         "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
@@ -206,7 +207,7 @@ class MechanismPart(Part):
 
     @model_validator(mode="after")
     def _of_the_mean(self) -> MechanismPart:
-        if self.speed_profile is not None:
+        if self.speed_profile is not None and self.speed is not None:
             self.speed_profile.require_mean(self.speed)
         return self
 

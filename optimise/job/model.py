@@ -170,7 +170,7 @@ class Job(Part):
         parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": own.cylinders}
         parts |= {"speed_profile": own.speed_profile}
         return Mechanism(
-            speed=own.speed,
+            speed=own.speed or 0.0,
             acceleration=own.acceleration,
             slider_mass=0.0 if own.slider is None else own.slider.mass,
             gravity=own.gravity_vector,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
 from pydantic import create_model
@@ -117,6 +118,23 @@ def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part
             reason = of.unfit(swing)
             if reason is not None:
                 raise JobError(f"{table}.{of.name}: {reason}")
+
+
+def require_speed(swing: Swing | None, speed: float | None, varying: Iterable[str]) -> None:
+    """Raise JobError for a crank that turns through at no speed, and for a swing with a varying one.
+
+    varying: paths of the numbers that variables and options set.
+    """
+    if swing is None:
+        if speed is None:
+            raise JobError('mechanism.speed: is missing, but required; add for example speed = "300 rpm"')
+        return
+    for path in ("mechanism.speed", "mechanism.acceleration"):
+        if path in varying:
+            raise JobError(
+                f"{path}: a swing has a motion of its own, that of [motion]; got it as a variable, or in an option; "
+                "leave it out"
+            )
 
 
 def with_margin(constraints: tuple[Constraint, ...], margin: float | None) -> tuple[Constraint, ...]:

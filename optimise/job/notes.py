@@ -15,7 +15,10 @@ _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
 def notes_of(data: Mapping[str, Any]) -> list[str]:
-    """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening."""
+    """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening.
+
+    And on a speed that a swing does not have.
+    """
     plain: list[tuple[str | None, float, Kind]] = []
     job = job_with(declared(data, allowed=True)).model_validate(data, context=plain)
     told = [_told(*found) for found in dict.fromkeys(plain) if found[1]]
@@ -35,6 +38,8 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         notes.append(
             'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
         )
+    if job.motion.build() is not None and job.mechanism.speed is not None:
+        notes.append("mechanism.speed: a swing has a motion of its own, that of [motion]; leave the speed out")
     return notes
 
 

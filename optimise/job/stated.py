@@ -17,7 +17,7 @@ from .contradictions import require_consistent
 from .formulas import Formulas
 from .messages import key_of
 from .model import Job
-from .motion import require_swing_asked, with_margin
+from .motion import require_speed, require_swing_asked, with_margin
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
@@ -33,6 +33,8 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     variables = job.variables
     require_target(job.target_motion, job.objectives, job.constraints)
     motion = job.motion.build()
+    chosen = {path for part in job.choice for option in part.option for path in option.paths}
+    require_speed(motion, job.mechanism.speed, {*variables.paths, *chosen})
     require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
     own = (

@@ -32,7 +32,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {settings.samples} samples a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": [*_motion(problem), *_given(problem.mechanism), *_own(problem)],
+        "given": [*_motion(problem), *_speed(problem), *_given(problem.mechanism), *_own(problem)],
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
@@ -68,10 +68,16 @@ def freedom_in_words(summary: dict[str, Any]) -> str:
     return text
 
 
+def _speed(problem: Problem) -> list[str]:
+    if problem.motion is not None:
+        return []
+    turning = "clockwise" if problem.mechanism.speed < 0.0 else "counter-clockwise"
+    speed = problem.mechanism.speed * 30.0 / math.pi
+    return [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
+
+
 def _given(mechanism: Mechanism) -> list[str]:
-    turning = "clockwise" if mechanism.speed < 0.0 else "counter-clockwise"
-    speed = mechanism.speed * 30.0 / math.pi
-    lines = [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
+    lines = []
     if mechanism.speed_profile is not None:
         lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities are at the mean speed")
     if mechanism.acceleration:

@@ -12,6 +12,7 @@ import pytest
 from slidercrank.model.errors import AssemblyError, InputError, JobError
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.notes import notes_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
@@ -19,7 +20,6 @@ from slidercrank.optimise.solve import solve
 JOB: dict[str, Any] = {
     "name": "Column",
     "mechanism": {
-        "speed": "0.1 rpm",
         "crank": {"mass": "180 kg"},
         "rod": {"mass": "220 kg"},
         "slider": {"mass": "400 kg"},
@@ -93,6 +93,14 @@ def test_a_swing_is_read_with_its_margin() -> None:
             {"mechanism": JOB["mechanism"] | {"speed_profile": {"cosines": [0.1]}}},
             "mechanism.speed_profile: it is of a crank that turns through",
         ),
+        (
+            {"mechanism": JOB["mechanism"] | {"acceleration": "2 rad/s^2"}},
+            "mechanism.acceleration: it is of a crank that turns through",
+        ),
+        (
+            {"variables": JOB["variables"] | {"mechanism.speed": ["1 rpm", "2 rpm"]}},
+            "mechanism.speed: a swing has a motion of its own",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: str) -> None:
@@ -100,8 +108,23 @@ def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: 
         parse_job(changed(**tables))
 
 
-def test_quantities_of_a_swing_are_refused_without_one() -> None:
+def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothing() -> None:
+    given = changed(mechanism=JOB["mechanism"] | {"speed": "-2 rpm"})
+    designs = np.array([[1.4, 1.8, -0.05], [1.3, 2.1, 0.2]])
+    names = ["peak_actuator_force", "swing_energy"]
+    values = [parse_job(job).evaluate(designs, names) for job in (changed(), given)]
+    assert np.isfinite(values[0]).all()
+    assert np.array_equal(values[0], values[1])
+    assert not any("speed" in note for note in notes_of(changed()))
+    assert "mechanism.speed: a swing has a motion of its own" in notes_of(given)[-1]
     job = changed()
+    del job["motion"]
+    with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required"):
+        parse_job(job | {"objectives": {"stroke": "maximise"}, "constraints": {}})
+
+
+def test_quantities_of_a_swing_are_refused_without_one() -> None:
+    job = changed(mechanism={"speed": "0.1 rpm"})
     del job["motion"]
     with pytest.raises(JobError, match="peak_actuator_force: it is of a crank that swings; got one that turns through"):
         parse_job(job)
