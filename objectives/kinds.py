@@ -126,6 +126,15 @@ STIFFNESS = Kind(
     typed=("N/m", "N/mm", "lbf/in"),
     usual="N/mm",
 )
+ANGULAR_STIFFNESS = Kind(
+    name="an angular stiffness",
+    unit="N m/rad",
+    example="40 N m/rad",
+    limit=1e15,
+    metric=Face("N m/rad", "_Nm_per_rad"),
+    inch=Face("lbf in/rad", "_lbf_in_per_rad", 1.0 / (_LBF * _INCH)),
+    typed=("N m/rad", "N m/deg", "lbf in/rad"),
+)
 DAMPING = Kind(
     name="a viscous coefficient",
     unit="N s/m",
@@ -200,6 +209,7 @@ KINDS = (
         TORQUE,
         POWER,
         STIFFNESS,
+        ANGULAR_STIFFNESS,
         DAMPING,
         QUADRATIC_DAMPING,
         PRESSURE,

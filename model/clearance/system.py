@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
+from ..machine.crank_loads import require_no_crank_load
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
@@ -29,6 +30,7 @@ def build(
             "a joint with clearance needs a crank that turns steadily; "
             f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
         )
+    require_no_crank_load(mechanism, "a simulation of clearance")
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     room = l - r - abs(e)
     if clearance.radius >= 0.5 * room:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, sides_of
+from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for
 from ..errors import InputError
@@ -27,7 +28,7 @@ from .self_locking import locking_margin
 
 Array = NDArray[np.float64]
 
-_COLUMNS = 15
+_COLUMNS = 16
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
@@ -37,7 +38,7 @@ class Cycle:
 
     load: on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
     pivot: force of the frame on the crank; crank_pin: of the crank on the rod; slider_pin: of the rod on the slider;
-    guide: of the guide on the slider, along +y.
+    guide: of the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m, counter-clockwise.
     """
 
     crank_angle: Array
@@ -56,6 +57,7 @@ class Cycle:
     guide: Array
     position_error: Array
     position_error_rss: Array
+    crank_load: Array
 
 
 @kernel
@@ -86,7 +88,8 @@ def _curves(
         out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
         out[3, i] = math.atan2(abs(m.along), abs(m.across))
         out[4, i] = load
-        out[5, i] = f.torque
+        way = sense_of(d)
+        out[5, i] = beside_crank_loads(f.torque, d, block, 0, theta, way, loads, piece, shift)
         out[6, i] = f.pivot_x
         out[7, i] = f.pivot_y
         out[8, i] = f.crank_pin_x
@@ -96,6 +99,7 @@ def _curves(
         out[12, i] = f.guide
         out[13, i] = worst_case(j, d)
         out[14, i] = root_sum_square(j, d)
+        out[15, i] = -beside_crank_loads(0.0, d, block, 0, theta, way, loads, piece, shift)
 
 
 def cycle(

@@ -3,7 +3,8 @@
 Per turn, with dt = dtheta / w at constant speed:
 
 - input: integral of T over the turn, in the direction of turning;
-- useful: work done against the load, minus the integral of F dx (F, x positive outward);
+- useful: work done against the loads, minus the integral of F dx (F, x positive outward) and, of torques M on the
+  crank, of M dtheta;
 - friction heat: mu |N| |dx| in the guide, rho |F| times the relative turning in the pins: |phi'| in the slider pin,
   1 - phi' in the crank pin, 1 in the crank pivot;
 - stored: what the crank's acceleration, if there is one, puts into kinetic energy. Springs and gravity give back in a
@@ -83,7 +84,7 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
         weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2)
         curves = cycle(mechanism, linkage, theta)
         motion = linkage.at(theta, speed=1.0)
-        work = -linkage.sign * curves.load * motion.slider_velocity
+        work = -linkage.sign * curves.load * motion.slider_velocity - curves.crank_load
         swing = motion.rod_velocity
         found: Array = weight * np.stack(
             [

@@ -84,6 +84,12 @@ def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
 
 
 @analytic
+def with_couple(b: Balance, more: Any) -> Balance:
+    """Return a balance with a couple added on the crank, N m."""
+    return Balance(b.pull, b.moment, b.rod_x, b.rod_y, b.crank_x, b.crank_y, b.couple + more)
+
+
+@analytic
 def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
     """Return drive torque and reactions for the slider pin's force; the torque without friction in the pins."""
     ax = bx + b.rod_x

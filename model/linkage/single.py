@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import InputError
+from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
@@ -13,9 +14,10 @@ def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one fully turning linkage, its dimensions as floats.
 
     Raises `InputError` for an array of linkages and for a linkage on another branch than the mechanism's,
-    `AssemblyError` for one that does not turn fully.
+    a spring on a crank that turns through; `AssemblyError` for one that does not turn fully.
     """
     linkage.require_full_rotation()
+    require_no_winding(mechanism)
     return one_linkage(mechanism, linkage)
 
 

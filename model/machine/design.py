@@ -19,7 +19,8 @@ _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
 _END = int(Raw.END)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
-_ANGLE_TABLE, _CYLINDER, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER), int(Enters.FORMULA)
+_ANGLE_TABLE, _CYLINDER = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER)
+_CRANK_TORQUE, _FORMULA = int(Enters.CRANK_TORQUE), int(Enters.FORMULA)
 
 
 class Design(NamedTuple):
@@ -75,7 +76,7 @@ DESIGN = len(Design._fields)
 LOAD_ROWS, AREA = 9, 2
 """Rows of each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers of a formula; then
 of a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
-expansion, back pressure."""
+expansion, back pressure; of a torque on the crank the numbers of its slots."""
 _OUTWARD = Design._fields.index("outward_force")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
@@ -240,5 +241,8 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
                 out[q + AREA + 1, j] = raw[p + 4, j] * (out[22, j] - out[21, j]) + raw[p + 5, j] * inverse(area)
                 for i in range(5):
                     out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
+            elif kind[k] == _CRANK_TORQUE:
+                for i in range(4):
+                    out[q + AREA + i, j] = raw[p + 2 + i, j]
             elif kind[k] >= _FORMULA:
                 out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]

@@ -38,7 +38,8 @@ def linkage_loaded(machine: Mechanism) -> bool:
 
 def pushed(machine: Mechanism) -> bool:
     """Return whether loads act on the slider: some that need no speed, or any while it moves."""
-    return any(machine.speed != 0.0 or not load.speed_power for load in machine.loads)
+    moving = machine.speed != 0.0
+    return any((moving or not load.speed_power) and not load.on_crank for load in machine.loads)
 
 
 def pivot_loaded(machine: Mechanism) -> bool:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
+from .loads.load import Load
 from .loads.registry import code_of
 from .mechanism import Mechanism
 from .remembered import remembered
@@ -45,8 +46,9 @@ _DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "out
 class Loads(NamedTuple):
     """The loads' fixed structure.
 
-    kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 2), whether a table acts in the outward and in
-    the inward stroke. start: (k + 1,), where a load's table begins. at, force: its knots.
+    kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
+    stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), where a load's table begins. at, force:
+    its knots.
     """
 
     kind: Integers
@@ -116,6 +118,13 @@ def _link_numbers(link: Link) -> tuple[float, ...]:
     return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
 
 
+def _factors(load: Load) -> tuple[float, float, float]:
+    if load.on_crank:
+        return (0.0, 0.0, 1.0)
+    outward, inward = load.numbers()[:2]
+    return (outward, inward, 0.0)
+
+
 def load_structure(mechanism: Mechanism) -> Loads:
     """Return kinds, datums and tables of a mechanism's loads. Raises `InputError` for a cycle of two turns."""
     require_one_turn(mechanism, "this analysis")
@@ -131,7 +140,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
     return Loads(
         np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),
         np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
-        np.array([load.numbers()[:2] for load in mechanism.loads], dtype=np.float64).reshape(-1, 2),
+        np.array([_factors(load) for load in mechanism.loads], dtype=np.float64).reshape(-1, 3),
         np.array(start, dtype=np.int64),
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
+from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
 from ..kernel.arithmetic import STEP, analytic, root
@@ -92,7 +93,8 @@ def _curve(
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
     if kind <= _FORCES:
         f = joint_forces(sine, cosine, m, d, load, sides)
-        return f.torque if kind == _TORQUE else of_forces(kind, f, d)
+        torque = beside_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
+        return torque if kind == _TORQUE else of_forces(kind, f, torque, d)
     return of_motion(kind, sine, cosine, m, d)
 
 

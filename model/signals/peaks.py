@@ -79,7 +79,7 @@ def _value(
     sine, cosine = math.sin(theta), math.cos(theta)
     m = design_motion(sine, cosine, d)
     load = load_on_slider(m, d, block, j, theta, outward, loads, piece, shift)
-    return signal(kind, sine, cosine, m, d, load, sides)
+    return signal(kind, sine, cosine, m, d, load, sides, (block, j, theta, loads, piece, shift))
 
 
 @analytic
@@ -90,8 +90,9 @@ def _slope(
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = design_motion(s, c, d)
-    load = load_on_slider(m, d, block, j, complex(theta, STEP), outward, loads, piece, shift)
-    z = signal(kind, s, c, m, d, load, sides)
+    at = complex(theta, STEP)
+    load = load_on_slider(m, d, block, j, at, outward, loads, piece, shift)
+    z = signal(kind, s, c, m, d, load, sides, (block, j, at, loads, piece, shift))
     return z.real, z.imag / STEP
 
 
@@ -316,8 +317,10 @@ def _find(
                     slip = shift_of(z, stepped, d, block, angle, cuts, pin[i], outward, loads, piece, shift, sides)
                 zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
                 m = design_motion(zs, zc, z)
-                load = load_on_slider(m, z, stepped, 0, complex(angle, slip), outward, loads, piece, shift)
-                gradients[n, i, v] = signal(kind, zs, zc, m, z, load, sides).imag / STEP
+                moved = complex(angle, slip)
+                load = load_on_slider(m, z, stepped, 0, moved, outward, loads, piece, shift)
+                place = (stepped, 0, moved, loads, piece, shift)
+                gradients[n, i, v] = signal(kind, zs, zc, m, z, load, sides, place).imag / STEP
 
 
 def find_peaks(

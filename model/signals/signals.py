@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import Any
 
+from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
 from ..kernel.arithmetic import analytic, magnitude, root
@@ -48,23 +49,31 @@ _WORST, _RSS, _INERTIA, _SHAKING_FORCE = range(10, 14)
 
 
 @analytic
-def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None) -> Any:
+def signal(
+    kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None, place: Any = None
+) -> Any:
     """Return the value of a `Signal` at one crank angle for the load on the slider (N, outward).
 
-    sides: signs of the sliding where there is friction (`rubbing.Sides`).
+    sides: signs of the sliding where there is friction (`rubbing.Sides`). place: block, column, crank angle, loads,
+    pieces and shifts, where loads may act on the crank.
     """
     if kind <= _LINE:
-        return of_forces(kind, joint_forces(sine, cosine, m, d, load, sides), d)
+        f = joint_forces(sine, cosine, m, d, load, sides)
+        torque = f.torque
+        if place is not None and kind in (_TORQUE, _POWER):
+            block, j, theta, loads, piece, shift = place
+            torque = beside_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
+        return of_forces(kind, f, torque, d)
     return of_motion(kind, sine, cosine, m, d)
 
 
 @analytic
-def of_forces(kind: Any, f: Any, d: Design) -> Any:
-    """Return the value of a `Signal` that follows from joint forces, of these."""
+def of_forces(kind: Any, f: Any, torque: Any, d: Design) -> Any:
+    """Return the value of a `Signal` that follows from joint forces, of these and the drive torque."""
     if kind == _TORQUE:
-        return magnitude(f.torque)
+        return magnitude(torque)
     if kind == _POWER:
-        return magnitude(f.torque * d.speed)
+        return magnitude(torque * d.speed)
     if kind == _PIVOT:
         return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
     if kind == _CRANK_PIN:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.segments import Watch
+from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
 from ..machine.remembered import remembered
@@ -32,6 +33,7 @@ def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Wa
 def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
     if kind.needs_forces:
+        require_no_winding(mechanism)
         return fullest_inputs(mechanism)
     raw, _ = fullest_inputs(one_turn(mechanism))
     return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], _no_loads()

@@ -4,10 +4,12 @@ Where the crank is driven, torque and forces are those of `dynamics`. Where the 
 along the slider line and the crank's torque is zero:
 
 - rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B s_B |B| = 0;
-- crank, moments about the pivot: couple + r (cos(theta) A_y - sin(theta) A_x) + rho_A s_A |A| + rho_O s_O |P_O| = 0;
+- crank, moments about the pivot: couple - M + r (cos(theta) A_y - sin(theta) A_x) + rho_A s_A |A| + rho_O s_O |P_O|
+  = 0;
 - slider: P = pull + mu |N| sgn(x' w) - B_x, N = -(B_y + m_s G_y);
 
-with `balance` and the names of `dynamics.torque`, and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
+with `balance` and the names of `dynamics.torque`, M of `dynamics.crank_loads`,
+and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
 friction the first two are linear in B, their determinant is r l sin(theta - phi): zero at a dead point. Friction in
 the pins makes them nonlinear: it turns the rows of the Jacobian, of lengths l and r, by at most
 asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r). Where the angle between rod and crank exceeds their sum, the
@@ -25,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from ..cycle.cycle import curves_of, design_of
-from ..dynamics.torque import Balance, balance
+from ..dynamics.torque import Balance, balance, with_couple
 from ..kinematics.position import Motion, motion
 from ..linkage.linkage import Linkage
 from ..machine.design import Design
@@ -106,7 +108,7 @@ def swing_curves(
         drive, power, angle, error = found.torque, found.torque * speed, found.transmission_angle, found.position_error
         joints = {name: getattr(found, name) for name in JOINTS}
     else:
-        drive, joints = _pushed(theta, m, d, found.load)
+        drive, joints = _pushed(theta, m, d, found.load, found.crank_load)
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
@@ -172,10 +174,10 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     return np.asarray(theta)
 
 
-def _pushed(theta: Array, m: Motion, d: Design, load: Array) -> tuple[Array, dict[str, Array]]:
+def _pushed(theta: Array, m: Motion, d: Design, load: Array, on_crank: Array) -> tuple[Array, dict[str, Array]]:
     """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
     sine, cosine = np.sin(theta), np.cos(theta)
-    b: Balance = balance(sine, cosine, m, d, load)
+    b: Balance = with_couple(balance(sine, cosine, m, d, load), -on_crank)
     sides = PinSides(
         d.crank_pin_circle * np.sign((1.0 - m.rod_1) * d.speed),
         d.slider_pin_circle * np.sign(m.rod_1 * d.speed),

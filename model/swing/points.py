@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.contact import sides_of
+from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
-from ..dynamics.torque import balance
+from ..dynamics.torque import balance, with_couple
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, seldom_kernel
 from ..kinematics.position import motion
@@ -84,9 +85,12 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, path: Path) -> Any
 
 
 @analytic
-def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, rubbing: bool) -> Any:
-    """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide."""
-    b = balance(sine, cosine, m, d, load)
+def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rubbing: bool) -> Any:
+    """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide.
+
+    on_crank: minus the torque of the loads on the crank, N m.
+    """
+    b = with_couple(balance(sine, cosine, m, d, load), on_crank)
     bx, by = free_pin(sine, cosine, m, d, b)
     turn = 1.0 if d.speed.real > 0.0 else -1.0
     if rubbing:
@@ -191,7 +195,9 @@ def _states(
         j = influences(zs, zc, m, z.l)
         if path.slider:
             if path.forces:
-                drive, guide = _pushed(zs, zc, m, z, load, path.rubbing)
+                angle = complex(theta, moved)
+                on_crank = beside_crank_loads(0j, z, own, 0, angle, turning, loads, piece, shift)
+                drive, guide = _pushed(zs, zc, m, z, load, on_crank, path.rubbing)
                 power = drive * m.x_1 * speed
             off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
             off = off + magnitude(j.offset) * z.offset_error + path.tolerance
@@ -200,7 +206,9 @@ def _states(
             if path.forces:
                 sides = sides_of(within, d, block, 0, outward, loads, piece, shift, path.rubbing)
                 f = joint_forces(zs, zc, m, z, load, sides)
-                drive, guide, power = f.torque, f.guide, f.torque * speed
+                angle = complex(theta, moved)
+                drive = beside_crank_loads(f.torque, z, own, 0, angle, turning, loads, piece, shift)
+                guide, power = f.guide, drive * speed
             error = worst_case(j, z)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
         out[p, 4], out[p, 5], out[p, 6], out[p, 7] = m.x, m.x_1, complex(theta, moved), rate

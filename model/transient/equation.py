@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
@@ -53,7 +54,7 @@ class Terms:
 
     inertia: J, kg m^2. spin: J'/2, kg m^2. static: C, N m. drag: D, N m s.
     square: E, N m s^2.
-    load: torque that the loads that do not depend on speed do on the crank, N m; it is part of -C.
+    load: torque on the crank of the loads that do not depend on speed, N m; it is part of -C.
     """
 
     inertia: Array
@@ -85,7 +86,9 @@ def _enter(block: Table, loads: Loads, watch: Watch, inside: float, piece: Integ
 
 
 @kernel
-def _terms(block: Table, loads: Loads, outward: bool, piece: Integers, shift: Row, angles: Row, out: Table) -> None:
+def _terms(
+    block: Table, loads: Loads, outward: bool, way: float, piece: Integers, shift: Row, angles: Row, out: Table
+) -> None:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
     square = design_at(block, 4)
     for i in range(angles.shape[0]):
@@ -95,10 +98,12 @@ def _terms(block: Table, loads: Loads, outward: bool, piece: Integers, shift: Ro
         load = load_on_slider(m, still, block, 0, theta, outward, loads, piece, shift)
         out[0, i] = forces(sine, cosine, m, push, 0.0).torque
         out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
-        out[2, i] = forces(sine, cosine, m, still, load).torque
+        static = forces(sine, cosine, m, still, load).torque
+        out[2, i] = beside_crank_loads(static, still, block, 0, theta, way, loads, piece, shift)
         dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
         out[3, i] = forces(sine, cosine, m, bare, dragged).torque
-        out[4, i] = still.branch * load * m.x_1
+        done = still.branch * load * m.x_1
+        out[4, i] = done - beside_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
         squared = with_formulas(0.0, m, square, block, 4, outward, loads)
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
@@ -119,7 +124,7 @@ class Stretch:
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
         out = np.empty((6, len(crank_angle)))
-        _terms(self._block, self._loads, self._outward, self._piece, self._shift, crank_angle, out)
+        _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
 

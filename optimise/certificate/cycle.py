@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...model.dynamics.torque import Forces, forces, smooth_load
 from ...model.kernel.arithmetic import magnitude, root
 from ...model.kinematics.position import motion
-from ...model.machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
+from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive, design_at
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
@@ -108,16 +108,28 @@ class Curve:
                     z = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
                     cylinder = cast(Cylinder, self.mechanism.loads[k])
                     load = load + gas_force(cylinder, z / stroke, stroke, outward)
-                if self.loads.start[k] < self.loads.start[k + 1]:
+                if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
                     load = load + self._table(k, m, d, block, theta, outward)
-            return _of_forces(self.kind, forces(sine, cosine, m, d, load), d)
+            f = forces(sine, cosine, m, d, load)
+            return _of_forces(self.kind, f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward)), d)
         return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
+
+    def _on_crank(self, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Any:
+        """Return the torque of the loads on the crank, N m: as `beside_crank_loads` has it."""
+        found: Any = 0.0
+        for k, load in enumerate(self.mechanism.loads):
+            if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
+                q = DESIGN + LOAD_ROWS * k + AREA
+                found = found + (block[q, 0] - self.direction * block[q + 1, 0])
+            elif load.on_crank:
+                found = found + self._table(k, m, d, block, theta, outward)
+        return found
 
     def _table(self, k: int, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Enclosure:
         loads: Loads = self.loads
         part = slice(loads.start[k], loads.start[k + 1])
         at, force = loads.at[part], loads.force[part]
-        factor = _by_stroke(outward, *loads.factor[k].tolist())
+        factor = loads.factor[k, 2] or _by_stroke(outward, *loads.factor[k, :2].tolist())
         if loads.kind[k] == Enters.ANGLE_TABLE:
             if loads.datum[k] == 0:
                 turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)

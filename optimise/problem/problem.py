@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ...model.checks import keep_tuples
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage, SlowStroke
+from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.quantity import Array, Quantity
@@ -121,6 +122,9 @@ class Problem:
         require_known(self.discrete, ["crank", "rod", "offset", *(item.name for item in self.mechanism.varying)])
         if self.motion is not None:
             self._take(self.motion)
+        else:
+            for own in self.variants or (self,):
+                require_no_winding(own.mechanism)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in ("crank", "rod", "offset"):

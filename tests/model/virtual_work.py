@@ -1,8 +1,9 @@
 """The mechanics once more, by other means than the project's: virtual work and plain NumPy.
 
 The project solves Newton's and Euler's equations body by body. Here the drive torque follows from energies alone:
-T = w^2 J'/2 + J alpha + V' - F x', with J(theta) w^2 / 2 the kinetic energy, V the potential energy of gravity and F
-the load on the slider. All functions broadcast: dimensions against crank angles.
+T = w^2 J'/2 + J alpha + V' - F x' - M, with J(theta) w^2 / 2 the kinetic energy, V the potential energy of gravity,
+F the load on the slider and M the torque of the loads on the crank. All functions broadcast: dimensions
+against crank angles.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from numpy.typing import NDArray
 
 from slidercrank.model.machine.links import Bar, Link
 from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.crank_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import During, Load
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -139,7 +142,20 @@ def slider_load(mechanism: Mechanism, designs: Any, theta: Any, at: Path) -> Any
     ends = stroke_ends(designs)
     total = np.zeros_like(position)
     for load in mechanism.loads:
-        total = total + load_force(load, position, velocity, outward, theta, ends)
+        if not load.on_crank:
+            total = total + load_force(load, position, velocity, outward, theta, ends)
+    return total
+
+
+def crank_torque(mechanism: Mechanism, theta: Any) -> Any:
+    """Return the sum of the torques of loads on the crank, N m, tables from zero crank angle."""
+    total = 0.0 * np.asarray(theta)
+    for load in mechanism.loads:
+        if isinstance(load, CrankTable):
+            total = total + np.interp(theta, load.angles, load.forces, period=2.0 * math.pi)
+        elif isinstance(load, CrankTorque):
+            against = load.resistance * math.copysign(1.0, mechanism.speed)
+            total = total + (load.torque - against - load.crank_stiffness * (theta - load.free_angle))
     return total
 
 
@@ -178,7 +194,7 @@ def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
     load = sign * slider_load(mechanism, designs, theta, at)
     return (
         mechanism.speed**2 * half_slope + mechanism.acceleration * inertia - gx * moved_x - gy * moved_y - load * at.x_1
-    )
+    ) - crank_torque(mechanism, theta)
 
 
 def error_parts(mechanism: Mechanism, designs: Any, theta: Any) -> tuple[Any, Any, Any, Any]:

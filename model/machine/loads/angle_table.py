@@ -51,10 +51,11 @@ class AngleTable(Load):
     turn: int = 0
 
     enters: ClassVar = Enters.ANGLE_TABLE
+    tabulated: ClassVar = ("forces", "N")
 
     def __post_init__(self) -> None:
         keep_tuples(self, "angles", "forces")
-        require_table("angles", self.angles, self.forces)
+        require_table("angles", self.angles, self.forces, of=self.tabulated[0])
         require_word("during", self.during, During)
         require_word("datum", self.datum, AngleDatum)
         require_word("cycle", self.cycle, CycleAngle)
@@ -72,9 +73,11 @@ class AngleTable(Load):
             return "give two turns at most" if more else 'for a cycle of two turns give cycle = "720 deg"'
         if self.forces[0] == self.forces[-1]:
             return "leave out the last point, which repeats the first"
+        unit = self.tabulated[1]
         return (
-            f"its last point is the first one {self.cycle} later, with another value, {self.forces[-1]:.6g} N after "
-            f"{self.forces[0]:.6g} N, so that the table does not close; correct one of the two and leave out the last"
+            f"its last point is the first one {self.cycle} later, with another value, {self.forces[-1]:.6g} {unit} "
+            f"after {self.forces[0]:.6g} {unit}, so that the table does not close; correct one of the two and leave "
+            "out the last"
         )
 
     @property

@@ -1,4 +1,4 @@
-"""A load on the slider: all that the kernels, job files, the page and summaries ask of one.
+"""A load on slider or crank: all that the kernels, job files, the page and summaries ask of one.
 
 A kind of load is a module of this package with a frozen dataclass that derives from `Load`. It declares how it enters
 the kernels: as one of the shapes that these add up before a sweep (`Enters`), or by a `formula` of its own.
@@ -29,7 +29,8 @@ class Enters(IntEnum):
     """The way by which a kind of load enters the kernels; the order in which lists name kinds.
 
     Stroke forces, springs and viscous loads are summed for each design before a sweep, so that any number of them
-    costs what one does. Tables and cylinders make breakpoints. All others are evaluated one by one.
+    costs what one does. Tables and cylinders make breakpoints. All others are evaluated one by one: torques on the
+    crank, which the drive torque alone has, and forces with a formula.
     """
 
     STROKE_FORCE = 0
@@ -38,7 +39,8 @@ class Enters(IntEnum):
     POSITION_TABLE = 3
     ANGLE_TABLE = 4
     CYLINDER = 5
-    FORMULA = 6
+    CRANK_TORQUE = 6
+    FORMULA = 7
 
 
 class Passage(NamedTuple):
@@ -92,18 +94,19 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
-    """A load on the slider along its line; forces are positive outward.
+    """A load on the slider along its line, positive outward, or on the crank, positive counter-clockwise.
 
     enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
     while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
     `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
-    proportional to. slots: place in the numbers of a load and SI unit of each field that designs can vary. tables: of
-    job files.
+    proportional to. on_crank: whether it is a torque on the crank. slots: place in the numbers of a load and SI unit of
+    each field that designs can vary. tables: of job files.
     """
 
     enters: ClassVar[Enters]
     formula: ClassVar[Formula | None] = None
     speed_power: ClassVar[Literal[0, 1, 2]] = 0
+    on_crank: ClassVar[bool] = False
     slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
     tables: ClassVar[tuple[Table, ...]]
 
@@ -118,6 +121,11 @@ class Load:
     @property
     def turns(self) -> bool:
         """Whether the knots are crank angles that are counted in the sense of rotation."""
+        return False
+
+    @property
+    def winds(self) -> bool:
+        """Whether the load is another one after a turn of the crank: it is then of a crank that swings."""
         return False
 
     @property
@@ -167,13 +175,13 @@ def require_word(name: str, value: object, words: object) -> None:
         raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
 
 
-def require_table(what: str, at: Sequence[float], forces: Sequence[float]) -> None:
+def require_table(what: str, at: Sequence[float], forces: Sequence[float], *, of: str = "forces") -> None:
     """Refuse a table that does not increase, is not finite or has fewer than two points."""
     if len(at) != len(forces) or len(at) < 2:
         raise InputError(
-            f"a table needs as many forces as {what}, two at least; got {len(at)} {what} and {len(forces)} forces"
+            f"a table needs as many {of} as {what}, two at least; got {len(at)} {what} and {len(forces)} {of}"
         )
-    require_all_finite(f"a table of {what} and forces", (*at, *forces), "throughout")
+    require_all_finite(f"a table of {what} and {of}", (*at, *forces), "throughout")
     for before, after in itertools.pairwise(at):
         if after <= before:
             raise InputError(f"{what} of a table must increase; got {after:g} after {before:g}; sort the table")

@@ -14,6 +14,7 @@ from ....model.cycle.cycle import cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.links import Counterweight, RigidLink
+from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
@@ -30,7 +31,8 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
     Without loads of its own and without one given, the load is 1 N towards the crank pivot.
     """
-    constant = -1.0 if load is None and not mechanism.loads else load
+    own = _own(mechanism)
+    constant = -1.0 if load is None and not own else load
     return replace(
         mechanism,
         acceleration=0.0,
@@ -40,8 +42,13 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
         slider_mass=0.0,
         gravity=(0.0, 0.0),
         friction=Friction(),
-        loads=mechanism.loads if constant is None else (StrokeForce(outward=constant, inward=constant),),
+        loads=own if constant is None else (StrokeForce(outward=constant, inward=constant),),
     )
+
+
+def _own(mechanism: Mechanism) -> tuple[Load, ...]:
+    """Return the loads on the slider, of which the polygons are."""
+    return tuple(load for load in mechanism.loads if not load.on_crank)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> dict[str, Any]:
@@ -58,7 +65,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     loads = cycle(machine, linkage, np.radians(degrees)).load
     at = static_forces(linkage, np.radians(degrees), load=loads)
     advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
-    own = load is None and bool(mechanism.loads)
+    own = load is None and bool(_own(mechanism))
     return {
         "load": "loads of the job" if own else f"{-1.0 if load is None else load:g} N, constant, positive outward",
         "peak_rod_force_N": rod.value,

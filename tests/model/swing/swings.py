@@ -9,10 +9,26 @@ from typing import get_args
 import numpy as np
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads.crank_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.words import Driver, Law
 from tests.model.cases import random_friction, random_machine
+
+
+def crank_loads(random: np.random.Generator, *, spring: bool = True) -> tuple[Load, ...]:
+    """Return a constant torque, a resistance, a spring and a table on the crank, some of them."""
+    angles, torques = np.sort(random.uniform(-3.0, 3.0, 5)), random.normal(0.0, 15.0, 5)
+    k, free = random.uniform(5.0, 60.0), random.uniform(-3.0, 3.0)
+    loads: list[Load] = [
+        CrankTorque(torque=random.normal(0.0, 20.0), resistance=random.uniform(0.0, 12.0)),
+        CrankTable(angles=tuple(angles.tolist()), forces=tuple(torques.tolist())),
+        *([CrankTorque(crank_stiffness=k, free_angle=free)] if spring else []),
+    ]
+    return tuple(load for load in loads if random.random() < 0.7)
+
 
 Case = tuple[Mechanism, Linkage, Swing]
 
@@ -51,5 +67,7 @@ def random_swings(
             kept = [load for load in machine.loads if not getattr(load, "datum", "").endswith("dead centre")]
             machine = replace(machine, loads=tuple(kept))
         machine = replace(machine, friction=rubs) if friction else machine
+        if len(found) % 3 == 0:
+            machine = replace(machine, loads=(*machine.loads, *crank_loads(np.random.default_rng(len(found)))))
         found.append((machine, linkage, Swing(start=start, end=end, driver=drives, law=law, duration=duration)))
     return found

@@ -18,7 +18,7 @@ from tests.model.bodies import bodies
 from tests.model.cases import Array
 from tests.model.contour import motion_in_time
 from tests.model.swing.swings import random_swings
-from tests.model.virtual_work import drive_torque, outward_motion, path, slider_load
+from tests.model.virtual_work import crank_torque, drive_torque, outward_motion, path, slider_load
 
 SHARES = np.array([0.0, 0.07, 0.31, 0.5, 0.88, 1.0])
 SLOW = 1e-200
@@ -89,7 +89,7 @@ def balances(machine: Mechanism, linkage: Linkage, found: SwingCurves, i: int, w
             [
                 px - ax - cx - wx,
                 py - ay - cy - wy,
-                (torque - (kx * ay - ky * ax) + on_crank - on_rod_at_a - cm - wm) / r,
+                (torque + float(crank_torque(at, theta)) - (kx * ay - ky * ax) + on_crank - on_rod_at_a - cm - wm) / r,
                 ax - bx - rx,
                 ay - by - ry,
                 ((kx * ay - ky * ax) - (at_b * by - e * bx) + on_rod_at_a + on_rod_at_b - rm) / r,

@@ -1,0 +1,49 @@
+"""Torques of loads on the crank: what they take off the drive torque.
+
+By virtual work a torque M on the crank changes the drive torque by -M and no joint force: T = T_linkage - M(theta).
+Where the slider drives, the crank's moments about the pivot have -M beside the couple of its weight and inertia.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..kernel.arithmetic import analytic
+from ..machine.design import AREA, DESIGN, LOAD_ROWS
+from ..machine.loads.load import Enters
+
+_CRANK_TORQUE = int(Enters.CRANK_TORQUE)
+
+
+@analytic
+def beside_crank_loads(
+    torque: Any, d: Any, block: Any, j: int, theta: Any, way: float, loads: Any, piece: Any, shift: Any
+) -> Any:
+    """Return a torque, N m, less those of the loads on the crank, in a segment entered before.
+
+    way: 1 where the crank turns counter-clockwise, -1 clockwise.
+    """
+    # Taken off one by one within the loop, so that machines without such a load keep their last digits.
+    for k in range(loads.kind.shape[0]):
+        q = DESIGN + LOAD_ROWS * k
+        if loads.kind[k] == _CRANK_TORQUE:
+            q = q + AREA
+            torque = torque - (block[q, j] - way * block[q + 1, j] - block[q + 2, j] * (theta - block[q + 3, j]))
+        elif loads.factor[k, 2] != 0.0:
+            i = piece[k]
+            first, last = loads.start[k], loads.start[k + 1]
+            if i == first:
+                torque = torque - loads.force[first]
+            elif i == last:
+                torque = torque - loads.force[last - 1]
+            else:
+                slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
+                at = theta - block[q + 1, j] if loads.datum[k] > 0 else theta
+                torque = torque - (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
+    return torque
+
+
+@analytic
+def sense_of(d: Any) -> float:
+    """Return the sense in which the crank turns: 1 counter-clockwise or at rest, -1 clockwise."""
+    return 1.0 if d.speed.real >= 0.0 else -1.0

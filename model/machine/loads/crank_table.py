@@ -1,0 +1,81 @@
+"""A torque on the crank tabulated over the crank angle."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from .angle_table import AngleTable
+from .load import ANGLE_DATUM, CYCLE, AngleDatum, CycleAngle, Entry, Passage, Table
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrankTable(AngleTable):
+    """A torque on the crank tabulated over crank angle, interpolated linearly and periodically.
+
+    forces: torques, N m, positive counter-clockwise. The other fields are as in `AngleTable`; it acts all over the
+    cycle.
+    """
+
+    on_crank: ClassVar = True
+    tabulated: ClassVar = ("torques", "N m")
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return factors of one, alike in both strokes."""
+        return (1.0, 1.0, 0.0, 0.0)
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return the work between knots, which cancels where the mean torque is zero."""
+        angles, torques = self.knots()
+        pairs = zip(pairwise(angles), pairwise(torques), strict=True)
+        return {CrankTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return none: no stroke is loaded by it."""
+        return 0.0
+
+    @property
+    def text(self) -> str:
+        """The size of the table."""
+        datum = f" from the {self.datum}" if self.turns else ""
+        cycle = f", cycle of {self.cycle}" if self.cycle_turns > 1 else ""
+        return f"table of {len(self.angles)} torques on the crank over crank angle{datum}{cycle}"
+
+
+def _built(
+    torque_angles: tuple[float, ...], torques: tuple[float, ...], measured_from: AngleDatum, cycle: CycleAngle
+) -> CrankTable:
+    return CrankTable(angles=torque_angles, forces=torques, datum=measured_from, cycle=cycle)
+
+
+CrankTable.tables = (
+    Table(
+        "torque_angles",
+        "CrankTorqueTableLoad",
+        "table of torques on the crank over the crank angle",
+        "A torque on the crank tabulated over the crank angle: linear between the points, periodic.",
+        (
+            Entry(
+                "torque_angles",
+                "Angle",
+                "crank angles, increasing, spanning less than the cycle",
+                ["0 deg", "90 deg"],
+                several=True,
+                increasing=True,
+            ),
+            Entry(
+                "torques",
+                "Torque",
+                "torque on the crank at each point, positive counter-clockwise",
+                ["-20 N m", "0 N m"],
+                several=True,
+            ),
+            ANGLE_DATUM,
+            CYCLE,
+        ),
+        {"torque_angles": ["0 deg", "180 deg"], "torques": ["0 N m", "-20 N m"]},
+        _built,
+    ),
+)

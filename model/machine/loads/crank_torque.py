@@ -1,0 +1,109 @@
+"""A torque on the crank besides the drive's: constant, against every motion, or of a spring to the frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ...checks import require_numbers
+from .load import Enters, Entry, Load, Table
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrankTorque(Load):
+    """A torque on the crank, N m: torque - resistance sgn(w) - crank_stiffness (theta - free_angle).
+
+    torque: positive counter-clockwise. resistance: against every motion (Coulomb, of known size). crank_stiffness:
+    N m/rad, of a spring between crank and frame. free_angle: rad; the angle counts on beyond a turn, so that a spring
+    is of a crank that swings.
+    """
+
+    torque: float = 0.0
+    resistance: float = 0.0
+    crank_stiffness: float = 0.0
+    free_angle: float = 0.0
+
+    enters: ClassVar = Enters.CRANK_TORQUE
+    on_crank: ClassVar = True
+    slots: ClassVar = {
+        "torque": (2, "N m"),
+        "resistance": (3, "N m"),
+        "crank_stiffness": (4, "N m/rad"),
+        "free_angle": (5, "rad"),
+    }
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "torque", "free_angle")
+        require_numbers(self, "resistance", what="the {} of the crank", least=0.0, unit="N m")
+        require_numbers(self, "crank_stiffness", what="the stiffness of a spring on the crank", least=0.0)
+
+    def numbers(self) -> tuple[float, ...]:
+        """Return the numbers of `slots` after factors of one."""
+        return (1.0, 1.0, self.torque, self.resistance, self.crank_stiffness, self.free_angle)
+
+    @property
+    def winds(self) -> bool:
+        """Whether it has a spring."""
+        return self.crank_stiffness != 0.0
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return the constant torque and the one against the motion."""
+        return {(CrankTorque, "torque"): (self.torque,), (CrankTorque, "resistance"): (self.resistance,)}
+
+    @property
+    def text(self) -> str:
+        """The torques and the spring."""
+        parts = [f"{self.torque:.6g} N m on the crank, positive counter-clockwise"] if self.torque else []
+        parts += [f"{self.resistance:.6g} N m on the crank against its motion"] if self.resistance else []
+        if self.crank_stiffness:
+            free = math.degrees(self.free_angle)
+            parts += [f"spring on the crank {self.crank_stiffness:.6g} N m/rad, free at {free:.6g} deg"]
+        return "; ".join(parts) or "no torque on the crank"
+
+
+def _constant(crank_torque: float) -> CrankTorque:
+    return CrankTorque(torque=crank_torque)
+
+
+def _against(crank_resistance: float) -> CrankTorque:
+    return CrankTorque(resistance=crank_resistance)
+
+
+def _spring(torque_per_angle: float, free_angle: float) -> CrankTorque:
+    return CrankTorque(crank_stiffness=torque_per_angle, free_angle=free_angle)
+
+
+CrankTorque.tables = (
+    Table(
+        "crank_torque",
+        "CrankTorqueLoad",
+        "torque on the crank",
+        "A constant torque on the crank, besides that of the drive.",
+        (Entry("crank_torque", "Torque", "positive counter-clockwise", "-50 N m"),),
+        {"crank_torque": "-50 N m"},
+        _constant,
+    ),
+    Table(
+        "crank_resistance",
+        "CrankResistanceLoad",
+        "torque on the crank against its motion",
+        "A torque of constant size on the crank against every motion, such as that of a brake or a seal.",
+        (Entry("crank_resistance", "PositiveTorque", "its size", "5 N m"),),
+        {"crank_resistance": "5 N m"},
+        _against,
+    ),
+    Table(
+        "torque_per_angle",
+        "CrankSpringLoad",
+        "spring on a swinging crank",
+        "A linear torsion spring between frame and crank, for a crank that swings.",
+        (
+            Entry("torque_per_angle", "AngularStiffness", "torque per angle from where it is free", "40 N m/rad"),
+            Entry("free_angle", "Angle", "crank angle at which the spring is free of torque", "45 deg"),
+        ),
+        {"torque_per_angle": "40 N m/rad", "free_angle": "0 deg"},
+        _spring,
+    ),
+)
