@@ -83,7 +83,7 @@ def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: boo
 def _forth(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     many = Many(mechanism, swing, designs, slopes=gradients)
     values, slopes = _work(many, many.pieces(back=False), gradients)
-    return values, many.numbers.chain(slopes[:, None])[:, 0]
+    return values, many.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
 
 
 def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:

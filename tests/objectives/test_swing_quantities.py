@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing
@@ -118,3 +120,26 @@ def test_what_cannot_swing_has_no_value_and_every_fact_has_a_place() -> None:
             assert np.isfinite(found).tolist() == [True, False, False], of.name
             assert np.isnan(of.pieces(machine, np.array([opening])).values[0, 0]), of.name
     assert len({of.place for of in swing_facts()}) == len(swing_facts())
+
+
+def test_numbers_that_vary_change_nothing_but_the_count_of_derivatives() -> None:
+    """Values with and without derivatives are those of the machine that has these numbers; a spring's too."""
+    spring = CrankTorque(crank_stiffness=20.0, free_angle=1.2)
+    for driver in ("crank", "slider"):
+        swing = Swing(start=0.5, end=1.5, driver=driver)
+        machine = Mechanism(slider_mass=1.0, gravity=(-9.81, 0.0), tolerances=TOLERANCES, loads=(spring,))
+        sets = (("loads.0.crank_stiffness", 1.0),)
+        free = replace(machine, varying=(Varying(name="spring", sets=sets, lower=1.0, upper=30.0),))
+        designs = np.array([[0.1, 0.25, 0.02, 20.0]])
+        for of in swing_quantities(swing):
+            if of.lacks(machine, "equal"):
+                continue
+            value = of.evaluate(free, designs).values
+            found = of.evaluate(free, designs, gradients=True)
+            assert value == pytest.approx(of.evaluate(machine, designs[:, :3]).values, rel=1e-13), of.name
+            assert found.values == pytest.approx(value, rel=1e-13)
+            assert found.gradients is not None
+            step = np.array([[0.0, 0.0, 0.0, 1e-3]])
+            up, down = (of.evaluate(free, design).values for design in (designs + step, designs - step))
+            slope = (up - down) / 2e-3
+            assert found.gradients[:, 3] == pytest.approx(slope, rel=1e-7, abs=1e-9 * abs(value[0])), of.name
