@@ -1,4 +1,4 @@
-"""Mean effective pressure: indicated work per displacement volume."""
+"""Mean effective pressure: work of a cycle per displacement volume."""
 
 from .gas_quantity import GasQuantity
 from .kinds import PRESSURE
@@ -9,12 +9,12 @@ MEAN_EFFECTIVE_PRESSURE = GasQuantity(
     name="mean_effective_pressure",
     title="mean effective pressure",
     kind=PRESSURE,
-    of=lambda gas: gas.work / gas.swept,
+    of=lambda gas: gas.cycle_work / gas.swept,
     place=440,
     group=Group.DRIVE,
-    sentence="The constant pressure that would do the indicated work in one stroke; negative where the gas takes work.",
+    sentence="The constant pressure that would do the work of a cycle in one stroke; negative where gas takes work.",
     advice="It compares cylinders of different size. With fixed pressures it follows from the clearance ratio alone.",
-    formula="indicated work / sum of A S",
+    formula="work of the cycles, of two turns for four strokes / sum of A S",
     section="7. Loads",
     picture="cylinder",
     example="-2.4 bar",

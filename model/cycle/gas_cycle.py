@@ -10,7 +10,7 @@ volume. Over a turn the back pressure does none.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ from ..machine.loads.cylinder import Cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
-from ..machine.two_turns import one_turn
+from ..machine.two_turns import cycle_turns, halves
 
 Array = NDArray[np.float64]
 
@@ -37,13 +37,15 @@ _SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below round
 class GasCycle(NamedTuple):
     """Sums over the cylinders of n designs, each (n,), real or complex.
 
-    swept, clearance: volumes, m^3. work: of the gas on the pistons over a turn, J. delivers: of compressors alone, the
-    volume taken in over the swept one; zero or less where nothing is delivered.
+    swept, clearance: volumes, m^3. work: of the gas on the pistons over a turn, J. cycle_work: over the cycle of each,
+    of two turns for four strokes, J. delivers: of compressors alone, the volume taken in over the swept one; zero or
+    less where nothing is delivered.
     """
 
     swept: Any
     clearance: Any
     work: Any
+    cycle_work: Any
     delivers: Any
 
 
@@ -69,7 +71,10 @@ def gas_cycle(
 ) -> tuple[Array, Array | None]:
     """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
     designs = turning(designs)
-    raw, loads = fullest_inputs(one_turn(mechanism))
+    if cycle_turns(mechanism) > 1:
+        values, slopes = _of_two_turns(mechanism, designs, gradients=gradients)
+        return np.asarray(of(values), dtype=np.float64), None if slopes is None else _differentiated(of, values, slopes)
+    raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
     values = np.asarray(of(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)
@@ -79,9 +84,36 @@ def gas_cycle(
     return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
 
 
-def _gas(mechanism: Mechanism, blocks: Any) -> GasCycle:
-    """Return the sums for derived blocks (n, rows)."""
-    swept = clearance = work = intake = pumped = 0.0 * blocks[:, 0]
+def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[GasCycle, GasCycle | None]:
+    """Return the sums of a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
+    four = [load.cycle_turns > 1 for load in mechanism.loads]
+    sums, slopes = [], []
+    for half in halves(mechanism):
+        raw, loads = fullest_inputs(half)
+        numbers = numbers_of(half, designs, room=len(raw), gradients=gradients)
+        blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+        sums.append(_gas(half, blocks[:, :, 0], four))
+        if gradients:
+            shape = len(designs), len(numbers.columns)
+            parts = _gas(half, steps[:, :, 0], four)
+            slopes.append(GasCycle(*(numbers.chain(part.imag.reshape(shape) / STEP) for part in parts)))
+    return _joined(*sums), _joined(*slopes) if gradients else None
+
+
+def _joined(first: GasCycle, second: GasCycle) -> GasCycle:
+    """Return the sums of both turns: work is the mean, that of the cycles the sum."""
+    work = 0.5 * (first.work + second.work)
+    return first._replace(work=work, cycle_work=first.cycle_work + second.cycle_work)
+
+
+def _differentiated(of: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:
+    stepped = (value[:, None] + 1j * STEP * slope for value, slope in zip(values, slopes, strict=True))
+    return np.asarray(of(GasCycle(*stepped)).imag / STEP)
+
+
+def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
+    """Return the sums for derived blocks (n, rows). four: of a half of two turns, which loads have a cycle of both."""
+    swept = clearance = work = cycles = intake = pumped = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
     for k, load in cylinders(mechanism):
         q = DESIGN + LOAD_ROWS * k + AREA
@@ -91,9 +123,10 @@ def _gas(mechanism: Mechanism, blocks: Any) -> GasCycle:
         else:
             gained, spent, share = _strokes(stroke, h, low, high, compression, expansion)
         swept, clearance, work = swept + area * stroke, clearance + area * h, work + area * (gained - spent)
+        cycles = cycles + area * (gained - spent) * (0.5 if four and not four[k] else 1.0)
         if isinstance(load, Compressor):
             pumped, intake = pumped + area * stroke, intake + area * stroke * share
-    return GasCycle(swept, clearance, work, intake / pumped if compressors(mechanism) else intake)
+    return GasCycle(swept, clearance, work, cycles, intake / pumped if compressors(mechanism) else intake)
 
 
 def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:

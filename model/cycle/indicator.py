@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.loads.cylinder import Cylinder
 from ..machine.mechanism import Mechanism
+from ..machine.two_turns import half_at
 
 Array = NDArray[np.float64]
 
@@ -36,8 +38,17 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     # The motion of a moment before: at a dead centre that of the stroke that ends there.
     before = linkage.at(theta - 1e-9 * mechanism.direction, speed=mechanism.direction).slider_velocity
     away = sign * linkage.sign * before > 0.0
-    pressure = np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
+    pressure = _pressure(load, z, stroke, away)
+    if load.cycle_turns > 1:
+        turn = half_at(mechanism, *linkage.dead_centre_angles, theta - 1e-9 * mechanism.direction)
+        parts = [load.on_turn(number) for number in (1, 2)]
+        first, second = (_pressure(part, z, stroke, away) for part in parts if isinstance(part, Cylinder))
+        pressure = np.where(turn == 0, first, second)
     return Indicator(theta, load.clearance * load.area * stroke + load.clearance_volume + load.area * z, pressure)
+
+
+def _pressure(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
+    return np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
 
 
 def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:

@@ -1,7 +1,8 @@
 """A cycle of two turns as two machines of one turn each.
 
 The first has the loads of the first turn, the second those of the second: a table of 720 deg is cut at 0 and 360 deg,
-counted from its datum. Everything else repeats with every turn. So the
+counted from its datum; an engine of four strokes compresses and burns in
+the first, and changes its gas in the second. Everything else repeats with every turn. So the
 greatest value over the cycle is the greater of the two halves', a mean is the mean of theirs, and both are exact. At
 the cuts a half jumps by what it does not close; the other half has the same jump the other way.
 """
@@ -9,6 +10,7 @@ the cuts a half jumps by what it does not close; the other half has the same jum
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .mechanism import Mechanism
 from .remembered import remembered
+from .varying import Varying
 
 Array = NDArray[np.float64]
 
@@ -33,7 +36,24 @@ def cycle_turns(mechanism: Mechanism) -> int:
 def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
     _datum(mechanism)
-    return tuple(replace(mechanism, loads=tuple(load.on_turn(turn) for load in mechanism.loads)) for turn in (1, 2))
+    return tuple(_half(mechanism, turn) for turn in (1, 2))
+
+
+def _half(mechanism: Mechanism, turn: int) -> Mechanism:
+    loads = mechanism.loads
+
+    def own(item: Varying) -> Varying:
+        """Return the numbers of the loads by their names on that turn."""
+        sets = []
+        for path, factor in item.sets:
+            found = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
+            name = path if found is None else loads[int(found[1])].number_on_turn(found[2], turn)
+            if name is not None:
+                sets.append((path if found is None else f"loads.{found[1]}.{name}", factor))
+        return replace(item, sets=tuple(sets), idle=not sets)
+
+    varying = tuple(own(item) for item in mechanism.varying)
+    return replace(mechanism, loads=tuple(load.on_turn(turn) for load in loads), varying=varying)
 
 
 def one_turn(mechanism: Mechanism) -> Mechanism:
@@ -57,7 +77,7 @@ def in_cycle(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, h
 
 
 def _datum(mechanism: Mechanism) -> str:
-    datums = {getattr(load, "datum", "zero crank angle") for load in mechanism.loads if load.cycle_turns > 1}
+    datums = {load.cycle_datum for load in mechanism.loads if load.cycle_turns > 1}
     if len(datums) != 1:
         raise InputError(
             "loads with a cycle of 720 deg must count from one datum; got "

@@ -18,13 +18,15 @@ class Varying:
     name: for people; in a job its path, "mechanism.slider.mass". sets: which numbers of the `Mechanism` follow it, each
     by its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is factor times
     value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
-    lower, upper: where the value may lie, SI; equal ends fix it.
+    lower, upper: where the value may lie, SI; equal ends fix it. idle: whether it sets nothing, being of another turn
+    of the cycle (`two_turns`).
     """
 
     name: str
     sets: tuple[tuple[str, float], ...]
     lower: float
     upper: float
+    idle: bool = False
 
     def __post_init__(self) -> None:
         keep_tuples(self, "sets")
@@ -32,7 +34,7 @@ class Varying:
             raise InputError(
                 f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"
             )
-        if not self.sets or not all(math.isfinite(factor) and factor for _, factor in self.sets):
+        if bool(self.sets) == self.idle or not all(math.isfinite(factor) and factor for _, factor in self.sets):
             raise InputError(f"{self.name} must set a number of the machine, each by a factor that is not zero")
 
     @property

@@ -100,7 +100,7 @@ class Cylinder(Load):
 
     def numbers(self) -> tuple[float, ...]:
         """Return factors of one, then the numbers of `slots`."""
-        return (1.0, 1.0, *(getattr(self, name) for name in self.slots))
+        return (1.0, 1.0, *(getattr(self, name) for name in Cylinder.slots))
 
     @property
     def by_stroke(self) -> bool:

@@ -1,13 +1,14 @@
-"""An ideal engine cycle of two strokes."""
+"""Ideal engine cycles of two and of four strokes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
+from ...checks import require_numbers
 from ...errors import InputError
 from .cylinder import BACK_PRESSURE, BORE, EXPONENTS, HEAD, PISTON_ROD, Cylinder
-from .load import Entry, Table
+from .load import CYCLE, CycleAngle, Entry, Load, Passage, Table
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,14 +42,70 @@ class Engine(Cylinder):
     @property
     def text(self) -> str:
         """Pressures, exponents and size."""
+        return f"two-stroke engine cycle {self._gas_text}, {self.size_text}"
+
+    @property
+    def _gas_text(self) -> str:
         exponents = f"exponents {self.compression_exponent:.6g} and {self.expansion_exponent:.6g}"
-        return (
-            f"two-stroke engine cycle from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar, {exponents}, "
-            f"{self.size_text}"
-        )
+        return f"from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar, {exponents}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FourStroke(Engine):
+    """A cylinder that compresses and burns in one turn, as `Engine`, and changes its gas in the next.
+
+    The piston pushes out at the `exhaust` pressure, Pa, and draws in at `low`. A turn begins at the dead centre away
+    from the head; compression and expansion are the first one.
+    """
+
+    exhaust: float
+
+    slots: ClassVar = {**Cylinder.slots, "exhaust": Cylinder.slots["high"]}
+    tables: ClassVar = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_numbers(self, "exhaust", what="the {} pressure, absolute,", above=0.0, unit="Pa")
+
+    @property
+    def cycle_turns(self) -> int:
+        """Two."""
+        return 2
+
+    @property
+    def cycle_datum(self) -> str:
+        """The dead centre away from the head."""
+        return "inner dead centre" if self.head == "outer dead centre" else "outer dead centre"
+
+    def on_turn(self, turn: int) -> Load:
+        """Return the two-stroke cycle of turn 1, or the change of gas of turn 2, each stroke at constant pressure."""
+        own = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
+        if turn == 1:
+            return Engine(**own)
+        return Cylinder(**own | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
+
+    def number_on_turn(self, name: str, turn: int) -> str | None:
+        """Return its name; the exhaust pressure is the high one of turn 2, which has neither peak nor exponents."""
+        if turn == 1:
+            return None if name == "exhaust" else name
+        if name in ("high", "compression_exponent", "expansion_exponent"):
+            return None
+        return "high" if name == "exhaust" else name
+
+    def stroke_work(self, passage: Passage) -> Any:
+        """Return the mean work of both turns."""
+        return 0.5 * (self.on_turn(1).stroke_work(passage) + self.on_turn(2).stroke_work(passage))
+
+    @property
+    def text(self) -> str:
+        """Pressures, exponents and size."""
+        return f"four-stroke engine cycle {self._gas_text}, exhaust at {1e-5 * self.exhaust:.6g} bar, {self.size_text}"
 
 
 def _built(
+    cycle: CycleAngle,
+    exhaust: float,
+    back_pressure: float,
     intake: float,
     compression_ratio: float,
     peak_pressure: float,
@@ -68,22 +125,30 @@ def _built(
     compressed = intake * compression_ratio**compression_exponent
     # An ideal gas at constant volume takes the heat (p_h - p_end) V_c / (k - 1); V_c is V_s / (ratio - 1).
     added = heat * (heat_capacity_ratio - 1.0) * (compression_ratio - 1.0)
-    return Engine(
-        low=intake,
-        high=peak_pressure or compressed + added,
-        clearance=1.0 / (compression_ratio - 1.0),
-        compression_exponent=compression_exponent,
-        expansion_exponent=expansion_exponent,
-        **size,
-    )
+    size |= {
+        "low": intake,
+        "high": peak_pressure or compressed + added,
+        "clearance": 1.0 / (compression_ratio - 1.0),
+        "compression_exponent": compression_exponent,
+        "expansion_exponent": expansion_exponent,
+        "back_pressure": back_pressure,
+    }
+    if cycle == "720 deg":
+        return FourStroke(exhaust=exhaust or back_pressure, **size)
+    if exhaust:
+        raise InputError(
+            "an exhaust pressure is of a cycle of four strokes; got one with a cycle of 360 deg; add "
+            'cycle = "720 deg", or leave the exhaust pressure out'
+        )
+    return Engine(**size)
 
 
 Engine.tables = (
     Table(
         "compression_ratio",
         "EngineLoad",
-        "ideal two-stroke engine cycle",
-        "The ideal cycle of a two-stroke engine, burning at constant volume; pressures are absolute.",
+        "ideal engine cycle",
+        "The ideal cycle of an engine of two or four strokes, burning at constant volume; pressures are absolute.",
         (
             BORE,
             Entry("compression_ratio", "PositiveRatio", "greatest volume over the least one", 8.0),
@@ -103,6 +168,14 @@ Engine.tables = (
                 default=0.0,
             ),
             Entry("heat_capacity_ratio", "PositiveRatio", "of the burning gas, for heat", 1.4, default=1.4),
+            CYCLE,
+            Entry(
+                "exhaust",
+                "LeastPressure",
+                "absolute pressure of the exhaust stroke, of four strokes; the back pressure where it is left out",
+                "1.05 bar",
+                default=0.0,
+            ),
             *EXPONENTS,
             HEAD,
             PISTON_ROD,

@@ -138,6 +138,15 @@ class Load:
         return self
 
     @property
+    def cycle_datum(self) -> str:
+        """What a cycle of two turns counts from: zero crank angle or a dead centre."""
+        return str(getattr(self, "datum", "zero crank angle"))
+
+    def number_on_turn(self, name: str, turn: int) -> str | None:
+        """Return the name that one of its numbers has in `on_turn`; None where that turn has it not."""
+        return name
+
+    @property
     def by_position(self) -> bool:
         """Whether the force is the same wherever the slider is at the same place."""
         return False
