@@ -72,8 +72,8 @@ def gas_cycle(
     """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
     designs = turning(designs)
     if cycle_turns(mechanism) > 1:
-        values, slopes = _of_two_turns(mechanism, designs, gradients=gradients)
-        return np.asarray(of(values), dtype=np.float64), None if slopes is None else _differentiated(of, values, slopes)
+        sums, rates = _of_two_turns(mechanism, designs, gradients=gradients)
+        return np.asarray(of(sums), dtype=np.float64), None if rates is None else _differentiated(of, sums, rates)
     raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)

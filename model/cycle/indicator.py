@@ -48,7 +48,9 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
 
 
 def _pressure(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
-    return np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
+    return np.asarray(
+        np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
+    )
 
 
 def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:

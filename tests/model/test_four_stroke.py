@@ -15,7 +15,7 @@ from slidercrank.model.cycle.indicator import indicator
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke
-from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
@@ -64,7 +64,7 @@ def test_the_work_is_that_of_two_polytropes_and_two_strokes_at_constant_pressure
         expansion_exponent=down,
         head=str(random.choice(["outer dead centre", "inner dead centre"])),
     )
-    branch = "crossed" if seed % 3 == 0 else "open"
+    branch: Branch = "crossed" if seed % 3 == 0 else "open"
     machine = Mechanism(speed=float(random.choice([-200.0, 300.0])), loads=(load,), branch=branch)
     crank = random.uniform(0.02, 0.05)
     design = np.array([[crank, crank * random.uniform(2.5, 5.0), random.uniform(-0.5, 0.5) * crank]])
@@ -124,7 +124,7 @@ def test_peaks_are_those_of_a_sweep_over_both_turns_and_gradients_those_of_diffe
     )
     free = replace(machine, varying=varying)
     at = np.hstack([design, [[0.09, 57e5, 1.15e5, 0.92e5]]])
-    plain = free.at(at[0, 3:])
+    plain = free.at(at[0, 3:].tolist())
     for name in ("indicated_work", "mean_effective_pressure", "delivered_work", "peak_torque"):
         of = QUANTITIES[name]
         found = of.evaluate(free, at, gradients=True)
