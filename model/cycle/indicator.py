@@ -18,6 +18,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.two_turns import half_at
 
 Array = NDArray[np.float64]
+_BEFORE = 5e-10  # rad, that a crank angle is taken earlier: less than what figures mark jumps by
 
 
 @dataclass(frozen=True)
@@ -36,11 +37,11 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     stroke, sign, top = _top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
     # The motion of a moment before: at a dead centre that of the stroke that ends there.
-    before = linkage.at(theta - 1e-9 * mechanism.direction, speed=mechanism.direction).slider_velocity
+    before = linkage.at(theta - _BEFORE * mechanism.direction, speed=mechanism.direction).slider_velocity
     away = sign * linkage.sign * before > 0.0
     pressure = _pressure(load, z, stroke, away)
     if load.cycle_turns > 1:
-        turn = half_at(mechanism, *linkage.dead_centre_angles, theta - 1e-9 * mechanism.direction)
+        turn = half_at(mechanism, *linkage.dead_centre_angles, theta - _BEFORE * mechanism.direction)
         parts = [load.on_turn(number) for number in (1, 2)]
         first, second = (_pressure(part, z, stroke, away) for part in parts if isinstance(part, Cylinder))
         pressure = np.where(turn == 0, first, second)

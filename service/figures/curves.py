@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ...objectives.kinds import System, shown_in
@@ -24,6 +25,7 @@ from .style import MUTED, SMALL
 
 Array = NDArray[np.float64]
 SAMPLES = 720
+_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -41,13 +43,18 @@ class Curve:
 
 @dataclass(frozen=True)
 class Curves:
-    """The curves of one design. angles: (n,), deg. inner, outer: dead centres, deg. slow: the slow stroke."""
+    """The curves of one design. angles: (n,), deg. inner, outer: dead centres of a turn, deg. slow: the slow stroke."""
 
     angles: Array
     curves: tuple[Curve, ...]
     inner: float
     outer: float
     slow: str
+
+    @property
+    def last(self) -> float:
+        """End of the last turn, deg."""
+        return 360.0 * round(float(self.angles[-1]) / 360.0)
 
 
 def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True, system: System = "metric") -> Curves:
@@ -73,9 +80,10 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     }
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
-    turn = np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1)
     marked = [inner, outer, *(extreme[1] for extreme in extremes.values() if extreme)]
-    angles = np.unique(np.concatenate([turn, np.mod(crowded, 2.0 * np.pi), marked]))
+    even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
+    once = [*np.mod(crowded, _TURN), *even, inner, outer]
+    angles = np.unique(np.concatenate([*(np.add(once, number * _TURN) for number in range(turns)), marked]))
     degrees = np.degrees(angles)
     _, one = shown_in("mm", system)
     ends = " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres)))
@@ -107,7 +115,8 @@ def draw_curves(panels: Sequence[Axes], curves: Curves) -> None:
         panel = over_turn(curve.title, *lines, note=curve.note)
         panel = replace(panel, across=panel.across + slow, shaded=_slow_spans(curves))
         draw_panel(axes, panel, across=axes is panels[-1])
-        for angle in (curves.inner, curves.outer):
+        ends = (curves.inner, curves.outer)
+        for angle in (end + turn for turn in np.arange(0.0, curves.last, 360.0) for end in ends):
             axes.axvline(angle, color=MUTED, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
     _name_dead_centres(panels[0], curves)
 
@@ -115,9 +124,10 @@ def draw_curves(panels: Sequence[Axes], curves: Curves) -> None:
 def _name_dead_centres(top: Axes, curves: Curves) -> None:
     """Write the dead centres over the uppermost panel, within its width and clear of each other."""
     named = sorted([(curves.inner, "inner"), (curves.outer, "outer")])
-    close = named[1][0] - named[0][0] < 110.0
+    turns = curves.last / 360.0
+    close = named[1][0] - named[0][0] < 110.0 * turns
     for (angle, name), apart in zip(named, ("right", "left"), strict=True):
-        within = "left" if angle < 70.0 else "right" if angle > 290.0 else "center"
+        within = "left" if angle < 70.0 * turns else "right" if angle > curves.last - 70.0 * turns else "center"
         top.annotate(
             f"{name} dead centre {shown(angle)}°",
             xy=(angle, 1.0),

@@ -13,6 +13,7 @@ from .numerals import shown
 
 Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
+_TURN = 2.0 * np.pi
 THIN, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
 """Styles: full of detail, what that is compared with, swinging behind another line, points, points behind a line."""
 
@@ -78,7 +79,11 @@ def lengths(linkage: Linkage) -> str:
     return f"crank {crank}, rod {rod}, offset {offset} mm"
 
 
-def turn(*marked: Sequence[float] | Array, samples: int = 720) -> Array:
-    """Return crank angles, rad, over a turn, with those marked just before and just after: jumps stay upright."""
-    around = [np.mod(np.asarray(angles) + side, 2.0 * np.pi) for angles in marked for side in (-1e-9, 1e-9)]
-    return np.unique(np.concatenate([np.linspace(0.0, 2.0 * np.pi, samples + 1), *around]))
+def turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
+    """Return crank angles, rad, over a turn or two, with those marked just before and just after: jumps stay upright.
+
+    samples: of a turn. What is marked on one turn is so on each.
+    """
+    every = [np.asarray(angles) + number * _TURN for angles in marked for number in range(turns)]
+    around = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]
+    return np.unique(np.concatenate([np.linspace(0.0, turns * _TURN, turns * samples + 1), *around]))

@@ -11,6 +11,7 @@ from rich.console import Console
 from ....model.cycle.several import members, whole_breakpoints, whole_curves, whole_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
 from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
@@ -101,7 +102,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return torque, shaking force and shaking moment of the whole over a turn, with the torque of each cylinder."""
-    theta = turn(whole_breakpoints(mechanism, linkage))
+    theta = turn(whole_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
     degrees, now = np.degrees(theta), whole_curves(mechanism, linkage, theta)
     each = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(now.torques)]
     together = Line("together", degrees, now.torque)

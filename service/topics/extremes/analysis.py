@@ -10,6 +10,7 @@ from rich.console import Console
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
@@ -117,7 +118,9 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]
-    theta = turn(cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)])
+    theta = turn(
+        cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)], turns=cycle_turns(mechanism)
+    )
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)

@@ -15,6 +15,7 @@ from ....model.cycle.locked_angles import verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
@@ -113,7 +114,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     smooth = replace(mechanism, friction=Friction())
     found = verdict(mechanism, linkage)
     ends = [end for span in found.locked for end in span]
-    theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends)
+    turns = cycle_turns(mechanism)
+    theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends, turns=turns)
     degrees = np.degrees(theta)
     with_it, without = (cycle(each, linkage, theta) for each in (mechanism, smooth))
     margin = float(np.degrees(found.margin))

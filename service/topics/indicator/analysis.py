@@ -14,6 +14,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...text import tables as text
 
@@ -76,7 +77,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_of(mechanism)):
         events = [angle for angle in valve_events(mechanism, linkage, load) if angle is not None]
-        theta = turn(np.array(linkage.dead_centre_angles), events)
+        theta = turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)
         # Closed: the diagram ends where it began.
         volume, pressure = (_CM3 * np.append(curve.volume, curve.volume[0]), _BAR * curve.pressure)

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
@@ -112,7 +113,7 @@ def _text(value: float | None) -> str:
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Sheet:
     """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
-    degrees = np.degrees(np.mod(measured.crank_angle, 2.0 * np.pi))
+    degrees = np.degrees(np.mod(measured.crank_angle, cycle_turns(mechanism) * 2.0 * np.pi))
     panels = tuple(
         _panel(found, _curves(mechanism, linkage, found), degrees, measured.values[found.name])
         for found in deviations(mechanism, linkage, measured.crank_angle, measured.values)
@@ -125,8 +126,9 @@ def _curves(mechanism: Mechanism, linkage: Linkage, found: Deviation) -> list[Li
     """Return the computed curve, and where there is a fit, the same where the samples would then lie."""
 
     def line(style: int, angle: float, value: float) -> Line:
-        theta = turn(cuts_of(mechanism, linkage) - angle)
-        at = np.mod(theta + angle, 2.0 * np.pi)
+        turns = cycle_turns(mechanism)
+        theta = turn(cuts_of(mechanism, linkage) - angle, turns=turns)
+        at = np.mod(theta + angle, turns * 2.0 * np.pi)
         (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == found.name)
         return Line("", np.degrees(theta), found.shown.factor * (curve - value), style=style)
 

@@ -17,6 +17,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import require_one_cylinder
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.peaks import find_peaks
 from ....model.signals.signals import Signal
@@ -97,7 +98,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return torque, power and reflected inertia over the cycle; no torque and power where friction locks."""
     design = row_of(linkage)
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
-    theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage))
+    turns = cycle_turns(mechanism)
+    theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns)
     degrees, torque = np.degrees(theta), cycle(mechanism, linkage, theta).torque
     averages = average_torque(mechanism, design)
     rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed)

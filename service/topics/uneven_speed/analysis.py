@@ -14,6 +14,7 @@ from ....model.cycle.pace import pace_knots
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.transient.uneven import uneven_curves, uneven_cycle
 from ...figures.sheets import DASHED, Line, Sheet, over_turn, turn
 from ...text import tables as text
@@ -96,7 +97,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return speed, torque and shaking force over a turn, at the profile and at constant speed."""
     _require(mechanism)
-    theta = turn(breakpoints(mechanism, linkage), np.mod(pace_knots(mechanism), 2.0 * np.pi))
+    knots = np.mod(pace_knots(mechanism), 2.0 * np.pi)
+    theta = turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
     degrees = np.degrees(theta)
     now, even = (uneven_curves(each, linkage, theta) for each in (mechanism, replace(mechanism, speed_profile=None)))
 
