@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .equation import TURN, Array
+from .equation import Array
 
 if TYPE_CHECKING:
     from .turn import Guess, PeriodicTurn
@@ -107,7 +107,7 @@ def _running(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> t
 
     def late(log: float) -> float:
         period = float(np.sum(weights * np.sqrt(0.5 * total / (math.exp(log) + nodes))))
-        return period * speed / TURN - 1.0
+        return period * speed / turn.equation.period - 1.0
 
     size = float(nodes.max()) + 0.5 * speed**2 * float(total.max())
     low, high = math.log(_STOPS * size), math.log(2.0 * size)

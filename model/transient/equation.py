@@ -108,7 +108,49 @@ def _terms(
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
 
-class Stretch:
+class Span:
+    """A part of the cycle on which every term is smooth: from `low` to `high`, rad."""
+
+    low: float
+    high: float
+
+    def at(self, crank_angle: Array) -> Terms:
+        """Return the terms at crank angles (n,), rad."""
+        raise NotImplementedError
+
+
+class Equation:
+    """An equation of motion over a cycle of the crank.
+
+    direction: +1 or -1, the way the motor turns it. period: crank angle of the cycle, rad. dead_centres: (k,), rad.
+    crowds: whether its curves are steep where those of one linkage are (`segments.crowding`).
+    """
+
+    direction: float
+    period: float = TURN
+    dead_centres: Array
+    crowds: bool = True
+
+    def turn(self, way: float) -> list[Span]:
+        """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or not."""
+        raise NotImplementedError
+
+    def inertia(self, crank_angle: Array) -> Array:
+        """Return the moving inertia, kg m^2; shape of the crank angle."""
+        raise NotImplementedError
+
+    def require_inertia(self, added: float) -> None:
+        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive."""
+        angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
+        inertia = self.inertia(angles) + added
+        if not inertia.min() > 1e-6 * inertia.max():
+            raise InputError(
+                "forward dynamics needs an inertia at every crank angle, also at the dead centres where the slider "
+                f"stands; got {inertia.min():.3g} kg m^2 at least; give the crank a mass, or the drive a flywheel"
+            )
+
+
+class Stretch(Span):
     """The crank turning one way between two breakpoints, `low` and `high`, rad; way: +1 or -1."""
 
     def __init__(self, equation: CrankEquation, low: float, high: float, way: float) -> None:
@@ -128,7 +170,7 @@ class Stretch:
         return Terms(*out)
 
 
-class CrankEquation:
+class CrankEquation(Equation):
     """The equation of motion of one fully turning linkage.
 
     marks: further crank angles, rad, that shall be breakpoints. breakpoints: (n,), ascending in [0, 2 pi), rad.
@@ -152,7 +194,7 @@ class CrankEquation:
                 if load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
         self.block = np.hstack([derived(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
-        self.dead_centres = linkage.dead_centre_angles
+        self.dead_centres = np.asarray(linkage.dead_centre_angles)
         self.breakpoints = self._breakpoints(marks)
         self._stretches: dict[tuple[int, float], Stretch] = {}
 
@@ -173,7 +215,7 @@ class CrankEquation:
             self._stretches[index, way] = Stretch(self, low, high, way)
         return self._stretches[index, way]
 
-    def turn(self, way: float) -> list[Stretch]:
+    def turn(self, way: float) -> list[Span]:
         """Return the stretches of one turn in the order in which the crank passes them, counter-clockwise or not."""
         order = range(len(self.breakpoints))
         return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
@@ -189,13 +231,3 @@ class CrankEquation:
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         return np.asarray(height_energy(sine, cosine, design_motion(sine, cosine, d), d))
-
-    def require_inertia(self, added: float) -> None:
-        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive."""
-        angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
-        inertia = self.inertia(angles) + added
-        if not inertia.min() > 1e-6 * inertia.max():
-            raise InputError(
-                "forward dynamics needs an inertia at every crank angle, also at the dead centres where the slider "
-                f"stands; got {inertia.min():.3g} kg m^2 at least; give the crank a mass, or the drive a flywheel"
-            )

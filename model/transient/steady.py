@@ -12,19 +12,20 @@ from ..machine.dissipation import works_over_a_turn
 from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
 from ..machine.mechanism import Mechanism
 from .energy_integral import coasting, cut_where_least, graded
-from .equation import TURN, Array, CrankEquation
+from .equation import TURN, Array
 from .forward import drive_of
+from .shaft import equation_of
 from .turn import Guess, PeriodicTurn, Profile, Torque
 
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyRunning:
-    """One turn of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
+    """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
 
     crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: on the crank, N m,
     counter-clockwise. torque: what the mechanism takes of it. mean_speed: 2 pi / period, with its sign. work: of the
     motor per turn, J. inertia: of flywheel and motor at the crank, kg m^2. memory: what is left after a turn of a small
-    change of w^2 (below 1: stable; 1: any speed is kept, because nothing depends on it).
+    change of w^2 (below 1: stable; 1: any speed is kept, because nothing depends on it). turns: of the cycle.
     """
 
     crank_angle: Array
@@ -37,6 +38,7 @@ class SteadyRunning:
     work: float
     inertia: float
     memory: float
+    turns: int = 1
 
     @property
     def period(self) -> float:
@@ -50,10 +52,10 @@ class SteadyRunning:
 
 
 class Runner:
-    """Steady running of one linkage for any flywheel and motor."""
+    """Steady running of one linkage, or of several cylinders, for any flywheel and motor."""
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
-        self.equation = CrankEquation(mechanism, linkage)
+        self.equation = equation_of(mechanism, linkage)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
@@ -192,11 +194,12 @@ def _no_motor(speed: Array) -> tuple[Array, Array]:
 
 
 def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
+    whole = turn.equation.period
     pace = turn.way / np.sqrt(2.0 * profile.energy)
     times, _ = turn.integral(pace)
     panels = [_points(turn, profile, pace, float(times[p]), p) for p in range(len(times))]
     period = float(turn.width @ (pace @ turn.weights))
-    end = panels[0][:1] + np.array([[turn.way * TURN, period, 0.0, 0.0]])
+    end = panels[0][:1] + np.array([[turn.way * whole, period, 0.0, 0.0]])
     angle, time, energy, acceleration = np.concatenate([*panels, end]).T
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
@@ -208,10 +211,11 @@ def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float)
         acceleration=acceleration,
         motor_torque=torque,
         torque=torque - inertia * acceleration,
-        mean_speed=turn.way * TURN / period,
-        work=float(turn.width @ (at_nodes @ turn.weights)),
+        mean_speed=turn.way * whole / period,
+        work=float(turn.width @ (at_nodes @ turn.weights)) * (TURN / whole),
         inertia=inertia,
         memory=profile.memory,
+        turns=round(whole / TURN),
     )
 
 

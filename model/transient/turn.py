@@ -1,4 +1,4 @@
-"""One turn of steady running as a boundary-value problem, solved by collocation.
+"""One cycle of steady running, a turn or two, as a boundary-value problem, solved by collocation.
 
 With the crank angle as the variable and E = w^2 / 2 the equation of motion
 
@@ -24,7 +24,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..dynamics.segments import crowded, crowding, uncrowded
-from .equation import TURN, Array, CrankEquation, Terms
+from .equation import TURN, Array, Equation, Terms
 
 _NODES = 16
 _PANELS = 40
@@ -55,14 +55,14 @@ class Profile:
 
 
 class PeriodicTurn:
-    """Terms of the equation of motion on the nodes of a turn, in the order of the crank's passage.
+    """Terms of the equation of motion on the nodes of a cycle, of a turn or two, in the order of the crank's passage.
 
     angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
     cuts: crank angles, rad, at which panels end besides.
     """
 
     def __init__(
-        self, equation: CrankEquation, dimensions: tuple[float, float, float], cuts: tuple[float, ...] = ()
+        self, equation: Equation, dimensions: tuple[float, float, float], cuts: tuple[float, ...] = ()
     ) -> None:
         self.equation, self.dimensions, self.cuts = equation, dimensions, cuts
         self.way = equation.direction
@@ -71,7 +71,7 @@ class PeriodicTurn:
         self._series = np.linalg.inv(legendre.legvander(nodes, _NODES - 1))
         self._integral = legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5
         self.sums = legendre.legval(nodes, self._integral).T @ self._series
-        kappa = crowding(*dimensions)
+        kappa = crowding(*dimensions) if equation.crowds else 1.0
         low, width, angle, terms = [], [], [], []
         for stretch in equation.turn(self.way):
             first, last = crowded(stretch.low, kappa), crowded(stretch.high, kappa)
@@ -91,7 +91,7 @@ class PeriodicTurn:
 
     def mean(self, values: Array) -> float:
         """Return the mean over crank angle of values on the nodes."""
-        return float(np.abs(self.width) @ (values @ self.weights)) / TURN
+        return float(np.abs(self.width) @ (values @ self.weights)) / self.equation.period
 
     def integral(self, values: Array) -> tuple[Array, Array]:
         """Return the integral over crank angle from the start of the turn: at the panels' starts and on the nodes."""
@@ -178,7 +178,7 @@ class PeriodicTurn:
                 by_torque_too = moved[..., 2] + moved[..., 1] * maps[:, 2, None]
                 period = float(np.sum(np.abs(self.width)[:, None] * self.weights / np.sqrt(2.0 * energy)))
                 matrix = [[1.0 - by_start, -by_added], [np.sum(flow * nodes[1]), np.sum(flow * by_torque_too)]]
-                side = [offset, period - TURN / abs(mean_speed) - np.sum(flow * nodes[0])]
+                side = [offset, period - self.equation.period / abs(mean_speed) - np.sum(flow * nodes[0])]
                 change, more = (float(value) for value in np.linalg.solve(matrix, side))
             if not (math.isfinite(change) and math.isfinite(more)):
                 return None

@@ -133,7 +133,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Sheet:
 
 
 def in_order(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the crank angles of steady running, deg, from 0 to 360, and columns of it by them."""
-    angle = np.degrees(running.crank_angle) % 360.0
+    """Return the crank angles of steady running, deg, from 0 to 360 or 720, and columns of it by them."""
+    angle = np.degrees(running.crank_angle) % (360.0 * running.turns)
     order = np.argsort(angle, kind="stable")
     return angle[order], [column[order] for column in columns]

@@ -1,0 +1,93 @@
+"""The equation of motion of a crankshaft: of several cylinders, or of a cycle of two turns.
+
+Each cylinder is a machine of its own at its crank angle, and a cycle of two turns two machines (`machine.two_turns`).
+Moving inertia, and every term of the torque, add up.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from ..cycle.several import Member, members
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.mechanism import Mechanism
+from ..machine.two_turns import cycle_turns, half_at, halves
+from .equation import NEAREST, TURN, Array, CrankEquation, Equation, Span, Stretch, Terms
+
+
+class ShaftStretch(Span):
+    """The shaft turning one way between two breakpoints, `low` and `high`, rad: a stretch of each cylinder.
+
+    parts: each with the angle of its crank over the shaft's, rad.
+    """
+
+    def __init__(self, low: float, high: float, parts: list[tuple[Stretch, float]]) -> None:
+        self.low, self.high, self._parts = low, high, parts
+
+    def at(self, crank_angle: Array) -> Terms:
+        """Return the terms at crank angles (n,) of the shaft, rad."""
+        found = [stretch.at(crank_angle + lead) for stretch, lead in self._parts]
+        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in found), strict=True)
+        return Terms(*(np.sum(column, axis=0) for column in columns))
+
+
+class ShaftEquation(Equation):
+    """The equation of motion of all cylinders of one linkage each, over a turn or two.
+
+    Raises AssemblyError if the linkage does not turn fully, InputError for a mechanism with friction.
+    """
+
+    def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
+        self._linkage = single(mechanism, linkage)
+        turns = cycle_turns(mechanism)
+        self.period = turns * TURN
+        self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
+        alone = Member(mechanism, 0.0, 0.0, 0.0)
+        self._members = (alone,) if mechanism.arrangement is None else members(mechanism)
+        self._equations = [
+            [CrankEquation(half, self._linkage) for half in (halves(own.mechanism) if turns > 1 else (own.mechanism,))]
+            for own in self._members
+        ]
+        ends = np.asarray(self._linkage.dead_centre_angles)
+        self.dead_centres = np.concatenate([ends - own.lead for own in self._members])
+        self.crowds = all(math.remainder(own.lead, math.pi) == 0.0 for own in self._members)
+        parts = zip(self._members, self._equations, strict=True)
+        once = np.concatenate([each.breakpoints - own.lead for own, equations in parts for each in equations])
+        every = np.sort(np.mod(np.concatenate([once + turn * TURN for turn in range(turns)]), self.period))
+        apart = np.diff(every, prepend=every[-1] - self.period) > NEAREST
+        self.breakpoints = every[apart] if apart.any() else every[:1]
+
+    def turn(self, way: float) -> list[Span]:
+        """Return the stretches of the cycle in the order in which the shaft passes them, counter-clockwise or not."""
+        ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
+        found: list[Span] = [self._stretch(low, high, way) for low, high in itertools.pairwise(ends)]
+        return found if way > 0.0 else found[::-1]
+
+    def _stretch(self, low: float, high: float, way: float) -> ShaftStretch:
+        middle, parts = 0.5 * (low + high), []
+        for own, equations in zip(self._members, self._equations, strict=True):
+            at, half = middle + own.lead, 0
+            if len(equations) > 1:
+                inner, outer = self._linkage.dead_centre_angles
+                half = int(half_at(own.mechanism, inner, outer, np.array(at)))
+            cuts = equations[half].breakpoints
+            local = float(cuts[0]) + (at - float(cuts[0])) % TURN
+            index = int(np.searchsorted(cuts, local, side="right")) - 1
+            parts.append((equations[half].stretch(index, way), own.lead + local - at))
+        return ShaftStretch(low, high, parts)
+
+    def inertia(self, crank_angle: Array) -> Array:
+        """Return the moving inertia of all cylinders, kg m^2; shape of the crank angle."""
+        parts = zip(self._members, self._equations, strict=True)
+        return np.asarray(sum(equations[0].inertia(crank_angle + own.lead) for own, equations in parts))
+
+
+def equation_of(mechanism: Mechanism, linkage: Linkage) -> Equation:
+    """Return the equation of motion of a machine: of its crank, or of a shaft with cylinders or two turns."""
+    cylinders = 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
+    several = cylinders > 1 or cycle_turns(mechanism) > 1
+    return ShaftEquation(mechanism, linkage) if several else CrankEquation(mechanism, linkage)
