@@ -22,6 +22,7 @@ from slidercrank.service.topics.extremes import analysis as extremes
 from slidercrank.service.topics.friction import analysis as friction
 from slidercrank.service.topics.indicator import analysis as indicator
 from slidercrank.service.topics.motor import analysis as motor
+from slidercrank.service.topics.static_forces import analysis as static_forces
 from slidercrank.service.topics.uneven_speed import analysis as uneven_speed
 
 LINKAGE = Linkage(0.043, 0.15, 0.005)
@@ -43,12 +44,13 @@ ROWS = Arrangement(phases=(0.0, math.pi, 3.0 * math.pi, 2.0 * math.pi), places=(
     [
         (extremes.figure, MACHINE),
         (motor.figure, MACHINE),
+        (static_forces.figure, MACHINE),
         (friction.figure, Mechanism(speed=300.0, slider_mass=0.5, loads=(ENGINE,), friction=Friction(guide=0.05))),
         (uneven_speed.figure, Mechanism(speed=300.0, loads=(ENGINE,), speed_profile=Harmonics(cosines=(0.02,)))),
         (cylinders.figure, Mechanism(speed=300.0, slider_mass=0.5, loads=(ENGINE,), arrangement=ROWS)),
         (indicator.figure, MACHINE),
     ],
-    ids=["extremes", "motor", "friction", "uneven_speed", "cylinders", "indicator"],
+    ids=["extremes", "motor", "static_forces", "friction", "uneven_speed", "cylinders", "indicator"],
 )
 def test_every_topic_draws_both_turns(figure: Callable[[Mechanism, Linkage], Sheet], machine: Mechanism) -> None:
     panels = [panel for panel in figure(machine, LINKAGE).panels if panel.turns]

@@ -17,6 +17,7 @@ from ....model.machine.links import Counterweight, RigidLink
 from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, lengths, over_turn
 from ...text.tables import print_table, table
@@ -61,7 +62,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     torque, guide = peak(machine, Signal.TORQUE, linkage), peak(machine, Signal.GUIDE_FORCE, linkage)
     rod = peak(machine, Signal.SLIDER_PIN_FORCE, linkage)
     rate = peak(replace(machine, speed=1.0), Signal.SLIDER_SPEED, linkage)
-    degrees = np.arange(0, 360, _STEP)
+    degrees = np.arange(0, 360 * cycle_turns(machine), _STEP)
     loads = cycle(machine, linkage, np.radians(degrees)).load
     at = static_forces(linkage, np.radians(degrees), load=loads)
     advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
@@ -117,8 +118,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> Sheet:
     """Return forces, torque and mechanical advantage over the cycle; load as in `numbers`."""
-    theta = np.linspace(0.0, 2.0 * math.pi, 721)
-    at = static_forces(linkage, theta, load=cycle(massless(mechanism, load), linkage, theta).load)
+    machine = massless(mechanism, load)
+    turns = cycle_turns(machine)
+    theta = np.linspace(0.0, turns * 2.0 * math.pi, turns * 720 + 1)
+    at = static_forces(linkage, theta, load=cycle(machine, linkage, theta).load)
     degrees = np.degrees(theta)
     advantage = np.where(at.mechanical_advantage <= _MOST_ADVANTAGE, at.mechanical_advantage, np.nan)
     forces = (
