@@ -49,9 +49,15 @@ def require_loads(mechanism: Mechanism) -> None:
             )
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre"):
+            instead = "zero crank angle" if load.enters is Enters.ANGLE_TABLE else "the crank pivot"
             raise InputError(
                 f"a load is measured from the {datum} of a full turn, which a swing need not have; "
-                "measure it from the crank pivot, or leave it out"
+                f"measure it from {instead}, or leave it out"
+            )
+        if load.cycle_turns > 1:
+            raise InputError(
+                "a cycle of 720 deg is of a crank that turns through; got a load with one, and a swing; state the load "
+                "over 360 deg, or leave it out"
             )
 
 

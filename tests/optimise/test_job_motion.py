@@ -84,6 +84,22 @@ def test_a_swing_is_read_with_its_margin() -> None:
             {"load": [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "0 N"], "measured_from": "inner dead centre"}]},
             "measure it from the crank pivot",
         ),
+        (
+            {"load": [{"torque_angles": ["0 deg", "9 deg"], "torques": ["1 N m", "0 N m"], "cycle": "720 deg"}]},
+            "a cycle of 720 deg is of a crank that turns through",
+        ),
+        (
+            {
+                "load": [
+                    {
+                        "crank_angles": ["0 deg", "9 deg"],
+                        "forces": ["1 N", "0 N"],
+                        "measured_from": "outer dead centre",
+                    }
+                ]
+            },
+            "measure it from zero crank angle",
+        ),
         ({"load": [{"bore": "50 mm", "suction": "1 bar", "discharge": "5 bar"}]}, "between the dead centres of a full"),
         (
             {"mechanism": JOB["mechanism"] | {"cylinders": {"phases": ["0 deg", "180 deg"]}}},
