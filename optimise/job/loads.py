@@ -1,4 +1,4 @@
-"""The loads on the slider in a job file, [[load]]: each a table as its kind of load declares it. Several add up."""
+"""The loads in a job file, [[load]]: each a table as its kind of load declares it. Several add up."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ class Job(Part):
         default=MotionPart(),
     )
     load: tuple[Load, ...] = optional(
-        "loads on the slider along its line; several add up",
+        "loads on the slider along its line, or on the crank; several add up",
         [{"force": "200 N", "opposes": "outward stroke"}],
         default=(),
         max_length=50,
