@@ -8,10 +8,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..dynamics.contact import cut_contacts, rubs, sides_of
+from ..dynamics.breakpoints import breakpoints_of
+from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for
+from ..dynamics.segments import Watch, enter, load_on_slider
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
@@ -157,9 +158,10 @@ def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) of one fully turning linkage at which a load has kinks or jumps."""
     require_one_turn(mechanism, "a swing")
     loads = load_structure(mechanism)
-    block, out = _block(mechanism, linkage, loads), np.empty(room_for(loads))
+    block = _block(mechanism, linkage, loads)
     block[_SPEED] = 0.0  # valves open in both senses of rotation
-    return out[: _breakpoints(block, loads, watch_of(mechanism, Signal.TORQUE), out, False)]
+    found = breakpoints_of(block[None], loads, watch_of(mechanism, Signal.TORQUE), rubbing=False)
+    return found.angle[0, : found.many[0]]
 
 
 def _block(mechanism: Mechanism, linkage: Linkage, loads: Loads) -> Table:
@@ -167,20 +169,6 @@ def _block(mechanism: Mechanism, linkage: Linkage, loads: Loads) -> Table:
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     block: Table = derived(raw, loads)[0][0]
     return block
-
-
-@kernel
-def _breakpoints(block: Table, loads: Loads, watch: Watch, out: Row, rubbing: bool) -> int:
-    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    d = design_at(block, 0)
-    room = room_for(loads)
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
-    count = cut_cycle(d, block, 0, loads, watch, cuts)
-    if rubbing:
-        count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
-    for i in range(count):
-        out[i] = cuts.angle[i]
-    return count
 
 
 def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
@@ -201,6 +189,6 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
             f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
             "lengthen the rod, or reduce the offset or the friction"
         )
-    out = np.empty(room_for(loads))
-    count = _breakpoints(derived(raw, loads)[0][0], loads, watch_of(mechanism, Signal.TORQUE), out, rubs(mechanism))
-    return out[:count]
+    watch = watch_of(mechanism, Signal.TORQUE)
+    cuts = breakpoints_of(derived(raw, loads)[0], loads, watch, rubbing=rubs(mechanism))
+    return cuts.angle[0, : cuts.many[0]]

@@ -1,15 +1,24 @@
-"""Answers about a machine, kept while the same one is asked about."""
+"""Answers about a machine, and about designs of it, kept while the same ones are asked about."""
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable
 from functools import wraps
+from threading import Lock
 from typing import Concatenate, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .mechanism import Mechanism
 
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
+Array = NDArray[np.float64]
+
+_BATCHES = 4
+_LARGEST = 512  # designs of a batch: the chunks of kernels, see `batches.in_chunks`
 
 
 def remembered(
@@ -32,5 +41,35 @@ def remembered(
         if key not in answers:
             answers[key] = function(mechanism, *given, **named)
         return answers[key]
+
+    return known
+
+
+def remembered_batch(
+    function: Callable[Concatenate[Mechanism, Array, Given], Answer],
+) -> Callable[Concatenate[Mechanism, Array, Given], Answer]:
+    """Keep what a function says of the last few batches of designs (n, 3 + k): several quantities ask for the same.
+
+    Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
+    """
+    kept: OrderedDict[object, tuple[Mechanism, Answer]] = OrderedDict()
+    lock = Lock()
+
+    @wraps(function)
+    def known(mechanism: Mechanism, designs: Array, /, *given: Given.args, **named: Given.kwargs) -> Answer:
+        if len(designs) > _LARGEST:
+            return function(mechanism, designs, *given, **named)
+        key = (id(mechanism), designs.shape, designs.tobytes(), given, *named.items())
+        with lock:
+            found = kept.get(key)
+            if found is not None:
+                kept.move_to_end(key)
+                return found[1]
+        answer = function(mechanism, designs, *given, **named)
+        with lock:
+            kept[key] = mechanism, answer  # held, so that no other machine gets its number
+            while len(kept) > _BATCHES:
+                kept.popitem(last=False)
+        return answer
 
     return known

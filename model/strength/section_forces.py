@@ -22,7 +22,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..dynamics.rubbing import joint_forces
+from ..dynamics.torque import Forces
 from ..kernel.arithmetic import analytic, inverse, root
 from ..kinematics.position import Motion
 from ..machine.design import Design
@@ -52,28 +52,27 @@ def stress_along(
     cosine: Any,
     m: Motion,
     d: Design,
-    load: Any,
-    sides: Any,
+    f: Forces,
+    turn: Any,
     width: Any,
     depth: Any,
     density: Any,
 ) -> Stress:
-    """Return the `Stress` of the rod (`ROD`) or the crank for a load on the slider (N, outward)."""
-    f = joint_forces(sine, cosine, m, d, load, sides)
+    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces. turn: of `rubbing.Sides`."""
     w2 = d.speed * d.speed
     pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - d.gravity_x
     pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - d.gravity_y
-    couple = d.crank_pin_circle * sides.turn * root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+    couple = d.crank_pin_circle * turn * root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
     if part == ROD:
         length, per = d.l, inverse(d.l)
         tx, ty = m.along * per, m.across * per
         fx, fy = f.crank_pin_x, f.crank_pin_y
-        spin, turn = m.rod_1 * m.rod_1 * w2, m.rod_2 * w2 + m.rod_1 * d.acceleration
+        spin, spun = m.rod_1 * m.rod_1 * w2, m.rod_2 * w2 + m.rod_1 * d.acceleration
     else:
         length = 1.0 * d.r
         tx, ty = -cosine + 0.0 * d.r, -sine + 0.0 * d.r
         fx, fy, couple = -f.crank_pin_x, -f.crank_pin_y, -couple
-        spin, turn = w2 + 0.0 * d.r, d.acceleration + 0.0 * d.r
+        spin, spun = w2 + 0.0 * d.r, d.acceleration + 0.0 * d.r
     along, across = pin_x * tx + pin_y * ty, pin_y * tx - pin_x * ty
     force_t, force_n = fx * tx + fy * ty, fy * tx - fx * ty
     web = density * depth * width * length
@@ -86,10 +85,10 @@ def stress_along(
         (along * cap + spin * first - force_t) * of_force,
         along * web * of_force,
         -0.5 * spin * web * length * of_force,
-        (2.0 * turn * second - across * first - couple) * of_moment,
-        (force_n - across * cap + 2.0 * turn * first) * length * of_moment,
+        (2.0 * spun * second - across * first - couple) * of_moment,
+        (force_n - across * cap + 2.0 * spun * first) * length * of_moment,
         -0.5 * across * web * length * of_moment,
-        (-1.0 / 6.0) * turn * web * length * length * of_moment,
+        (-1.0 / 6.0) * spun * web * length * length * of_moment,
     )
 
 

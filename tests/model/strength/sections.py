@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from slidercrank.model.cycle.cycle import cycle, design_of
-from slidercrank.model.dynamics.rubbing import Sides
+from slidercrank.model.dynamics.torque import forces
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar
@@ -77,7 +77,7 @@ def section_stress(mechanism: Mechanism, part: str, linkage: Linkage, theta: Arr
     on_far = force - far
     couple = moment - (length - x) * (far * n).sum(axis=0) - (0.0 if held is None else held)
     normal, bending = -(on_far * t).sum(axis=0), -couple  # on the near part
-    stress: Array = normal / (bar.width * bar.depth) - face * 6.0 * bending / (bar.depth * bar.width**2)
+    stress: Array = normal / (bar.width * bar.depth) + face * 6.0 * bending / (bar.depth * bar.width**2)
     return stress
 
 
@@ -87,15 +87,14 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     load = cycle(mechanism, linkage, theta).load
     design = design_of(mechanism, linkage)
     moved = motion(np.sin(theta), np.cos(theta), design.r, design.l, design.e, design.branch)
-    none = Sides(0.0, 0.0, 0.0, 0.0)
     c = stress_along(
         ROD if part == "rod" else CRANK,
         np.sin(theta),
         np.cos(theta),
         moved,
         design,
-        load,
-        none,
+        forces(np.sin(theta), np.cos(theta), moved, design, load),
+        0.0,
         bar.width,
         bar.depth,
         bar.density,

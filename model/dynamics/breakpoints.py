@@ -1,0 +1,60 @@
+"""Breakpoints of many designs: where the cycle of each is cut into segments on which every curve is smooth."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
+from ..machine.design import design_at
+from ..machine.raw import Loads
+from .contact import cut_contacts
+from .rubbing import always_drives
+from .segments import Cuts, Watch, cut_cycle, room_for
+
+Array = NDArray[np.float64]
+
+
+class Breakpoints(NamedTuple):
+    """Breakpoints (n, k) of n designs in ascending crank angle, the first `many` (n,) of each; see `segments.Cuts`.
+
+    Where friction locks a design there are none.
+    """
+
+    angle: Table
+    code: IntegerTable
+    number: Table
+    load: IntegerTable
+    many: Integers
+
+
+@kernel
+def _cut(blocks: Cube, loads: Loads, watch: Watch, found: Breakpoints, rubbing: bool) -> None:
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    for n in range(blocks.shape[0]):
+        block = blocks[n]
+        d = design_at(block, 0)
+        found.many[n] = 0
+        if rubbing and not always_drives(d) > 0.0:
+            continue
+        cuts = Cuts(found.angle[n], found.code[n], found.number[n], found.load[n])
+        count = cut_cycle(d, block, 0, loads, watch, cuts)
+        if rubbing:
+            count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
+        found.many[n] = count
+
+
+def breakpoints_of(blocks: Array, loads: Loads, watch: Watch, *, rubbing: bool) -> Breakpoints:
+    """Return the breakpoints of designs by their blocks (n, rows, 1), each turning fully."""
+    shape = len(blocks), room_for(loads)
+    found = Breakpoints(
+        np.empty(shape),
+        np.empty(shape, np.int64),
+        np.empty(shape),
+        np.empty(shape, np.int64),
+        np.empty(len(blocks), np.int64),
+    )
+    _cut(blocks, loads, watch, found, rubbing)
+    return found

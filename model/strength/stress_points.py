@@ -1,0 +1,269 @@
+"""Stress along crank and rod at many crank angles of many designs, with its derivatives: the one kernel of forces.
+
+What searches for the greatest stress (`stress_cycle`) needs no forces any more.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dynamics.breakpoints import Breakpoints, breakpoints_of
+from ..dynamics.contact import rubs, shift_of, sides_of
+from ..dynamics.rubbing import joint_forces
+from ..dynamics.segments import Cuts, Watch, crowded, crowding, enter, load_on_slider, uncrowded, within
+from ..kernel.arithmetic import STEP
+from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, seldom_kernel
+from ..machine.derived import derived
+from ..machine.design import design_at
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import Numbers, numbers_of
+from ..machine.raw import Loads, Raw
+from ..signals.signals import Signal, design_motion
+from ..signals.watch import inputs_of, watch_of
+from .section_forces import stress_along
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+ANGLES = 128
+"""Samples a turn, at least three a segment."""
+WIDE = 14
+"""Columns of a link: seven coefficients of its `Stress`, and their derivatives."""
+_TURN = 2.0 * math.pi
+_THIN = 1e-13  # rad: breakpoints closer than this are one
+_SLOTS = (*range(Raw.ROD_WIDTH, Raw.ROD_WIDTH + 3), *range(Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 3))
+
+
+class Points(NamedTuple):
+    """Crank angles of designs, p of them; all (p,).
+
+    which: number of the design. inside: an angle within the segment, which tells its pieces. angle: rad. column: of the
+    design's numbers, by which derivatives are wanted, -1 for those by the crank angle. cut: the breakpoint that the
+    angle is on, -1 for none.
+    """
+
+    which: Integers
+    inside: Row
+    angle: Row
+    column: Integers
+    cut: Integers
+
+
+class Samples(NamedTuple):
+    """Samples over the cycles of n designs, one design after the other.
+
+    start: (n + 1,), where each begins. theta: (s,), rad. first: (s,), whether a segment begins. segment: (s,).
+    stress: (s, 2 WIDE), of rod and crank.
+    """
+
+    start: Integers
+    theta: Row
+    first: Flags
+    segment: Integers
+    stress: Table
+
+
+@seldom_kernel
+def _stress(
+    blocks: Cube,
+    steps: ComplexCube,
+    sizes: Table,
+    turned: Table,
+    points: Points,
+    cuts: Breakpoints,
+    loads: Loads,
+    rubbing: bool,
+    out: Table,
+) -> None:
+    watch = Watch(0, 0.0, 1.0, False)
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    rows, nv = blocks.shape[1], turned.shape[0]
+    block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    last, last_column, last_inside, outward = -1, -2, 0.0, False
+    d = design_at(block, 0)
+    sides = sides_of(0.0, d, block, 0, outward, loads, piece, shift, False)
+    for p in range(points.which.shape[0]):
+        n, v, inside, angle = points.which[p], points.column[p], points.inside[p], points.angle[p]
+        if n != last:
+            for i in range(rows):
+                block[i, 0] = blocks[n, i, 0]
+            d = design_at(block, 0)
+        if n != last or inside != last_inside:
+            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
+            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+        if n != last or v != last_column:
+            for i in range(rows):
+                own[i, 0] = complex(block[i, 0], 0.0) if v < 0 else steps[n * nv + v, i, 0]
+        last, last_column, last_inside = n, v, inside
+        z = design_at(own, 0)
+        slip = STEP if v < 0 else 0.0
+        if v >= 0 and points.cut[p] >= 0:
+            mine = Cuts(cuts.angle[n], cuts.code[n], cuts.number[n], cuts.load[n])
+            slip = shift_of(z, own, d, block, angle, mine, points.cut[p], outward, loads, piece, shift, sides)
+        sine, cosine = math.sin(angle), math.cos(angle)
+        zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
+        m = design_motion(zs, zc, z)
+        load = load_on_slider(m, z, own, 0, complex(angle, slip), outward, loads, piece, shift)
+        f = joint_forces(zs, zc, m, z, load, sides)
+        for part in range(2):
+            w, t, rho = sizes[n, 3 * part], sizes[n, 3 * part + 1], sizes[n, 3 * part + 2]
+            if not w > 0.0:  # no bar
+                continue
+            zw, zt, z_rho = complex(w, 0.0), complex(t, 0.0), complex(rho, 0.0)
+            if v >= 0:
+                zw = complex(w, STEP * turned[v, 3 * part])
+                zt = complex(t, STEP * turned[v, 3 * part + 1])
+                z_rho = complex(rho, STEP * turned[v, 3 * part + 2])
+            c = stress_along(part, zs, zc, m, z, f, sides.turn, zw, zt, z_rho)
+            k = 2 * 7 * part
+            out[p, k], out[p, k + 7] = c.n0.real, c.n0.imag / STEP
+            out[p, k + 1], out[p, k + 8] = c.n1.real, c.n1.imag / STEP
+            out[p, k + 2], out[p, k + 9] = c.n2.real, c.n2.imag / STEP
+            out[p, k + 3], out[p, k + 10] = c.b0.real, c.b0.imag / STEP
+            out[p, k + 4], out[p, k + 11] = c.b1.real, c.b1.imag / STEP
+            out[p, k + 5], out[p, k + 12] = c.b2.real, c.b2.imag / STEP
+            out[p, k + 6], out[p, k + 13] = c.b3.real, c.b3.imag / STEP
+
+
+@seldom_kernel
+def _place(
+    designs: Table,
+    cuts: Breakpoints,
+    start: Integers,
+    theta: Row,
+    inside: Row,
+    first: Flags,
+    segment: Integers,
+    kappas: Row,
+) -> int:
+    """Sample every segment at crowded angles; return how many samples there are."""
+    total = 0
+    for n in range(designs.shape[0]):
+        start[n] = total
+        kappa = crowding(designs[n, 0], designs[n, 1], designs[n, 2])
+        kappas[n] = kappa
+        count = cuts.many[n]
+        for s in range(count):
+            a = cuts.angle[n, s]
+            b = cuts.angle[n, s + 1] if s + 1 < count else cuts.angle[n, 0] + _TURN
+            if b - a < _THIN:
+                continue
+            low, high = crowded(a, kappa), crowded(b, kappa)
+            points = max(3, int(ANGLES * (high - low) / _TURN) + 2)
+            for i in range(points):
+                angle = uncrowded(low + (high - low) * i / (points - 1), kappa)
+                theta[total] = a if i == 0 else b if i == points - 1 else angle
+                inside[total], first[total], segment[total] = within(a, b), i == 0, s
+                total += 1
+    start[designs.shape[0]] = total
+    return total
+
+
+@dataclass(frozen=True)
+class Field:
+    """Stress over the cycles of n designs: their samples, and what gives it at any crank angle.
+
+    kappa: (n,), of the crowded angle. locked: (n,), whether friction locks the design.
+    """
+
+    mechanism: Mechanism
+    numbers: Numbers
+    blocks: Array
+    sizes: Array
+    loads: Loads
+    cuts: Breakpoints
+    kappa: Array
+    samples: Samples
+
+    @property
+    def locked(self) -> NDArray[np.bool_]:
+        """Return whether friction locks a design, (n,)."""
+        none: NDArray[np.bool_] = self.cuts.many == 0
+        return none
+
+    def ends(self, which: Whole, segment: Whole) -> tuple[Array, Array]:
+        """Return where segments (p,) of designs (p,) begin and end, rad."""
+        angle, count = self.cuts.angle, self.cuts.many[which]
+        last = segment + 1 == count
+        return angle[which, segment], angle[which, np.where(last, 0, segment + 1)] + np.where(last, _TURN, 0.0)
+
+    def at(self, which: Whole, segment: Whole, angle: Array) -> Array:
+        """Return stress and its derivatives by the crank angle, (p, 2 WIDE)."""
+        begin, end = self.ends(which, segment)
+        none = np.full(len(which), -1)
+        points = Points(which, _inside(begin, end), angle, none, none)
+        return _at(self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism))
+
+    def slopes(self, which: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
+        """Return stress and its derivatives by the raw numbers of `numbers`, (p, c, 2 WIDE).
+
+        cut: (p,), the breakpoint with which the angle moves, -1 for none.
+        """
+        begin, end = self.ends(which, segment)
+        columns = self.numbers.columns
+        many = len(columns)
+        raw, _ = inputs_of(self.mechanism, Signal.CRANK_PIN_FORCE)
+        _, steps = derived(raw, self.loads, columns, self.numbers.values, steps=True)
+        turned = np.ascontiguousarray((columns[:, None] == np.array(_SLOTS)) * 1.0)
+        points = Points(
+            np.repeat(which, many),
+            np.repeat(_inside(begin, end), many),
+            np.repeat(angle, many),
+            np.tile(np.arange(many), len(which)),
+            np.repeat(cut, many),
+        )
+        found = _at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
+        return found.reshape(len(which), many, -1)
+
+
+def _inside(begin: Array, end: Array) -> Array:
+    """Return `within` of many segments."""
+    inside: Array = within(begin, end)  # type: ignore[arg-type, assignment]
+    return inside
+
+
+_NO_STEPS, _NO_TURN = np.zeros((0, 0, 1), np.complex128), np.zeros((0, len(_SLOTS)))
+
+
+def _at(
+    blocks: Array,
+    steps: NDArray[np.complex128],
+    sizes: Array,
+    turned: Array,
+    points: Points,
+    cuts: Breakpoints,
+    loads: Loads,
+    rubbing: bool,
+) -> Array:
+    out = np.zeros((len(points.which), 2 * WIDE))
+    _stress(blocks, steps, sizes, turned, points, cuts, loads, rubbing, out)
+    return out
+
+
+def field_of(mechanism: Mechanism, designs: Array) -> Field:
+    """Return the `Field` of designs (n, 3 + k), each turning fully."""
+    raw, loads = inputs_of(mechanism, Signal.CRANK_PIN_FORCE)
+    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=True)
+    values, n = numbers.values, len(designs)
+    blocks, _ = derived(raw, loads, numbers.columns, values)
+    sizes = np.empty((n, len(_SLOTS)))
+    for place, slot in enumerate(_SLOTS):
+        own = np.flatnonzero(numbers.columns == slot)
+        sizes[:, place] = values[:, own[0]] if len(own) else raw[slot]
+    cuts = breakpoints_of(blocks, loads, watch_of(mechanism, Signal.CRANK_PIN_FORCE), rubbing=rubs(mechanism))
+    room = (ANGLES + 8) * n + 4 * int(cuts.many.sum())
+    start, theta, inside = np.empty(n + 1, np.int64), np.empty(room), np.empty(room)
+    first, segment, kappa = np.empty(room, np.bool_), np.empty(room, np.int64), np.empty(n)
+    total = _place(np.ascontiguousarray(values[:, :3]), cuts, start, theta, inside, first, segment, kappa)
+    theta, inside, first, segment = theta[:total], inside[:total], first[:total], segment[:total]
+    none = np.full(total, -1)
+    which = np.repeat(np.arange(n), np.diff(start))
+    points = Points(which, inside, theta, none, none)
+    stress = _at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, rubs(mechanism))
+    samples = Samples(start, theta, first, segment, stress)
+    return Field(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)

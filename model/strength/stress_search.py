@@ -1,0 +1,279 @@
+"""Greatest combinations of stress among samples over the cycle, by polynomials between neighbours.
+
+Between two samples each coefficient of `section_forces.Stress` is the cubic that has its values and slopes at both. The
+greatest p sigma(xi, theta) - q sigma(xi, phi) of these is found for both crank angles in closed form, along the bar by
+secants. The nearer the samples, the nearer it is to that of the stress itself: off by the fourth power of the distance.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..kernel.arithmetic import analytic
+from ..kernel.kernel import Cube, Flags, Integers, IntegerTable, Row, Table, seldom_kernel
+
+STATIONS = 9
+"""Places along the bar at which samples are taken."""
+LISTED = 6
+"""Local maxima of a place's stress over the cycle."""
+_ITERATIONS = 60
+_SETTLED = 1e-11  # share of the length
+_TURN = 2.0 * math.pi
+_PLACE, _ANGLE = 1e-5, 1e-9  # share of the length, 1 - cosine of crank angles: maxima that near are one
+
+
+class Candidates(NamedTuple):
+    """Maxima to be climbed, c of them; all (c,), `at` (c, 2).
+
+    which: number of the design. face: number of the face. pull: number of the criterion. at: samples next to both crank
+    angles. share: place along the bar.
+    """
+
+    which: Integers
+    face: Integers
+    pull: Integers
+    at: IntegerTable
+    share: Row
+
+
+def room_for(count: int) -> Candidates:
+    """Return room for candidates."""
+    whole = [np.empty(count, np.int64) for _ in range(3)]
+    return Candidates(whole[0], whole[1], whole[2], np.empty((count, 2), np.int64), np.empty(count))
+
+
+def first_of(given: Candidates, count: int) -> Candidates:
+    """Return the first candidates."""
+    return Candidates(
+        given.which[:count], given.face[:count], given.pull[:count], given.at[:count], given.share[:count]
+    )
+
+
+@analytic
+def _along(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+    """Stress of a sample at a place; with a base 7 further its slope over the crank angle."""
+    axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
+    bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
+    return axial + face * (row[k, base + 3] + xi * bent)
+
+
+@analytic
+def _rising(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+    """Slope of `_along` over the place."""
+    axial = row[k, base + 1] + 2.0 * xi * row[k, base + 2]
+    return axial + face * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
+
+
+@analytic
+def _listed(row: Any, first: Any, begin: Any, count: Any, sign: Any, found: Any) -> int:
+    """List the highest local maxima of sign times a row of samples, ends of segments included; return how many."""
+    n = 0
+    for k in range(count):
+        value = sign * row[k]
+        left = -math.inf if first[begin + k] else sign * row[k - 1]
+        right = -math.inf if k + 1 == count or first[begin + k + 1] else sign * row[k + 1]
+        if value < left or value <= right or (n == LISTED and value <= sign * row[found[n - 1]]):
+            continue
+        i = min(n, LISTED - 1)
+        while i > 0 and sign * row[found[i - 1]] < value:
+            found[i] = found[i - 1]
+            i -= 1
+        found[i] = k
+        n = min(n + 1, LISTED)
+    return n
+
+
+@seldom_kernel
+def propose(
+    start: Integers,
+    first: Flags,
+    stress: Table,
+    base: int,
+    faces: Row,
+    criteria: Table,
+    near: float,
+    space: Table,
+    listed: IntegerTable,
+    best: Cube,
+    found: Candidates,
+) -> int:
+    """List the samples next to maxima less than `near` times the greatest below it; return how many.
+
+    stress: (s, 2 WIDE). base: first column of the link. criteria: (m, 2), p and q. space: (STATIONS, samples of a
+    design), listed: (2, LISTED), best: (faces, m, STATIONS), work space. found: with room for all that are possible.
+    """
+    total = 0
+    ups, downs = listed[0], listed[1]
+    for n in range(start.shape[0] - 1):
+        begin, count = start[n], start[n + 1] - start[n]
+        if count == 0:
+            continue
+        whole = -math.inf
+        for f in range(faces.shape[0]):
+            for j in range(STATIONS):
+                xi = j / (STATIONS - 1.0)
+                top, bottom = -math.inf, math.inf
+                for k in range(count):
+                    value = _along(stress, begin + k, base, faces[f], xi)
+                    top, bottom = max(top, value), min(bottom, value)
+                for g in range(criteria.shape[0]):
+                    best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
+                    whole = max(whole, best[f, g, j])
+        floor = whole - near * abs(whole)
+        for f in range(faces.shape[0]):
+            for g in range(criteria.shape[0]):
+                p, q = criteria[g, 0], criteria[g, 1]
+                for j in range(STATIONS):
+                    height = best[f, g, j]
+                    left = -math.inf if j == 0 else best[f, g, j - 1]
+                    right = -math.inf if j == STATIONS - 1 else best[f, g, j + 1]
+                    if height < left or height <= right or height < floor:
+                        continue
+                    row, xi = space[j], j / (STATIONS - 1.0)
+                    for k in range(count):
+                        row[k] = _along(stress, begin + k, base, faces[f], xi)
+                    high_count = low_count = 1
+                    ups[0] = downs[0] = 0
+                    for end in range(2):  # one place in the code: the compiler works out each anew
+                        if end == 0 and p > 0.0:
+                            high_count = _listed(row, first, begin, count, 1.0, ups)
+                        elif end == 1 and q > 0.0:
+                            low_count = _listed(row, first, begin, count, -1.0, downs)
+                    for pair in range(high_count * low_count):
+                        up, down = ups[pair // low_count], downs[pair % low_count]
+                        height = (p * row[up] if p > 0.0 else 0.0) - (q * row[down] if q > 0.0 else 0.0)
+                        if height < floor:
+                            continue
+                        found.which[total], found.face[total], found.pull[total] = n, f, g
+                        found.at[total, 0], found.at[total, 1] = begin + up, begin + down
+                        found.share[total] = xi
+                        total += 1
+    return total
+
+
+@seldom_kernel
+def climb(
+    theta: Row,
+    first: Flags,
+    stress: Table,
+    base: int,
+    faces: Row,
+    criteria: Table,
+    given: Candidates,
+    values: Row,
+    angles: Table,
+) -> None:
+    """Move candidates to the maxima that they are next to: values (c,), places and angles (c, 2) of them.
+
+    `given` is changed to them. Samples of other segments are not gone to.
+    """
+    last = theta.shape[0] - 1
+    for c in range(given.which.shape[0]):
+        face, p, q = faces[given.face[c]], criteria[given.pull[c], 0], criteria[given.pull[c], 1]
+        xi, lower, upper, ended = given.share[c], 0.0, 1.0, False
+        old_xi = old_slope = value = 0.0
+        for outer in range(_ITERATIONS):
+            slope = value = 0.0
+            for end in range(2):
+                weight = p if end == 0 else -q
+                if weight == 0.0:
+                    continue
+                sign = 1.0 if weight > 0.0 else -1.0
+                k, t = given.at[c, end], 0.0
+                for _ in range(_ITERATIONS):
+                    rate = sign * _along(stress, k, base + 7, face, xi)
+                    if rate > 0.0 and k < last and not first[k + 1]:
+                        if sign * _along(stress, k + 1, base + 7, face, xi) < 0.0:
+                            t = 1.0
+                            break
+                        k += 1
+                    elif rate < 0.0 and not first[k]:
+                        k -= 1
+                        if sign * _along(stress, k, base + 7, face, xi) > 0.0:
+                            t = 1.0
+                            break
+                    else:
+                        break
+                given.at[c, end] = k
+                f0, g0 = _along(stress, k, base, face, xi), _rising(stress, k, base, face, xi)
+                if t == 0.0:
+                    angles[c, end] = theta[k]
+                    value += weight * f0
+                    slope += weight * g0
+                    continue
+                h = theta[k + 1] - theta[k]
+                f1, g1 = _along(stress, k + 1, base, face, xi), _rising(stress, k + 1, base, face, xi)
+                s0, s1 = h * _along(stress, k, base + 7, face, xi), h * _along(stress, k + 1, base + 7, face, xi)
+                # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
+                a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
+                width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
+                t = min(1.0, max(0.0, 2.0 * s0 / (width - b)))
+                angles[c, end] = theta[k] + h * t
+                u = 1.0 - t
+                h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
+                value += weight * (h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1)
+                r0, r1 = h * _rising(stress, k, base + 7, face, xi), h * _rising(stress, k + 1, base + 7, face, xi)
+                slope += weight * (h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1)
+            if slope > 0.0:
+                lower = xi
+            elif slope < 0.0:
+                upper = xi
+            else:
+                break
+            if (xi == 0.0 and slope < 0.0) or (xi == 1.0 and slope > 0.0):
+                break
+            if outer == 0:
+                trial = xi + math.copysign(1e-3, slope)
+            elif slope != old_slope:
+                trial = xi - slope * (xi - old_xi) / (slope - old_slope)
+            else:
+                trial = 0.5 * (lower + upper)
+            if not lower < trial < upper:
+                if trial >= upper and upper == 1.0 and not ended:
+                    trial, ended = 1.0, True
+                elif trial <= lower and lower == 0.0 and not ended:
+                    trial, ended = 0.0, True
+                else:
+                    trial = 0.5 * (lower + upper)
+            old_xi, old_slope = xi, slope
+            if abs(trial - xi) < _SETTLED or upper - lower < _SETTLED:
+                break
+            xi = trial
+        values[c], given.share[c] = value, xi
+
+
+@seldom_kernel
+def choose(given: Candidates, criteria: Table, values: Row, angles: Table, kept: IntegerTable) -> None:
+    """Number the highest candidates of each design, each maximum once: kept (n, k), -1 beyond the last one."""
+    count = -1
+    for n in range(kept.shape[0]):
+        for i in range(kept.shape[1]):
+            kept[n, i] = -1
+    found, last = 0, -1
+    for c in range(given.which.shape[0]):
+        n = given.which[c]
+        if n != last:
+            last, found = n, 0
+        p, q = criteria[given.pull[c], 0], criteria[given.pull[c], 1]
+        known = False
+        for i in range(found):
+            o = kept[n, i]
+            known = known or (
+                given.face[o] == given.face[c]
+                and given.pull[o] == given.pull[c]
+                and abs(given.share[o] - given.share[c]) < _PLACE
+                and (p == 0.0 or math.cos(angles[o, 0] - angles[c, 0]) > 1.0 - _ANGLE)
+                and (q == 0.0 or math.cos(angles[o, 1] - angles[c, 1]) > 1.0 - _ANGLE)
+            )
+        count = kept.shape[1]
+        if known or (found == count and values[c] <= values[kept[n, count - 1]]):
+            continue
+        i = min(found, count - 1)
+        while i > 0 and values[kept[n, i - 1]] < values[c]:
+            kept[n, i] = kept[n, i - 1]
+            i -= 1
+        kept[n, i] = c
+        found = min(found + 1, count)
