@@ -13,6 +13,7 @@ from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import PINS, of_numbers
 from ..model.machine.raw import Raw
+from ..model.machine.remembered import remembered_batch
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal
@@ -134,11 +135,12 @@ def strength_of(mechanism: Mechanism) -> Strength:
     return mechanism.strength
 
 
+@remembered_batch
 def stress(
     mechanism: Mechanism,
-    name: str,
     designs: Array,
-    criteria: Sequence[tuple[float, float]],
+    name: str,
+    criteria: tuple[tuple[float, float], ...],
     kept: int,
     gradients: bool,
     *,
@@ -151,7 +153,8 @@ def stress(
     return Part(found.values, found.gradients, found.labels)
 
 
-def pin_force(mechanism: Mechanism, pin: str, designs: Array, kept: int, gradients: bool) -> Part:
+@remembered_batch
+def pin_force(mechanism: Mechanism, designs: Array, pin: str, kept: int, gradients: bool) -> Part:
     """Return the greatest force of a pin over the cycle, N."""
     found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)
     return Part(found.values, found.gradients, np.nan_to_num(found.angles))

@@ -29,7 +29,7 @@ class FatigueSafety(OfBars):
         # Of amplitude and mean in terms of greatest and least stress; and of the amplitude alone.
         criteria = ((worn + steady, worn - steady), (worn, worn))
         one = constant(1.0, designs, gradients)
-        return [stress(mechanism, name, designs, criteria, kept, gradients).into(one) for name in self.bars(mechanism)]
+        return [stress(mechanism, designs, name, criteria, kept, gradients).into(one) for name in self.bars(mechanism)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class BucklingSafety(OfBars):
         found = []
         for name in self.bars(mechanism):
             own = LINKS[name]
-            pressed = stress(mechanism, name, designs, _COMPRESSION, kept, gradients, bending=False)
+            pressed = stress(mechanism, designs, name, _COMPRESSION, kept, gradients, bending=False)
             for side in (own.width, own.depth):
                 critical = critical_stress(own.length, side, own.held, material.elasticity, material.yield_strength)
                 found.append(pressed.into(closed(mechanism, designs, critical, gradients)))

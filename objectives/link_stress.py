@@ -27,9 +27,9 @@ class LinkStress(OfBars):
         found = []
         bars = self.bars(mechanism)
         pins = dict.fromkeys(pin for name in bars for pin in (NEAR, LINKS[name].far))
-        forces = {pin: pin_force(mechanism, pin, designs, kept, gradients) for pin in pins}
+        forces = {pin: pin_force(mechanism, designs, pin, kept, gradients) for pin in pins}
         for name in bars:
-            along = stress(mechanism, name, designs, STATIC, kept, gradients)
+            along = stress(mechanism, designs, name, STATIC, kept, gradients)
             found.append(along.into(constant(own, designs, gradients)) if self.least else along)
             for pin in (NEAR, LINKS[name].far):
                 force = forces[pin]

@@ -23,7 +23,7 @@ class PinPressure(OfBars):
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return the pressure in each bar that the pin bears in; see `OfBars`."""
-        force = pin_force(mechanism, self.pin, designs, kept, gradients)
+        force = pin_force(mechanism, designs, self.pin, kept, gradients)
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
         return [over(force, closed(mechanism, designs, area, gradients)) for area in areas]
 
@@ -37,7 +37,7 @@ class PinShear(OfBars):
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return the stress; see `OfBars`."""
         slot = PINS[self.pin]
-        force = pin_force(mechanism, self.pin, designs, kept, gradients)
+        force = pin_force(mechanism, designs, self.pin, kept, gradients)
         area = closed(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients)
         return [over(force, area)]
 

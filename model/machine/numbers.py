@@ -22,6 +22,7 @@ from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
 from .raw import LOAD_SLOTS, Raw, raw_vector
+from .remembered import remembered, remembered_batch
 from .varying import Varying
 
 Array = NDArray[np.float64]
@@ -103,6 +104,7 @@ class Numbers:
 _THREE = np.arange(3)
 
 
+@remembered_batch
 def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bool) -> Numbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
 
@@ -149,7 +151,7 @@ def of_numbers(
     smooth, and takes complex numbers too.
     """
     numbers = numbers_of(mechanism, designs, room=10**9, gradients=gradients)
-    base = raw_vector(mechanism.nominal)
+    base = _nominal(mechanism)
     pins = (
         {} if mechanism.strength is None else {slot: getattr(mechanism.strength, name) for name, slot in PINS.items()}
     )
@@ -170,6 +172,11 @@ def of_numbers(
             by_number[:, place] = np.imag(formula(number)) / STEP
             found[slot] = found[slot].real
     return plain, numbers.chain(by_number)
+
+
+@remembered
+def _nominal(mechanism: Mechanism) -> Array:
+    return raw_vector(mechanism.nominal)
 
 
 def require_width(mechanism: Mechanism, designs: Array) -> None:

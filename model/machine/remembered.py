@@ -52,24 +52,22 @@ def remembered_batch(
 
     Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
     """
-    kept: OrderedDict[object, tuple[Mechanism, Answer]] = OrderedDict()
+    kept: OrderedDict[object, tuple[Mechanism, dict[object, Answer]]] = OrderedDict()
     lock = Lock()
 
     @wraps(function)
     def known(mechanism: Mechanism, designs: Array, /, *given: Given.args, **named: Given.kwargs) -> Answer:
         if len(designs) > _LARGEST:
             return function(mechanism, designs, *given, **named)
-        key = (id(mechanism), designs.shape, designs.tobytes(), given, *named.items())
+        batch, key = (id(mechanism), designs.shape, designs.tobytes()), (given, *named.items())
         with lock:
-            found = kept.get(key)
-            if found is not None:
-                kept.move_to_end(key)
-                return found[1]
-        answer = function(mechanism, designs, *given, **named)
-        with lock:
-            kept[key] = mechanism, answer  # held, so that no other machine gets its number
+            # The machine is held, so that no other one gets its number.
+            _, answers = kept.setdefault(batch, (mechanism, {}))
+            kept.move_to_end(batch)
             while len(kept) > _BATCHES:
                 kept.popitem(last=False)
-        return answer
+        if key not in answers:
+            answers[key] = function(mechanism, designs, *given, **named)
+        return answers[key]
 
     return known

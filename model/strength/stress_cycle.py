@@ -42,7 +42,9 @@ _TURN = 2.0 * math.pi
 _EDGE = 1e-11  # rad, from a breakpoint: on it
 _OTHER = 7.0  # weight of the second angle in a label, more than a turn
 _EQUAL = 1e-6  # relative; what cubics between the samples of the cycle tell of two maxima, with two digits to spare
-_CLOSE, _CLOSER, _ROUNDS = 0.05, 30.0, 10  # of the spacing of samples; by which it shrinks; at most
+# Of the spacing of samples: how far off the ends of a cubic are, and within how much of its foretold place a maximum is
+# then taken as it is: such a cubic is off by a millionth of what the last one was. Then how much closer the next is.
+_CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
 APART, CLASSES = 60.0, 12
 """Distance of the labels of maxima that are no neighbours, more than a turn; how many classes there are of these."""
 
@@ -124,8 +126,7 @@ def _close_in(field: Field, base: int, faces: Array, criteria: Array, maxima: _M
     """Follow maxima between samples of their own, until these are so close that the cubics are exact."""
     begin, end = field.ends(np.repeat(maxima.which, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
-    width = _CLOSE * maxima.spacing
-    aim = 0.5 * width / _CLOSER
+    width, near = _CLOSE * maxima.spacing, _FORETOLD * maxima.spacing
     waiting = np.arange(len(maxima.which))
     for _ in range(_ROUNDS):
         if not len(waiting):
@@ -141,14 +142,16 @@ def _close_in(field: Field, base: int, faces: Array, criteria: Array, maxima: _M
         own = Candidates(maxima.which[waiting], maxima.face[waiting], maxima.pull[waiting], at, maxima.share[waiting])
         values, angles = np.empty(c), np.full((c, 2), np.nan)
         climb(theta, np.arange(len(theta)) % 2 == 0, stress, base, faces, criteria, own, values, angles)
-        maxima.value[waiting], maxima.share[waiting] = values, own.share
-        maxima.angle[waiting] = np.where(used, angles, angles[:, ::-1])
+        angles = np.where(used, angles, angles[:, ::-1])
+        moved = np.abs(angles - maxima.angle[waiting])
+        maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, own.share, angles
+        settled = np.all(moved <= near[waiting], axis=1)
         inside = (angles > low) | (low <= begin[waiting])
         inside &= (angles < high) | (high >= end[waiting])
-        width[waiting] = np.where(
-            np.all(inside | ~used, axis=1, keepdims=True), width[waiting] / _CLOSER, width[waiting]
-        )
-        waiting = waiting[(width[waiting] > aim[waiting] / _CLOSER).all(axis=1)]
+        closer = waiting[np.all(inside | ~used, axis=1)]
+        width[closer] /= _CLOSER
+        near[closer] *= _CLOSER  # what is left is off by less, wherever it was foretold
+        waiting = waiting[~settled]
 
 
 def _gradients(field: Field, base: int, faces: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
