@@ -162,6 +162,26 @@ PRESSURE = Kind(
     inch=face("psi", _INCH**2 / _LBF),
     typed=("Pa", "kPa", "bar", "MPa", "GPa", "psi"),
 )
+PRESSURE_SPEED = Kind(
+    name="a pressure times a speed",
+    unit="Pa m/s",
+    example="1 MPa m/s",
+    limit=1e15,
+    metric=face("MPa m/s", 1e-6),
+    inch=face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)),
+    typed=("Pa m/s", "MPa m/s", "psi ft/min"),
+    usual="MPa m/s",
+)
+WEAR = Kind(
+    name="a wear coefficient",
+    unit="m^2/N",
+    example="1e-9 mm^2/N",
+    limit=1.0,
+    metric=face("mm^2/N", 1e6),
+    inch=face("in^2/lbf", _LBF / _INCH**2),
+    typed=("m^2/N", "mm^2/N", "in^2/lbf"),
+    usual="mm^2/N",
+)
 VOLUME = Kind(
     name="a volume",
     unit="m^3",
@@ -213,6 +233,8 @@ KINDS = (
         DAMPING,
         QUADRATIC_DAMPING,
         PRESSURE,
+        PRESSURE_SPEED,
+        WEAR,
         RATIO,
         JERK,
         VOLUME,

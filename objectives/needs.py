@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..model.cycle.gas_cycle import compressors, cylinders
-from ..model.machine.dissipation import crank_weighs, linkage_loaded, moves, pivot_loaded, works_over_a_turn
+from ..model.machine.dissipation import (
+    crank_weighs,
+    linkage_loaded,
+    load_works_over_a_turn,
+    moves,
+    pivot_loaded,
+    rubs_under_load,
+    works_over_a_turn,
+)
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 
@@ -99,6 +107,19 @@ WORK = Need(
     "always resists (viscous, drag) and none that differs between the strokes; use {instead}, or add what the machine "
     "works against",
 )
+LOAD_WORK = Need(
+    load_works_over_a_turn,
+    "an efficiency is the share of the energy that reaches the load; got no load that takes net work over a turn; add "
+    "for example a [[load]] with a resistance, which opposes every motion",
+    without="undefined",
+)
+_RUBS = "add for example [friction] guide = 0.1"
+RUBS = Need(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")
+LOSSES = Need(
+    rubs_under_load,
+    f"without friction nothing is lost, and the efficiency of every design is 1; got none; {_RUBS}",
+    without="equal",
+)
 CYLINDER = Need(
     lambda machine: bool(cylinders(machine)),
     "it comes from a cylinder; got none; add for example "
@@ -116,6 +137,12 @@ STRENGTH = Need(
     lambda machine: machine.strength is not None,
     "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
     "docs/sizing.md",
+    without="undefined",
+)
+WEARS = Need(
+    lambda machine: machine.strength is not None and machine.strength.wear_coefficient is not None,
+    "it comes from pins and a wear coefficient; got none; add for example "
+    '[sections] wear_coefficient = "1e-9 mm^2/N", with pins and [sections.material] as in docs/sizing.md',
     without="undefined",
 )
 _BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'

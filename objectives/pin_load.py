@@ -47,7 +47,8 @@ def projected(pin: str, name: str) -> Formula:
     return lambda number: number(PINS[pin]) * number(LINKS[name].depth)
 
 
-_links = {pin: tuple(name for name, link in LINKS.items() if pin in (NEAR, link.far)) for pin in PINS}
+JOINED = {pin: tuple(name for name, link in LINKS.items() if pin in (NEAR, link.far)) for pin in PINS}
+"""Links that each pin bears in."""
 _pressure = partial(
     PinPressure,
     kind=PRESSURE,
@@ -70,7 +71,7 @@ PIN_PRESSURE_CRANK_PIVOT = _pressure(
     name="pin_pressure_crank_pivot",
     title="pressure at the crank pivot",
     pin="crank_pivot",
-    links=_links["crank_pivot"],
+    links=JOINED["crank_pivot"],
     place=460,
     sentence="The greatest pressure of the crank's pivot on its bearing over the depth of the crank.",
     picture="pivot force",
@@ -80,7 +81,7 @@ PIN_PRESSURE_CRANK_PIN = _pressure(
     name="pin_pressure_crank_pin",
     title="pressure at the crank pin",
     pin="crank_pin",
-    links=_links["crank_pin"],
+    links=JOINED["crank_pin"],
     place=461,
     sentence="The greatest pressure of the crank pin on its bearing, in the thinner of crank and rod.",
     picture="crank pin force",
@@ -90,7 +91,7 @@ PIN_PRESSURE_SLIDER_PIN = _pressure(
     name="pin_pressure_slider_pin",
     title="pressure at the slider pin",
     pin="slider_pin",
-    links=_links["slider_pin"],
+    links=JOINED["slider_pin"],
     place=462,
     sentence="The greatest pressure of the slider pin on its bearing over the depth of the rod.",
     picture="slider pin force",

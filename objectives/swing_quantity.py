@@ -97,9 +97,9 @@ class SwingPeak(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingIntegral(SwingQuantity):
-    """A number from the work of the drive. of: the work on the way forth, or the efficiency."""
+    """A number from the work of the drive. of: the work on the way forth, or the share of it without friction."""
 
-    of: Literal["work", "efficiency"]
+    of: Literal["work", "share"]
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -24,10 +24,17 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     a formula of their own, loads that differ between the strokes and loads over crank angle (`Load.turn_work`). Of
     numbers that vary two values each are tried, neither of them special.
     """
-    if not mechanism.varying:
-        return _works(mechanism)
-    inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
-    return _works(mechanism.fullest) or _works(mechanism.at(inner))
+    return any(map(_works, _tried(mechanism)))
+
+
+def load_works_over_a_turn(mechanism: Mechanism) -> bool:
+    """Return whether the loads may take or give net work over a turn for some design; see `works_over_a_turn`."""
+    return any(map(_load_works, _tried(mechanism)))
+
+
+def rubs_under_load(mechanism: Mechanism) -> bool:
+    """Return whether friction acts in a joint that carries a force, for some design."""
+    return any(map(_rubs, _tried(mechanism)))
 
 
 def linkage_loaded(machine: Mechanism) -> bool:
@@ -68,12 +75,24 @@ def _rubs(machine: Mechanism) -> bool:
     return (beyond and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
 
 
+def _tried(mechanism: Mechanism) -> list[Mechanism]:
+    """Return the machine, or of one with varying numbers two that are not special."""
+    if not mechanism.varying:
+        return [mechanism]
+    inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
+    return [mechanism.fullest, mechanism.at(inner)]
+
+
 def _works(machine: Mechanism) -> bool:
+    return machine.acceleration != 0.0 or _rubs(machine) or _load_works(machine)
+
+
+def _load_works(machine: Mechanism) -> bool:
     sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
     for load in machine.loads:
         for key, own in load.turn_work(moving=machine.speed != 0.0).items():
             sizes[key].extend(own)
-    return machine.acceleration != 0.0 or _rubs(machine) or any(map(_adds_up, sizes.values()))
+    return any(map(_adds_up, sizes.values()))
 
 
 def _adds_up(parts: list[float]) -> bool:

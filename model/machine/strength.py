@@ -47,7 +47,8 @@ class Strength:
     """Material of the bars of a machine, and its pins.
 
     crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
-    net section of an eye. criterion: how mean stresses count in fatigue.
+    net section of an eye. criterion: how mean stresses count in fatigue. wear_coefficient: volume worn off over force
+    and sliding distance, m^2/N (Archard); None if it is not known.
     """
 
     material: Material
@@ -56,11 +57,13 @@ class Strength:
     slider_pin: float
     eye_concentration: float = 1.0
     criterion: Criterion = "goodman"
+    wear_coefficient: float | None = None
 
     def __post_init__(self) -> None:
         names = ("crank_pivot", "crank_pin", "slider_pin")
         require_numbers(self, *names, what="the diameter of the {}", above=0.0, unit="m")
         require_numbers(self, "eye_concentration", what="{}", least=1.0)
+        require_numbers(self, "wear_coefficient", what="the {}", above=0.0, unit="m^2/N")
         require_word("criterion", self.criterion, Criterion)
 
     @property

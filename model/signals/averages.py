@@ -3,9 +3,9 @@
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
 the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
-grow in number with 1 / kappa. The rod's direction would lose digits likewise; `_square` keeps them. Without friction
-the torque is continuous (loads that jump at a dead centre do so where the slider stands still), so moving breakpoints
-add nothing to the derivatives.
+grow in number with 1 / kappa. The rod's direction would lose digits likewise; `quadrature.square_along` keeps them.
+Without friction the torque is continuous (loads that jump at a dead centre do so where the slider stands still), so
+moving breakpoints add nothing to the derivatives.
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
 to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out.
@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,22 +35,15 @@ from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
+from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
 from .signals import Signal, of_forces, of_motion
 from .two_turns import averaged
 from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
 
-# Measured on rods 0.1 % longer than crank + offset (kappa 0.21), over random machines: 128 nodes and 12 panels of 16
-# nodes leave an RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11. Below _EVEN there are more.
-_NODES = 192
-_PANELS = 24
-_EVEN = 0.21
-_DEEPEST = 24  # halvings of a panel
-_TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
-_RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
+_NODES = 192  # of a smooth curve; why so many: `quadrature`
 _TORQUE, _FORCES = int(Signal.TORQUE), int(Signal.LINE_FORCE)
-_NOISE = 0.004  # of a curve's rounding, in units of _RESOLVED, times kappa^2: that of the crank angle itself
 _TURN = 2.0 * math.pi
 
 
@@ -69,19 +61,6 @@ class Averages:
 
 
 @analytic
-def _square(theta: Any, d: Any, gap: Any) -> Any:
-    """Return l^2 cos^2(phi), m^2, exact to rounding however near to locking; gap: l - r - |e|, m, likewise.
-
-    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod stands nearly across. With psi the
-    crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and
-    gap + 2 |e| + 2 r cos^2(psi / 2).
-    """
-    half = 0.5 * (theta - (0.5 if d.e < 0.0 else 1.5) * math.pi)
-    s, c = math.sin(half), math.cos(half)
-    return (gap + 2.0 * d.r * s * s) * (gap + 2.0 * abs(d.e) + 2.0 * d.r * c * c)
-
-
-@analytic
 def _curve(
     kind: Any, theta: Any, square: Any, d: Any, block: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
 ) -> Any:
@@ -96,18 +75,6 @@ def _curve(
         torque = beside_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
         return torque if kind == _TORQUE else of_forces(kind, f, torque, d)
     return of_motion(kind, sine, cosine, m, d)
-
-
-@analytic
-def _rough(values: Any, tail: Any, allowed: Any) -> bool:
-    """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
-    for k in range(tail.shape[0]):
-        found = 0.0
-        for i in range(tail.shape[1]):
-            found += tail[k, i] * values[i]
-        if abs(found) > allowed:
-            return True
-    return False
 
 
 @kernel
@@ -133,7 +100,7 @@ def _average(
     nv = mean_slope.shape[1] if wanted else 0
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
     greatest = np.zeros(nv + 1)
-    stack = np.empty((_DEEPEST + 2, 3))
+    stack = np.empty((DEEPEST + 2, 3))
     for n in range(blocks.shape[0]):
         block, stepped = blocks[n], steps[n * nv : (n + 1) * nv]
         for v in range(nv):
@@ -144,8 +111,8 @@ def _average(
             continue
         # That of `crowding`, from the gap: no digits lost, so no floor.
         kappa = math.sqrt(math.sqrt(gaps[n] * (gaps[n] + 2.0 * d.r)) / (gaps[n] + d.r))
-        denser = math.ceil(max(1.0, _EVEN / kappa))
-        resolved = max(1.0, _NOISE / (kappa * kappa))
+        denser = math.ceil(max(1.0, EVEN / kappa))
+        resolved = max(1.0, NOISE / (kappa * kappa))
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
@@ -160,7 +127,7 @@ def _average(
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
             smooth = count == 1 and not rubbing
-            panels = denser if smooth else denser * (int(_PANELS * (high - low) / _TURN) + 1)
+            panels = denser if smooth else denser * (int(PANELS * (high - low) / _TURN) + 1)
             points = _NODES if smooth else nodes.shape[0]
             for p in range(panels):
                 width = (high - low) / panels
@@ -175,7 +142,7 @@ def _average(
                         c, y = math.cos(tau), math.sin(tau)
                         share = 1.0 / points if smooth else weights[i]
                         weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
-                        square = _square(theta, d, gaps[n])
+                        square = square_along(theta, d, gaps[n])
                         value[i] = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
                         for v in range(nv):
                             z = design_at(stepped[v], 0)
@@ -184,12 +151,12 @@ def _average(
                     if rubbing:
                         for i in range(points):
                             greatest[nv] = max(greatest[nv], abs(value[i]))
-                        halve = _rough(value, tail, _RESOLVED[0] * resolved * greatest[nv])
+                        halve = rough(value, tail, RESOLVED[0] * resolved * greatest[nv])
                         for v in range(nv):
                             for i in range(points):
                                 greatest[v] = max(greatest[v], abs(slope[v, i]))
-                            halve = halve or _rough(slope[v], tail, _RESOLVED[1] * resolved * greatest[v])
-                        if halve and depth < _DEEPEST:
+                            halve = halve or rough(slope[v], tail, RESOLVED[1] * resolved * greatest[v])
+                        if halve and depth < DEEPEST:
                             for half in range(2):  # the left one on top: panels are added up in order
                                 stack[top, 0] = begin + 0.5 * width * (1 - half)
                                 stack[top, 1], stack[top, 2] = 0.5 * width, depth + 1.0
@@ -205,7 +172,7 @@ def _average(
                 # With friction the torque may jump at a cut, which then adds the jump times the cut's own motion.
                 for end in range(2):
                     i, theta = (s + 1) % count if end else s, b if end else a
-                    square = _square(theta, d, gaps[n])
+                    square = square_along(theta, d, gaps[n])
                     t = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
                     sign = (1.0 if end else -1.0) / (STEP * _TURN)
                     for v in range(nv):
@@ -217,23 +184,6 @@ def _average(
         rms[n] = math.sqrt(second)
         for v in range(nv):
             rms_slope[n, v] = rms_slope[n, v] / rms[n] if rms[n] > 0.0 else 0.0
-
-
-@lru_cache(maxsize=1)
-def _rule() -> tuple[Array, Array, Array]:
-    """Return nodes and weights on [0, 1] of a panel, and what gives the last Legendre coefficients from its values."""
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    orders = np.arange(16 - _TAIL, 16)
-    basis = np.polynomial.legendre.legvander(nodes, 15)[:, orders]
-    tail = (orders + 0.5)[:, None] * (weights[:, None] * basis).T
-    return 0.5 * (nodes + 1.0), 0.5 * weights, np.ascontiguousarray(tail)
-
-
-def _gaps(crank: Array, rod: Array, offset: Array) -> Array:
-    """Return l - r - |e|, exact to its own rounding: the first difference's error is added (Knuth's two-sum)."""
-    first = rod - crank
-    back = first - rod
-    return np.asarray((first - np.abs(offset)) + ((rod - (first - back)) - (crank + back)))
 
 
 def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
@@ -260,7 +210,7 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     slopes = np.empty((2, n if gradients else 0, len(columns)))
     watch = watch_of(mechanism, kind)
     rubbing = kind.needs_forces and rubs(mechanism)
-    rule, gaps = _rule(), _gaps(*designs.T[:3])
+    rule, gaps = panel_rule(), gaps_of(*designs.T[:3])
 
     def work(begin: int, end: int) -> None:
         part = slice(begin, end) if gradients else slice(0, 0)

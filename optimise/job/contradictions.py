@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...model.errors import InputError, JobError
+from ...model.machine.links import Bar
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ..feasibility.swinging import require_swinging
@@ -29,6 +30,7 @@ def require_consistent(problem: Problem) -> None:
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
     require_ranking(problem)
+    _require_one_density(problem)
     if problem.motion is not None:
         try:
             require_swinging(problem)
@@ -37,6 +39,23 @@ def require_consistent(problem: Problem) -> None:
         return
     require_reachable(problem)
     require_slow_stroke(problem)
+
+
+def _require_one_density(problem: Problem) -> None:
+    """Refuse a bar of the material of [sections] whose density is stated as another one; one that varies is its own."""
+    machine = problem.mechanism
+    if machine.strength is None:
+        return
+    density = machine.strength.material.density
+    free = {path for item in machine.varying for path in item.paths}
+    for name in ("crank", "rod"):
+        bar = getattr(machine, name)
+        if isinstance(bar, Bar) and f"{name}.density" not in free:
+            if not math.isclose(bar.density, density, rel_tol=1e-9):
+                raise JobError(
+                    f"mechanism.{name}.density: a bar is of [sections.material], so both have one density; got "
+                    f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
+                )
 
 
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:

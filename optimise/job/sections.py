@@ -9,7 +9,18 @@ from pydantic import AfterValidator
 from ...model.errors import InputError
 from ...model.machine.strength import Criterion, Material, Strength
 from ..sizing.section_limits import SectionLimits
-from .values import Checked, Density, Part, PositiveLength, PositiveRange, PositiveRatio, Pressure, optional, required
+from .values import (
+    Checked,
+    Density,
+    Part,
+    PositiveLength,
+    PositiveRange,
+    PositiveRatio,
+    Pressure,
+    WearCoefficient,
+    optional,
+    required,
+)
 
 EXAMPLE = {
     "material": {
@@ -25,7 +36,7 @@ EXAMPLE = {
 """The least that the table holds."""
 
 
-_OF_STRENGTH = ("criterion", "eye_concentration")
+_OF_STRENGTH = ("criterion", "eye_concentration", "wear_coefficient")
 
 
 def _raised(factor: float) -> float:
@@ -71,6 +82,11 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
         "Shigley's fig. A-15-12 has it",
         2.5,
         default=1.0,
+    )
+
+    wear_coefficient: WearCoefficient | None = optional(
+        "volume worn off over force and sliding distance, of the softer of pin and bearing; for the wear of pins",
+        "1e-9 mm^2/N",
     )
 
     def build(self) -> tuple[Material, SectionLimits]:

@@ -248,6 +248,7 @@ QuadraticDamping = Annotated[float, Physical(kinds.QUADRATIC_DAMPING, "positive"
 Torque = Annotated[float, Physical(kinds.TORQUE)]
 PositiveTorque = Annotated[float, Physical(kinds.TORQUE, "positive")]
 Pressure = Annotated[float, Physical(kinds.PRESSURE, "positive")]
+WearCoefficient = Annotated[float, Physical(kinds.WEAR, "positive")]
 LeastPressure = Annotated[float, Physical(kinds.PRESSURE, "zero or more")]
 Volume = Annotated[float, Physical(kinds.VOLUME, "zero or more")]
 Number = Annotated[float, Physical(kinds.RATIO)]

@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.machine.strength import Material, Strength
-from slidercrank.objectives.needs import A_BAR, COMPRESSOR, CRANK_BAR, CYLINDER, ROD_BAR
+from slidercrank.objectives.needs import A_BAR, COMPRESSOR, CRANK_BAR, CYLINDER, LOSSES, ROD_BAR, RUBS, WEARS
 from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
 from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
 from slidercrank.objectives.needs import STRENGTH as STRONG
@@ -130,12 +130,23 @@ STRENGTH = Strength(
     crank_pin=0.007,
     slider_pin=0.006,
     eye_concentration=2.5,
+    wear_coefficient=1e-15,
 )
-BARS_OF = {STRONG, ROD_BAR, CRANK_BAR, A_BAR, CRANK_WEIGHS, ROD_WEIGHS}
+BARS_OF = {WEARS, STRONG, ROD_BAR, CRANK_BAR, A_BAR, CRANK_WEIGHS, ROD_WEIGHS}
+
+
+RUBBING_PIVOT = Friction(crank_pivot=Pin(radius=0.01, coefficient=0.1))
 
 
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
-    """Return a machine that has what a quantity is of: a compressor more for cylinders, bars for their strength."""
+    """Return a machine that has what a quantity is of.
+
+    A compressor more for cylinders, bars for their strength; for losses a crank pivot that rubs, which locks no design,
+    and a load that resists more than any other one drives.
+    """
+    if {LOSSES, RUBS} & set(quantity.needs):
+        resistance = StrokeForce(outward=-3000.0, inward=3000.0)
+        return replace(machine, friction=RUBBING_PIVOT, loads=(*machine.loads, resistance))
     if BARS_OF & set(quantity.needs):
         bar = Bar(width=0.03, depth=0.02, density=7800.0)
         crank, rod = (link if isinstance(link, Bar) else bar for link in (machine.crank, machine.rod))

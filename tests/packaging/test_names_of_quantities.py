@@ -23,6 +23,7 @@ DATA = ("service/presets/", "service/cases/")  # job files, and keys of what pap
 TERMS = {
     "service/page/static/help/picture.js": "pictures are named after what they show",
     "service/drawings/": "dimensions in a drawing are named after what they measure",
+    "service/swing/record.py": "a swing has an efficiency of its own",
     "service/motion/player_page.py": "the caption of a linkage names its stroke",
     "service/page/static/form/start.js": "the job that a new form begins with",
     "service/preview/": "the answer of the preview has these keys",

@@ -1,0 +1,65 @@
+"""Quadrature over a turn of curves with kinks: panels in the crowded angle, and what tells whether one is resolved."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel.arithmetic import analytic
+
+Array = NDArray[np.float64]
+
+# Measured on rods 0.1 % longer than crank + offset (kappa 0.21), over random machines: 128 nodes and 12 panels of 16
+# nodes leave an RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11. Below EVEN there are more.
+PANELS = 24
+EVEN = 0.21
+DEEPEST = 24  # halvings of a panel
+_TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
+RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
+NOISE = 0.004  # of a curve's rounding, in units of RESOLVED, times kappa^2: that of the crank angle itself
+
+
+@analytic
+def square_along(theta: Any, d: Any, gap: Any) -> Any:
+    """Return l^2 cos^2(phi), m^2, exact to rounding however near to locking; gap: l - r - |e|, m, likewise.
+
+    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod stands nearly across. With psi the
+    crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and
+    gap + 2 |e| + 2 r cos^2(psi / 2).
+    """
+    half = 0.5 * (theta - (0.5 if d.e < 0.0 else 1.5) * math.pi)
+    s, c = math.sin(half), math.cos(half)
+    return (gap + 2.0 * d.r * s * s) * (gap + 2.0 * abs(d.e) + 2.0 * d.r * c * c)
+
+
+@analytic
+def rough(values: Any, tail: Any, allowed: Any) -> bool:
+    """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
+    for k in range(tail.shape[0]):
+        found = 0.0
+        for i in range(tail.shape[1]):
+            found += tail[k, i] * values[i]
+        if abs(found) > allowed:
+            return True
+    return False
+
+
+@lru_cache(maxsize=1)
+def panel_rule() -> tuple[Array, Array, Array]:
+    """Return nodes and weights on [0, 1] of a panel, and what gives the last Legendre coefficients from its values."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    orders = np.arange(16 - _TAIL, 16)
+    basis = np.polynomial.legendre.legvander(nodes, 15)[:, orders]
+    tail = (orders + 0.5)[:, None] * (weights[:, None] * basis).T
+    return 0.5 * (nodes + 1.0), 0.5 * weights, np.ascontiguousarray(tail)
+
+
+def gaps_of(crank: Array, rod: Array, offset: Array) -> Array:
+    """Return l - r - |e|, exact to its own rounding: the first difference's error is added (Knuth's two-sum)."""
+    first = rod - crank
+    back = first - rod
+    return np.asarray((first - np.abs(offset)) + ((rod - (first - back)) - (crank + back)))

@@ -1,0 +1,159 @@
+"""Energy of a cycle: what the drive gives, what friction takes, and the share of it that reaches the load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import of_numbers
+from ..model.machine.raw import Raw
+from ..model.machine.two_turns import cycle_turns
+from ..model.signals.averages import average_torque
+from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
+from .average_torque import MEAN_TORQUE
+from .bars import Formula
+from .kinds import ENERGY, RATIO
+from .needs import DRIVEN, LOAD_WORK, LOSSES, RUBS, WORK
+from .quantity import Array, Domain, Group, Quantity, Values
+
+_TURN = 2.0 * math.pi
+
+
+def _circle(slot: int) -> Formula:
+    """Return the formula of the radius of a friction circle, m. slot: of the pin's radius."""
+    return lambda number: number(slot) * number(slot + 1)
+
+
+_COEFFICIENTS: dict[int, Formula] = {
+    GUIDE: lambda number: number(Raw.GUIDE_FRICTION),
+    CRANK_PIVOT: _circle(Raw.CRANK_PIVOT_RADIUS),
+    CRANK_PIN: _circle(Raw.CRANK_PIN_RADIUS),
+    SLIDER_PIN: _circle(Raw.SLIDER_PIN_RADIUS),
+}
+
+
+def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
+    """Return the friction heat of a turn, J (n,), and its derivatives (n, 3 + k); infinite where friction locks."""
+    heat = np.zeros(len(designs))
+    slopes = None if work.gradients is None else np.zeros(designs.shape)
+    for place, formula in _COEFFICIENTS.items():
+        factor, by = of_numbers(mechanism, designs, formula, gradients=slopes is not None)
+        mean = np.where(np.isinf(work.mean[:, place]), 0.0, work.mean[:, place])
+        heat += _TURN * factor * mean
+        if slopes is not None and by is not None and work.gradients is not None:
+            slopes += _TURN * (factor[:, None] * work.gradients[:, place] + mean[:, None] * by)
+    return np.where(np.isinf(work.mean[:, 0]), np.inf, heat), slopes
+
+
+@dataclass(frozen=True, kw_only=True)
+class EnergyPerCycle(Quantity):
+    """Work of the drive torque over a cycle in the sense of rotation; infinite where friction locks."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        found = average_torque(mechanism, dimensions, gradients=gradients)
+        factor = _TURN * cycle_turns(mechanism) * mechanism.direction
+        locks = np.isinf(found.rms)
+        slopes = None
+        if found.mean_gradients is not None:
+            slopes = np.where(locks[:, None], 0.0, factor * found.mean_gradients)
+        return Values(np.where(locks, np.inf, factor * found.mean + 0.0), slopes)  # no negative zero
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionLoss(Quantity):
+    """Heat of all joints over a cycle; infinite where friction locks."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        work = turn_work(mechanism, dimensions, gradients=gradients)
+        values, slopes = _heat(mechanism, dimensions, work)
+        turns = cycle_turns(mechanism)
+        return Values(turns * values, None if slopes is None else turns * slopes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Efficiency(Quantity):
+    """U / (U + H) for the work U done against the load and the friction heat H of a cycle.
+
+    NaN for a design whose load takes no net work, which has none; -inf where friction locks.
+    """
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            none = np.full(np.shape(dimensions), np.nan)
+            return Values(none[:, 0], none if gradients else None)
+        work = turn_work(mechanism, dimensions, gradients=gradients)
+        heat, by_heat = _heat(mechanism, dimensions, work)
+        useful, locks = _TURN * work.mean[:, LOAD], np.isinf(heat)
+        there = (useful > 0.0) & ~locks
+        useful, heat = np.where(there, useful, 1.0), np.where(there, heat, 0.0)
+        given = useful + heat
+        values = np.where(locks, -np.inf, np.where(there, useful / given, np.nan))
+        if work.gradients is None or by_heat is None:
+            return Values(values, None)
+        by_useful = _TURN * work.gradients[:, LOAD]
+        slopes = ((heat / given)[:, None] * by_useful - (useful / given)[:, None] * by_heat) / given[:, None]
+        return Values(values, np.where(there[:, None], slopes, np.where(locks, 0.0, np.nan)[:, None]))
+
+
+_SECTION = "23. Energy of a cycle"
+EFFICIENCY = Efficiency(
+    name="efficiency",
+    title="efficiency",
+    kind=RATIO,
+    place=436,
+    group=Group.DRIVE,
+    sentence="The share of the energy of a cycle that reaches the load: the rest is heat of guide and pins.",
+    advice="Undefined for a design whose load takes no net work over a cycle, such as masses alone.",
+    formula="U / (U + H): U = -(integral of F dx), H the friction loss, over a cycle",
+    section=_SECTION,
+    picture="torque",
+    example=0.9,
+    better="high",
+    domain=Domain(
+        lower=0.0,
+        upper=1.0,
+        open=False,
+        rule="an efficiency lies between 0 and 1",
+        remedy="0.7 to 0.95 are usual",
+    ),
+    needs=(LOAD_WORK, LOSSES),
+)
+ENERGY_PER_CYCLE = EnergyPerCycle(
+    name="energy_per_cycle",
+    title="energy per cycle",
+    kind=ENERGY,
+    place=437,
+    group=Group.DRIVE,
+    sentence=(
+        "The net work of the drive over a cycle: what the load takes, and friction; negative where the load drives "
+        "the machine."
+    ),
+    advice="What the drive gives and takes back within the cycle, such as kinetic energy, cancels.",
+    formula="(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
+    section=_SECTION,
+    picture="torque",
+    signed=True,
+    needs=(DRIVEN, WORK),
+    instead=MEAN_TORQUE.instead,
+    plain=True,
+)
+FRICTION_LOSS = FrictionLoss(
+    name="friction_loss",
+    title="friction loss",
+    kind=ENERGY,
+    place=438,
+    group=Group.DRIVE,
+    sentence="The heat of guide and pins over a cycle.",
+    advice="It is the same at every speed where the load alone makes the forces.",
+    formula="integral of mu |N| |x'| + rho_O |P| + rho_A |A| (1 - phi') + rho_B |B| |phi'| over the crank angle",
+    section=_SECTION,
+    picture="torque",
+    example="5 J",
+    needs=(RUBS,),
+)

@@ -1,0 +1,149 @@
+"""Rubbing of the pins: mean of pressure times rubbing speed, and depth worn off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.raw import Raw
+from ..model.machine.two_turns import cycle_turns
+from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
+from .bars import LINKS, Formula, OfBars, Part, closed
+from .kinds import LENGTH, PRESSURE_SPEED
+from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS
+from .pin_load import JOINED
+from .quantity import Array, Group
+
+_CYCLES = 1e6
+_RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDER_PIN}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinRubbing(OfBars):
+    """A factor over twice the bearing's length b times the mean of |F| |d psi / d theta|, psi the turning in the pin.
+
+    p = F / (D b) and a rubbing speed of D/2 |d psi / dt|: the pin's diameter D cancels.
+    """
+
+    pin: str
+    factor: Callable[[Mechanism], Formula]
+
+    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+        """Return it for each bar that the pin bears in; see `OfBars`."""
+        work, place = turn_work(mechanism, designs, gradients=gradients), _RUBS[self.pin]
+        slopes = None if work.gradients is None else work.gradients[:, place, None]
+        mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
+        factor = self.factor(mechanism)
+        return [
+            mean.times(closed(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients))
+            for name in self.bars(mechanism)
+        ]
+
+
+def _per_length(factor: Formula, depth: int) -> Formula:
+    """Return the formula of a factor over twice a length, 1/m. depth: slot of the length."""
+    return lambda number: factor(number) / (2.0 * number(depth))
+
+
+def _speed(mechanism: Mechanism) -> Formula:
+    return lambda number: mechanism.direction * number(Raw.SPEED)
+
+
+def _worn(mechanism: Mechanism) -> Formula:
+    """Return K times the crank angle of a million cycles; the rest of K F s / A is in `PinRubbing`."""
+    assert mechanism.strength is not None
+    rate = mechanism.strength.wear_coefficient or math.nan
+    return lambda number: rate * _CYCLES * cycle_turns(mechanism) * 2.0 * math.pi + 0.0 * number(Raw.CRANK)
+
+
+_pv = partial(
+    PinRubbing,
+    kind=PRESSURE_SPEED,
+    factor=_speed,
+    group=Group.STRENGTH,
+    section="22. Strength of crank and rod",
+    source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
+    advice="What a dry bearing warms up and wears by; makers of bushings give a limit, of 0.05 to 2 MPa m/s.",
+    example="0.5 MPa m/s",
+)
+_wear = partial(
+    PinRubbing,
+    kind=LENGTH,
+    factor=_worn,
+    group=Group.STRENGTH,
+    section="22. Strength of crank and rod",
+    source="J. F. Archard, Contact and rubbing of flat surfaces, J. Appl. Phys. 24, 1953, 981-988",
+    advice="Depth over the bearing's projected area, at the mean of all crank angles.",
+    example="0.1 mm",
+)
+PV_PIVOT = _pv(
+    name="pv_pivot",
+    title="pv of the crank pivot",
+    pin="crank_pivot",
+    links=JOINED["crank_pivot"],
+    place=470,
+    sentence="The mean of pressure times rubbing speed in the bearing of the crank's pivot, over the crank's depth.",
+    formula="mean of |P| |omega| / (2 b) over the crank angle, b the depth of the bar",
+    picture="pivot force",
+    needs=(STRENGTH, CRANK_BAR, PIVOT_LOADED, SPEED),
+)
+PV_CRANK_PIN = _pv(
+    name="pv_crank_pin",
+    title="pv of the crank pin",
+    pin="crank_pin",
+    links=JOINED["crank_pin"],
+    place=471,
+    sentence="The mean of pressure times rubbing speed in the crank pin's bearing, in the thinner of crank and rod.",
+    formula="mean of |A| (1 - phi') |omega| / (2 b) over the crank angle, b the depth of the bar",
+    picture="crank pin force",
+    needs=(STRENGTH, A_BAR, LOADED, SPEED),
+)
+PV_SLIDER_PIN = _pv(
+    name="pv_slider_pin",
+    title="pv of the slider pin",
+    pin="slider_pin",
+    links=JOINED["slider_pin"],
+    place=472,
+    sentence="The mean of pressure times rubbing speed in the slider pin's bearing, over the depth of the rod.",
+    formula="mean of |B| |phi'| |omega| / (2 b) over the crank angle, b the depth of the bar",
+    picture="slider pin force",
+    needs=(STRENGTH, ROD_BAR, LOADED, SPEED),
+)
+WEAR_PIVOT = _wear(
+    name="wear_pivot",
+    title="wear of the crank pivot",
+    pin="crank_pivot",
+    links=JOINED["crank_pivot"],
+    place=474,
+    sentence="The depth that a million cycles wear off the bearing of the crank's pivot, over the depth of the crank.",
+    formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
+    picture="pivot force",
+    needs=(WEARS, CRANK_BAR, PIVOT_LOADED),
+)
+WEAR_CRANK_PIN = _wear(
+    name="wear_crank_pin",
+    title="wear of the crank pin",
+    pin="crank_pin",
+    links=JOINED["crank_pin"],
+    place=475,
+    sentence="The depth that a million cycles wear off the bearing of the crank pin, in the thinner of crank and rod.",
+    formula="10^6 K / (2 b) times the integral of |A| (1 - phi') over the crank angle of a cycle",
+    picture="crank pin force",
+    needs=(WEARS, A_BAR, LOADED),
+)
+WEAR_SLIDER_PIN = _wear(
+    name="wear_slider_pin",
+    title="wear of the slider pin",
+    pin="slider_pin",
+    links=JOINED["slider_pin"],
+    place=476,
+    sentence="The depth that a million cycles wear off the bearing of the slider pin, over the depth of the rod.",
+    formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
+    picture="slider pin force",
+    needs=(WEARS, ROD_BAR, LOADED),
+)
