@@ -50,12 +50,12 @@ def _require_one_density(problem: Problem) -> None:
     free = {path for item in machine.varying for path in item.paths}
     for name in ("crank", "rod"):
         bar = getattr(machine, name)
-        if isinstance(bar, Bar) and f"{name}.density" not in free:
-            if not math.isclose(bar.density, density, rel_tol=1e-9):
-                raise JobError(
-                    f"mechanism.{name}.density: a bar is of [sections.material], so both have one density; got "
-                    f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
-                )
+        stated = isinstance(bar, Bar) and f"{name}.density" not in free
+        if stated and not math.isclose(bar.density, density, rel_tol=1e-9):
+            raise JobError(
+                f"mechanism.{name}.density: a bar is of [sections.material], so both have one density; got "
+                f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
+            )
 
 
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:

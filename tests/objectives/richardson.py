@@ -2,7 +2,8 @@
 
 C. J. F. Ridders, Advances in Engineering Software 4(2), 1982, pp. 75-76: differences at steps that halve, extrapolated
 to step zero in a triangular table; the entry that differs least from its two parents is taken. Which one it is follows
-from the differences alone, so the derivative under test has no say in it.
+from the differences alone, so the derivative under test has no say in it. No entry counts as better than the rounding
+of its values over its step: at small steps, differences of a few last digits agree by chance.
 """
 
 from __future__ import annotations
@@ -54,11 +55,13 @@ def derivatives(function: Function, designs: Array, first: Array, *, one_sided: 
             behind[at] -= h
         values = function(np.concatenate([ahead, behind]), np.tile(row[going], 2))
         fine = [(values[: len(going)] - values[len(going) :]) / (ahead[at] - behind[at])]
+        rounding = np.finfo(float).eps * np.abs(values[: len(going)]) / np.abs(ahead[at] - behind[at])
         if level == 0:
             best = fine[0].copy()
         for order, before in enumerate(coarse[:powers], start=1):
             value = (ratio**order * fine[-1] - before) / (ratio**order - 1.0)
             estimate = np.maximum(np.abs(value - fine[-1]), np.abs(value - before))
+            estimate = np.maximum(estimate, np.where(np.isfinite(rounding), rounding, np.inf))
             better = estimate < error[going]
             best[going[better]], error[going[better]] = value[better], estimate[better]
             fine.append(value)

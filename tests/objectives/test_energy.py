@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
+from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import Array, linkage_of, random_designs, random_friction, random_machine
 from tests.objectives.richardson import derivatives, steps_to_the_nearest_edge
@@ -29,6 +31,10 @@ NAMES = ("efficiency", "energy_per_cycle", "friction_loss")
 def rubbing_machines(count: int, *, seed: int) -> list[Mechanism]:
     random = np.random.default_rng(seed)
     return [replace(random_machine(random), friction=random_friction(random), acceleration=0.0) for _ in range(count)]
+
+
+def _values_of(quantity: Quantity, machine: Mechanism, designs: Array, _: object) -> Array:
+    return quantity.evaluate(machine, designs).values
 
 
 def values(name: str, machine: Mechanism, designs: Array = DESIGNS) -> Array:
@@ -103,7 +109,7 @@ def test_gradients_with_friction_in_all_joints_are_those_of_extrapolated_differe
         designs = np.column_stack([DESIGNS, np.tile([0.1, 0.005, 10.0], (len(DESIGNS), 1))])
         lengths = 0.3 * steps_to_the_nearest_edge(DESIGNS, kink_without_offset=True)
         first = np.column_stack([lengths, np.tile([0.01, 0.0005, 1.0], (len(DESIGNS), 1))])
-        expected, _ = derivatives(lambda rows, _, of=machine: quantity.evaluate(of, rows).values, designs, first)
+        expected, _ = derivatives(partial(_values_of, quantity, machine), designs, first)
         gradients = quantity.evaluate(machine, designs, gradients=True).gradients
         assert gradients is not None
         size = np.abs(expected).max(axis=1, keepdims=True)

@@ -22,6 +22,7 @@ DESIGNS = random_designs(1000, seed=1)
 # The rule is 1e-7 of the gradient's size. Measured: 99 % of the designs below 1e-9, the rest up to 5e-8 where the
 # extrapolation takes an entry that agrees with its parents by chance.
 CLOSE = 1e-7
+_TWINS = 1e-3  # rad
 
 # A closed form does not depend on the machine.
 CASES = [
@@ -51,6 +52,9 @@ def same_piece(quantity: Quantity, machine: Mechanism, designs: Array, which: An
         away = np.minimum(away, np.abs(away - 2.0 * np.pi))
         if quantity.group is Group.STRENGTH:  # pairs of crank angles may agree in their label by chance
             away = away + np.abs(there.values / value[index, None] - 1.0)
+            # The end of a segment is listed besides the maximum next to it, which alone is active: the worse of both.
+            near = away < np.nanmin(np.where(np.isfinite(there.values), away, np.nan), axis=1, keepdims=True) + _TWINS
+            away = np.where(near, there.values if there.least else -there.values, np.inf)
         nearest = np.nanargmin(np.where(np.isfinite(there.values), away, np.nan), axis=1)
         found: Array = there.values[np.arange(len(displaced)), nearest]
         return found
@@ -120,8 +124,17 @@ def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
         expected, _ = derivatives(function, designs, first)
         gradients = quantity.evaluate(machine, designs, gradients=True).gradients
         assert gradients is not None
-        # Where a peak of stress is next to another one, or to a breakpoint, few steps follow it.
-        assert away(gradients, expected).max() < (10.0 * CLOSE if quantity.group is Group.STRENGTH else CLOSE)
+        error = away(gradients, expected)
+        # A peak of stress may pass over a breakpoint within the first steps: its slope is continuous, its curvature is
+        # not, and what is extrapolated is the slope on the far side. Steps that stay on the near side decide.
+        again = np.flatnonzero(error >= CLOSE) if quantity.group is Group.STRENGTH else np.arange(0)
+        if len(again):
+            function, _ = same_piece(
+                quantity, machine, designs[again], greatest_piece(quantity, machine, designs[again])
+            )
+            expected, _ = derivatives(function, designs[again], first[again] / 512.0)
+            error[again] = away(gradients[again], expected)
+        assert error.max() < CLOSE
 
 
 # Rod to offset is infinite there.

@@ -34,9 +34,8 @@ def test_they_are_sums_of_force_times_turning_over_many_angles(rubbing: bool) ->
         forces = [np.hypot(getattr(found, f"{name}_x"), getattr(found, f"{name}_y")) for name in PINS]
         depths = (machine.crank.depth, min(machine.crank.depth, machine.rod.depth), machine.rod.depth)
         diameters = (STRENGTH.crank_pivot, STRENGTH.crank_pin, STRENGTH.slider_pin)
-        for name, force, turning, b, d in zip(
-            PINS, forces, (1.0, np.abs(1.0 - swing), np.abs(swing)), depths, diameters, strict=True
-        ):
+        turned = (np.ones_like(swing), np.abs(1.0 - swing), np.abs(swing))
+        for name, force, turning, b, d in zip(PINS, forces, turned, depths, diameters, strict=True):
             pressure, path = force / (d * b), 0.5 * d * turning  # path: per rad of the crank
             pv = float(np.mean(pressure * path)) * abs(machine.speed)
             worn = 1e6 * 1e-15 * 2.0 * math.pi * float(np.mean(pressure * path))

@@ -116,8 +116,8 @@ def test_no_designs_have_no_values(quantity: Quantity) -> None:
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
 def test_only_means_and_works_may_be_negative(quantity: Quantity) -> None:
-    works = ("mean_torque", "mean_power", "delivered_work", "energy_per_cycle", "indicated_work")
-    works = (*works, "mean_effective_pressure")
+    gas = ("indicated_work", "mean_effective_pressure")
+    works = ("mean_torque", "mean_power", "delivered_work", "energy_per_cycle", *gas)
     pins = ("static_safety",)  # below zero where a pin is wider than its eye
     assert quantity.signed == (quantity.name in (*works, *pins))
     if not quantity.signed:
