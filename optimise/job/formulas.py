@@ -27,6 +27,7 @@ from .units import closest, dimension_of, is_value, kind_for, kind_of, number_in
 DIMENSIONS = ("crank", "rod", "offset")
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3
+_MOST_NAMES = 12  # of a message
 _LONGEST_TITLE = 60
 
 
@@ -77,6 +78,21 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 def words_of(text: object) -> list[str]:
     """Return the words of a formula, names and units; none of what is no text."""
     return _WORD.findall(text) if isinstance(text, str) else []
+
+
+def unknown_name(name: str, known: Iterable[str], units: Units) -> InputError:
+    """Return the refusal of a name that no quantity, dimension or varying number has. known: the names there are."""
+    every = list(known)
+    near = difflib.get_close_matches(name[:60], every, n=_NEAREST)
+    more = f" and {len(every) - _MOST_NAMES} more" if len(every) > _MOST_NAMES else ""
+    hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {', '.join(every[:_MOST_NAMES])}{more}"
+    if "." in name and not near:
+        hint = "let the number vary in [variables], or write its value"
+    elif name in ARGUMENTS:
+        hint = f"write it with its arguments in brackets: {name}(...)"
+    elif units.has(name):
+        hint = f"a unit stands right after its number: 1 {name}"
+    return InputError(f"no quantity, dimension or varying number is called {shown(name)}; {hint}")
 
 
 class Formulas:
@@ -235,16 +251,7 @@ class Formulas:
             return self._quantities[name]
         if name in FACTS:
             raise InputError(f"{name} needs the table [{FACTS[name].table}]; got none; add it, or leave {name} out")
-        known = [*self._quantities, *self._places, *self._stated]
-        near = difflib.get_close_matches(name[:60], known, n=_NEAREST)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {', '.join(known)}"
-        if "." in name and not near:
-            hint = "let the number vary in [variables], or write its value"
-        elif name in ARGUMENTS:
-            hint = f"write it with its arguments in brackets: {name}(...)"
-        elif self._units.has(name):
-            hint = f"a unit stands right after its number: 1 {name}"
-        raise InputError(f"no quantity, dimension or varying number is called {shown(name)}; {hint}")
+        raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units)
 
     def _interval(self, of: Quantity) -> Interval:
         """Return bounds of a quantity within the ranges; one that is never negative is taken for never zero."""

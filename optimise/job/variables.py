@@ -144,6 +144,16 @@ def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_apart)])
 
 
+def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the numbers that an incomplete job lets vary besides the dimensions: path and what is given for it."""
+    given = tables.get("variables")
+    found: dict[str, Any] = {}
+    for key, value in given.items() if isinstance(given, Mapping) else ():
+        if isinstance(key, str) and key.partition(".")[0] in ROOTS:
+            found |= dict(_leaves({key: value}, ""))
+    return found
+
+
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
     """Put a value into tables within tables."""
     for step in steps[:-1]:

@@ -16,6 +16,7 @@ from .settings import SettingsDep
 from .throttle import READING
 
 if TYPE_CHECKING:
+    from ...objectives.kinds import Kind
     from ..preview.preview import Look
 
 router = APIRouter(tags=["jobs"])
@@ -85,6 +86,25 @@ class ExampleModel(BaseModel):
     motion: MotionModel
 
 
+class FormulaModel(BaseModel):
+    """A formula of a job: its place, as mistakes name it, and the kind and unit of its values.
+
+    kind and unit are null for a mistake, and while those of a name in it are not known.
+    """
+
+    path: str = Field(examples=['constraints."2 * crank + rod"'])
+    kind: str | None = Field(examples=["length"])
+    unit: str | None = Field(examples=["mm"])
+
+
+class NameModel(BaseModel):
+    """A name that formulas of this job alone may have: a quantity of its own, or a number that varies."""
+
+    name: str = Field(examples=["clearance"])
+    title: str = Field(examples=["clearance beside the crank"])
+    unit: str | None = Field(description="null while it is not known", examples=["mm"])
+
+
 class PreviewModel(BaseModel):
     """Findings about a job while it is being written."""
 
@@ -92,6 +112,8 @@ class PreviewModel(BaseModel):
     understood: Understood | None = Field(description="what was understood, once nothing is wrong")
     allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
     example: ExampleModel | None = Field(description="null where nothing turns fully")
+    formulas: list[FormulaModel] = Field(description="of the job, in their order", examples=[[]])
+    names: list[NameModel] = Field(description="that its formulas may have beside /quantities", examples=[[]])
 
 
 @router.post("/preview")
@@ -106,7 +128,16 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
             understood=None if look.problem is None else understood(look.problem, draft.job),
             allowed=_allowed(look),
             example=_example(look),
+            formulas=[
+                FormulaModel(path=of.key[:500], kind=of.kind and of.kind.plain, unit=_unit(of.kind))
+                for of in look.formulas
+            ],
+            names=[NameModel(name=of.name[:500], title=of.title[:200], unit=_unit(of.kind)) for of in look.names],
         )
+
+
+def _unit(kind: Kind | None) -> str | None:
+    return None if kind is None else kind.metric.symbol
 
 
 def _allowed(look: Look) -> AllowedModel | None:

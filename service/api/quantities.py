@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
+from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, LENGTH, SHOWN, TIME, shown_in
 from ...objectives.quantity import MECHANICS, Group, Quantity
 
@@ -34,10 +35,19 @@ class QuantityModel(BaseModel):
     offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
 
 
+class FunctionModel(BaseModel):
+    """A function of formulas, and how many arguments it takes."""
+
+    name: str = Field(examples=["max"])
+    least: int = Field(examples=[2])
+    most: int = Field(examples=[20])
+
+
 class QuantityList(BaseModel):
-    """All quantities: dimensions, those of designs, those of wanted motions."""
+    """All quantities: dimensions, those of designs, those of wanted motions. functions: of formulas of these."""
 
     quantities: list[QuantityModel]
+    functions: list[FunctionModel]
 
 
 class ShownUnit(BaseModel):
@@ -103,7 +113,10 @@ def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and where it comes from."""
     from ...objectives.registry import FACTS
 
-    return QuantityList(quantities=[*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())])
+    return QuantityList(
+        quantities=[*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())],
+        functions=[FunctionModel(name=name, least=least, most=most) for name, (least, most) in ARGUMENTS.items()],
+    )
 
 
 _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better")

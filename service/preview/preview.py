@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...model.errors import InputError
@@ -13,6 +13,7 @@ from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
 from ...optimise.job.box import beyond_both
 from ...optimise.job.file import require_few
+from ...optimise.job.stated_formulas import OwnName, StatedFormula, own_names, stated_formulas
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from .feasibility import Ends, Possible, possible
@@ -36,7 +37,8 @@ class Look:
     """Preview of a job. wrong: its mistakes, none if it can be solved. problem: of the whole job, if it is valid.
 
     stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
-    requirements that were not looked at. said: sentences on what cannot be had.
+    requirements that were not looked at. said: sentences on what cannot be had. formulas: of the job, in their order.
+    names: that formulas of this job alone may have.
     """
 
     wrong: list[Wrong]
@@ -45,6 +47,8 @@ class Look:
     possible: Possible | None
     unchecked: list[str]
     said: list[str]
+    formulas: list[StatedFormula] = field(default_factory=list)
+    names: list[OwnName] = field(default_factory=list)
 
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
@@ -53,6 +57,23 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
         require_few(tables)
     except InputError as error:
         return Look(_places(error), None, None, None, [], [])
+    look = _looked(tables, read)
+    formulas = stated_formulas(tables)
+    wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
+    return replace(look, wrong=wrong, formulas=formulas, names=own_names(tables))
+
+
+def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
+    """Return mistakes with those of formulas, which the others hide: a job is read before its formulas are.
+
+    What is said of the formula itself comes instead of what is said of its place.
+    """
+    found = {of.key: of.wrong for of in formulas if of.wrong is not None}
+    return [*(one for one in wrong if one.path not in found), *(Wrong(*item) for item in found.items())]
+
+
+def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+    """Return the findings about a job, its formulas aside."""
     try:
         stated = geometry(tables, None)
     except InputError:

@@ -48,6 +48,7 @@ declare global {
     type Front = Schemas["FrontModel"];
     type FrontPoints = Schemas["FrontPoints"];
     type FrontSoFar = Schemas["FrontSoFar"];
+    type Function = Schemas["FunctionModel"];
     type Job = Schemas["JobShown"];
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];

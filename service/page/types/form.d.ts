@@ -20,6 +20,20 @@ declare namespace Form {
     node: HTMLElement;
     controls: HTMLElement[];
     error: HTMLElement;
+    /** Called when the service has looked at the job. */
+    tell?: () => void;
+  }
+  /** Where a control reads and writes, which may be renamed, and what its ids are made of, which may not. */
+  interface Spot {
+    path: Path;
+    readonly id: Path;
+  }
+  /** A name that a formula may have; behind: what is typed with it. */
+  interface Name {
+    name: string;
+    title: string;
+    unit: string | null;
+    behind?: string;
   }
   /** A part of a JSON Schema. */
   interface Schema {
@@ -75,7 +89,14 @@ declare namespace Form {
     at(path: Path): unknown;
     put(path: Path, value: unknown): void;
     submit(key: string, value: unknown): void;
+    /** Call a key of the table at a path otherwise, for the fields within a node. */
+    rename(path: Path, from: string, to: string, within: HTMLElement): void;
     register(one: Field): void;
+    forget(which: (one: Field) => boolean): void;
+    /** What the service said last of the job; null before it has. */
+    said: Api.Preview | null;
+    /** The names that formulas may have. */
+    names(): Name[];
     quantity(name: string): Api.Quantity;
     /** The quantities that objectives and requirements may be about. */
     judging(): Api.Quantity[];

@@ -219,3 +219,44 @@ def test_a_job_of_too_many_values_is_refused_with_their_number_at_every_door(sha
 
 def test_a_preview_is_of_a_job_and_nothing_else(shared: httpx.Client) -> None:
     assert "body path: unknown" in refused(shared.post("/preview", json={"job": {}, "path": "x"}), 422)
+
+
+def test_formulas_of_a_job_have_their_units_or_their_mistakes_while_the_rest_is_missing(shared: httpx.Client) -> None:
+    job = {
+        "variables": {"mechanism": {"slider": {"mass": ["1 kg", "3 kg"]}}},
+        "quantity": {"room": {"formula": "offset - crank"}, "round": {"formula": "round + 1 mm"}},
+        "constraints": {
+            "room / mechanism.slider.mass": {"max": ""},
+            "crank + peak_torque": {"max": "1 mm"},
+            "stroke": {"max": "2.2 * crnk"},
+            "": {"max": "1 mm"},
+            "quick": {"max": 2},
+        },
+        "objectives": {"2 * (crank": "minimise", "crank": "minimise"},
+    }
+    found = preview(shared, job)
+    units = {formula["path"]: formula["unit"] for formula in found["formulas"]}
+    assert units["quantity.room.formula"] == "mm"
+    assert units['constraints."room / mechanism.slider.mass"'] == "m kg^-1"
+    assert units["objectives.crank"] == "mm"
+    assert units["quantity.round.formula"] is None
+    wrong = {one["path"]: one["sentence"] for one in found["wrong"]}
+    assert "adds mm and N m" in wrong['constraints."crank + peak_torque"']
+    assert "did you mean crank" in wrong["constraints.stroke.max"]
+    assert wrong['constraints.""'].startswith("is missing")
+    assert wrong["constraints.quick"].startswith('no quantity, dimension or varying number is called "quick"')
+    assert "every bracket that is opened is closed" in wrong['objectives."2 * (crank"']
+    assert {(one["name"], one["unit"]) for one in found["names"]} == {
+        ("room", "mm"),
+        ("round", None),
+        ("mechanism.slider.mass", "kg"),
+    }
+
+
+def test_a_job_of_formulas_made_of_each_other_is_looked_at_within_a_moment(shared: httpx.Client) -> None:
+    own = {"a0": {"formula": "crank"}, "a1": {"formula": "rod"}}
+    own |= {f"a{n}": {"formula": f"a{n - 1} + a{n - 2}"} for n in range(2, 150)}
+    begin = time.monotonic()
+    found = preview(shared, {"quantity": own})
+    assert time.monotonic() - begin < 2.0
+    assert {formula["unit"] for formula in found["formulas"]} == {"mm"}

@@ -3,6 +3,8 @@
 import { h } from "../lib/dom.js";
 import { idOf, written } from "./path.js";
 
+const CONTROLS = "input, select, textarea";
+
 /**
  * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
  * page of its own. The field is registered with the form, which tells it what is wrong.
@@ -10,21 +12,21 @@ import { idOf, written } from "./path.js";
  * @param {{ wide?: boolean, labelled?: boolean, register?: boolean }} looks
  */
 export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
-  const id = idOf(path, "c");
-  controls[0].id ||= id;
+  const inputs = controls.flatMap((one) => (one.matches(CONTROLS) ? [one] : /** @type {HTMLElement[]} */ ([...one.querySelectorAll(CONTROLS)])));
+  const id = (inputs[0].id ||= idOf(path, "c"));
   const understood = h("p", { class: "understood", role: "status", hidden: true });
   const error = h("p", { class: "error", id: `${id}-error`, hidden: true });
   const explained = explanation(`${id}-why`, label, why);
   const node = h(
     "div",
     { class: wide ? "field wide" : "field" },
-    h("div", { class: "field-label" }, labelled ? h("label", { for: controls[0].id }, label) : h("span", {}, label), explained?.button),
+    h("div", { class: "field-label" }, labelled ? h("label", { for: inputs[0].id }, label) : h("span", {}, label), explained?.button),
     h("div", { class: "field-controls" }, controls),
     understood,
     explained?.text,
     error,
   );
-  if (register) form.register({ path, key: written(path), node, controls: controls.filter((one) => !one.classList.contains("unit")), error });
+  if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error });
   return node;
 }
 

@@ -20,7 +20,7 @@ export function objective(form, quantity) {
     form.redraw();
   });
   const ask = explanation(idOf(path, "why"), quantity.title, { sentence: quantity.sentence, name: quantity.name });
-  const controls = given === undefined ? [] : wanted(form, path, quantity, kind, given);
+  const controls = given === undefined ? [] : wanted(form, { path, id: path }, { title: quantity.title, kind, again: () => form.redraw() });
   const made = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
   made.classList.add("wanted");
   made.querySelector(".field-label")?.replaceWith(h("div", { class: "wish" }, box, h("label", { for: box.id }, quantity.title), ask?.button));
@@ -28,30 +28,34 @@ export function objective(form, quantity) {
   return made;
 }
 
-/** @param {Form.Whole} form @param {Form.Path} path @param {Api.Quantity} quantity @param {string | null} kind @param {unknown} given */
-function wanted(form, path, quantity, kind, given) {
+/**
+ * Return the controls of what is wanted of an objective: its direction, or a value to come near to. again: draws them anew.
+ * @param {Form.Whole} form @param {Form.Spot} spot @param {{ title: string, kind: string | null, again: () => void }} of
+ */
+export function wanted(form, spot, { title, kind, again }) {
+  const given = form.at(spot.path);
   const sense = typeof given === "object" && given !== null ? "target" : String(given).replace("imize", "imise");
-  const select = h("select", { id: idOf(path, "s"), "aria-label": `${quantity.title}: what is wanted` }, SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)));
+  const select = h("select", { id: idOf(spot.id, "s"), "aria-label": `${title}: what is wanted` }, SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)));
   if (sense !== "target") {
     select.addEventListener("change", () => {
-      form.put(path, select.value === "target" ? { target: "" } : select.value);
-      form.redraw();
+      form.put(spot.path, select.value === "target" ? { target: "" } : select.value);
+      again();
     });
     return [select];
   }
   const target = at(given, ["target"]);
   const { number: value, unit } = split(target === "" ? undefined : target, kind);
-  const input = numberInput(idOf(path, "t"), value, `${quantity.title}: value to come near to`);
-  const units = kind ? unitSelect(quantity.title, kind, unit, false, idOf(path, "u")) : null;
-  const write = () => form.put(path, { target: (units ? taken(input, { kind, select: units }) : number(input)) ?? "" });
+  const input = numberInput(idOf(spot.id, "t"), value, `${title}: value to come near to`);
+  const units = kind ? unitSelect(title, kind, unit, false, idOf(spot.id, "u")) : null;
+  const write = () => form.put(spot.path, { target: (units ? taken(input, { kind, select: units }) : number(input)) ?? "" });
   input.addEventListener("input", write);
   units?.addEventListener("change", () => {
     changeUnit(units, [input], kind);
     write();
   });
   select.addEventListener("change", () => {
-    form.put(path, select.value);
-    form.redraw();
+    form.put(spot.path, select.value);
+    again();
   });
   return units ? [select, input, units] : [select, input];
 }

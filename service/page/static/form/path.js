@@ -31,9 +31,25 @@ export function put(job, path, value) {
   if (value === undefined && !Object.keys(/** @type {object} */ (inner)).length && !Array.isArray(job)) delete job[key];
 }
 
-/** Return a path as the service writes it: "load #1.force". @param {Form.Path} path @returns {string} */
+const LONGEST = 60; // of a key that the service writes whole
+
+/** Return a path as the service writes it: "load #1.force"; keys that are formulas in quotes. @param {Form.Path} path @returns {string} */
 export function written(path) {
-  return path.map((key, place) => (typeof key === "number" ? ` #${key + 1}` : place ? `.${key}` : key)).join("");
+  return path.map((key, place) => (typeof key === "number" ? ` #${key + 1}` : (place ? "." : "") + quoted(key))).join("");
+}
+
+/** @param {string} key */
+function quoted(key) {
+  if (/^[A-Za-z_]\w*$/.test(key) && key.length <= LONGEST) return key;
+  return JSON.stringify(key.length <= LONGEST ? key : `${key.slice(0, LONGEST)}...`);
+}
+
+/**
+ * Return a table with one of its keys called otherwise, in its place.
+ * @param {Record<string, unknown>} table @param {string} before @param {string} after
+ */
+export function renamed(table, before, after) {
+  return Object.fromEntries(Object.entries(table).map(([key, value]) => [key === before ? after : key, value]));
 }
 
 /** Return an id for the control of a path, the same each time that the form is drawn. @param {Form.Path} path @param {string | number} part */

@@ -2,15 +2,17 @@
 
 import { h } from "../lib/dom.js";
 import { byschema, choice, quantity } from "./controls.js";
+import { formulaObjectives, formulaRequirements, namedFormulas, namesGiven } from "./formula.js";
 import { link } from "./link.js";
 import { loads } from "./load.js";
 import { objective } from "./objective.js";
+import { isTable } from "./path.js";
 import { range } from "./range.js";
 import { requirement } from "./requirement.js";
 import { solving } from "./solving.js";
 import { speed } from "./speed.js";
 
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance"]);
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
@@ -25,8 +27,8 @@ export function sections(form) {
       fields(requirements(form, offered(form, "proportions"))),
     ),
     section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Several cylinders on one crankshaft", byschema(form, ["mechanism", "cylinders"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
-    section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form)),
-    section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form)),
+    section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
+    section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
     section("Search", solving(form), more("Robust designs", robust(form)), more("Loose joint, for the simulation of its impacts", byschema(form, ["clearance"], { label: "clearance" }))),
     kept(form),
@@ -44,9 +46,10 @@ function fields(...content) {
   return h("div", { class: "fields" }, content);
 }
 
-/** @param {string} title @param {...Dom.Child} content */
+/** @param {string | [string, string]} title of the part, and what it has, in a line @param {...Dom.Child} content */
 function more(title, ...content) {
-  return h("details", { class: "more" }, h("summary", {}, title), h("div", { class: "fields" }, content));
+  const [name, has] = [title].flat();
+  return h("details", { class: "more" }, h("summary", {}, name, has ? h("span", { class: "has" }, has) : null), h("div", { class: "fields" }, content));
 }
 
 /**
@@ -144,9 +147,8 @@ function robust(form) {
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
   const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));
-  /** @param {string} table */
-  const formulas = (table) => Object.keys(form.at([table]) ?? {}).filter((key) => key !== "slow_stroke" && !form.quantities.has(key)).map((key) => `${table}."${key}"`);
-  const names = [...parts, ...varying.map((key) => `variables.${key}`), ...formulas("constraints"), ...formulas("objectives")];
+  const functions = Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => !(isTable(part) && "formula" in part)).map(([name]) => `the function ${name}`);
+  const names = [...parts, ...varying.map((key) => `variables.${key}`), ...functions];
   if (!names.length) return null;
   return section("Other parts of the job", h("p", {}, `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`));
 }

@@ -16,12 +16,12 @@ export function taken(input, { kind = null, percent = false, select = null } = {
   if (input.value !== input.dataset.number) for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
   if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
   if (found.number === undefined) {
-    tell(input);
-    return found.empty ? undefined : input.value.trim();
+    say(input);
+    return found.empty ? undefined : input.value.trim().replace(/^=\s*/, "");
   }
   if (select && found.unit !== select.value) select.value = select.dataset.from = found.unit; // to a share, or from one
   if (found.said) [input.dataset.said, input.dataset.number] = [found.said, found.number];
-  tell(input);
+  say(input);
   return join(found.number, found.unit);
 }
 
@@ -31,7 +31,7 @@ export function ordered(input) {
 }
 
 /** Say beside the field how its numbers were read. @param {HTMLInputElement} input */
-function tell(input) {
+export function say(input) {
   const place = input.closest(".field")?.querySelector(".understood");
   if (!(place instanceof HTMLElement)) return;
   const said = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(({ dataset }) => dataset.said ?? []);

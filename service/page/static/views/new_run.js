@@ -5,7 +5,7 @@ import { keepDraft, kept, newKey } from "../form/draft.js";
 import { showFacts } from "../form/facts.js";
 import { showWrong } from "../form/field.js";
 import { jobFile, presets } from "../form/job_file.js";
-import { at, put } from "../form/path.js";
+import { at, put, renamed, written } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
 import { readyKinds } from "../form/units.js";
@@ -20,11 +20,11 @@ export const title = "New run";
 
 /** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
-  const [schema, { quantities }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds(signal)]);
+  const [schema, { quantities, functions }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds(signal)]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
   const before = kept();
-  build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, shipped, signal });
+  build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, functions, shipped, signal });
 }
 
 /**
@@ -56,9 +56,9 @@ function addressOf(source) {
 
 /**
  * @param {HTMLElement} place
- * @param {{ draft: Form.Draft, before: Form.Draft | null, schema: ReturnType<typeof reader>, quantities: Api.Quantity[], shipped: Api.Preset[], signal: AbortSignal }} given
+ * @param {{ draft: Form.Draft, before: Form.Draft | null, schema: ReturnType<typeof reader>, quantities: Api.Quantity[], functions: Api.Function[], shipped: Api.Preset[], signal: AbortSignal }} given
  */
-function build(place, { draft, before, schema, quantities, shipped, signal }) {
+function build(place, { draft, before, schema, quantities, functions, shipped, signal }) {
   /** @type {Api.Preview | null} */
   let checked = null; // what the service said of the job as it is; null while it has not
   let undone = before; // what was typed elsewhere, when the address asks for something else
@@ -85,7 +85,20 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
       else form.submission[key] = value;
       changed({ check: false });
     },
+    rename: (path, from, to, within) => {
+      const table = /** @type {Record<string, unknown>} */ (at(form.job, path));
+      put(form.job, path, renamed(table, from, to));
+      for (const one of form.fields) {
+        if (!within.contains(one.node)) continue;
+        one.path = [...path, to, ...one.path.slice(path.length + 1)];
+        one.key = written(one.path);
+      }
+      changed();
+    },
     register: (one) => void form.fields.push(one),
+    forget: (which) => void (form.fields = form.fields.filter((one) => !which(one))),
+    said: null,
+    names: () => [...quantities, ...(form.said?.names ?? []), ...functions.map(({ name }) => ({ name, title: "function", unit: null, behind: "(" }))],
     quantity: (name) => /** @type {Api.Quantity} */ (form.quantities.get(name)), // those that the form names itself
     judging: () => quantities.filter(({ name }) => schema.property(["objectives", name])),
     why: (name) => ({ sentence: form.quantity(name).sentence, name }),
@@ -110,9 +123,11 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
   }
   /** @param {string | null | undefined} focus */
   function redraw(focus = document.activeElement?.id) {
-    const folds = [...body.querySelectorAll("details[open] > summary")].map((one) => one.textContent);
+    /** @param {Element} one its title, without the line of what it has */
+    const titled = (one) => one.querySelector(":scope > summary")?.firstChild?.textContent ?? "";
+    const folds = [...body.querySelectorAll("details[open]")].map(titled);
     fill(body, sections(form));
-    for (const fold of body.querySelectorAll("details")) fold.open = folds.includes(fold.firstChild?.textContent ?? "");
+    for (const fold of body.querySelectorAll("details")) fold.open = folds.includes(titled(fold));
     if (focus) document.getElementById(focus)?.focus();
     if (checked) mark(checked.wrong);
   }
@@ -124,6 +139,7 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
     if (!text) undone = structuredClone({ ...draft });
     Object.assign(draft, structuredClone(other), { key: newKey() });
     form.job = draft.job;
+    form.said = null;
     form.submission = draft.submission;
     undo.hidden = undone === null;
     keepDraft(draft);
@@ -146,6 +162,9 @@ function build(place, { draft, before, schema, quantities, shipped, signal }) {
   }
   /** @param {Api.Preview} answer */
   function tell(answer) {
+    form.said = answer;
+    for (const one of form.fields.slice()) one.tell?.();
+    document.activeElement?.dispatchEvent(new Event("names")); // there may be others now
     mark(answer.wrong);
     const count = answer.wrong.length;
     status.classList.toggle("good", count === 0);

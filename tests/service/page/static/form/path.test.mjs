@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { at, idOf, isTable, put, written } from "../../../../../service/page/static/form/path.js";
+import { at, idOf, isTable, put, renamed, written } from "../../../../../service/page/static/form/path.js";
 import { draws } from "../draws.mjs";
 
 const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
@@ -60,4 +60,14 @@ test("ids of different paths of a form differ, and are names in a document", () 
   const ids = [["load", 0, "force"], ["load", 1, "force"], ["load", 0], ["rod"]].flatMap((one) => ["c", "u"].map((part) => idOf(one, part)));
   assert.equal(new Set(ids).size, ids.length);
   assert.match(idOf(["choice of", "µ"], "c"), /^[\w-]+$/);
+});
+
+test("keys that are formulas are written in quotes, long ones as far as the service writes them", () => {
+  assert.equal(written(["constraints", "2 * crank + rod", "max"]), 'constraints."2 * crank + rod".max');
+  assert.equal(written(["quantity", "room", "formula"]), "quantity.room.formula");
+  assert.equal(written(["constraints", "x+".repeat(40)]), `constraints."${"x+".repeat(30)}..."`);
+});
+
+test("a key that is called otherwise stays in its place", () => {
+  assert.deepEqual(Object.keys(renamed({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), ["a", "b c + 1", "d"]);
 });

@@ -1,0 +1,149 @@
+"""Formulas of a job that may be incomplete: the unit of each, or the mistake in it, and the names they may have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+from ...model.errors import InputError
+from ...objectives.formula.expression import names_in
+from ...objectives.formula.parser import parse
+from ...objectives.kinds import LENGTH, Kind
+from ...objectives.registry import FACTS
+from .dimensions import kind_of_formula
+from .formulas import DIMENSIONS, Units, is_formula, unknown_name
+from .messages import key_of
+from .quantities import SLOW_STROKE, WORDS
+from .units import is_value, kind_for
+from .variables import varying_in
+
+_MOST = 200
+"""Formulas of a job that are read, and names that are told."""
+
+
+@dataclass(frozen=True)
+class OwnName:
+    """A name that formulas of this job alone may have. kind: of its values; None while that is not known."""
+
+    name: str
+    title: str
+    kind: Kind | None
+
+
+@dataclass(frozen=True)
+class StatedFormula:
+    """A formula of a job. key: its place, as in messages. kind: of its values, None if not known.
+
+    wrong: the mistake in it, as a sentence; None if there is none.
+    """
+
+    key: str
+    kind: Kind | None
+    wrong: str | None
+
+
+def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
+    """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
+    kinds = _Kinds(tables)
+    own = [OwnName(name, _title(name, part), kinds.own(name)) for name, part in kinds.stated.items()]
+    return [*own, *(OwnName(path, _words(path), kind) for path, kind in kinds.varying)]
+
+
+def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
+    """Return the formulas of a job: named ones, keys of [constraints] and [objectives], and bounds.
+
+    Only the units are checked here, and the names: ranges and the machine may be missing still.
+    """
+    kinds = _Kinds(tables)
+    return [_read(key, text, kinds) for key, text in islice(_formulas(tables, kinds), _MOST)]
+
+
+def _read(key: str, text: str, kinds: _Kinds) -> StatedFormula:
+    try:
+        return StatedFormula(key, kinds.of(text), None)
+    except InputError as error:
+        return StatedFormula(key, None, str(error))
+
+
+def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, str]]:
+    for name, part in kinds.stated.items():
+        if isinstance(part.get("formula"), str):
+            yield key_of(["quantity", name, "formula"]), part["formula"]
+    for table in ("constraints", "objectives"):
+        given = tables.get(table)
+        for name, bounds in given.items() if isinstance(given, Mapping) else ():
+            if not isinstance(name, str) or name == SLOW_STROKE:
+                continue
+            if name not in FACTS:
+                yield key_of([table, name]), name
+            for word in WORDS if isinstance(bounds, Mapping) else ():
+                bound = bounds.get(word)
+                if isinstance(bound, str) and is_formula(bound, kinds.names):
+                    yield key_of([table, name, word]), bound
+
+
+def _words(path: str) -> str:
+    return path.removeprefix("mechanism.").replace("_", " ").replace(".", " ")
+
+
+def _title(name: str, part: Mapping[str, Any]) -> str:
+    title = part.get("title")
+    return title if isinstance(title, str) and title.strip() else name.replace("_", " ")
+
+
+class _Kinds:
+    """Kinds of the names that formulas of a job may have. Raises nothing for what is incomplete: its kind is None."""
+
+    def __init__(self, tables: Mapping[str, Any]) -> None:
+        own = tables.get("quantity")
+        given = own.items() if isinstance(own, Mapping) else ()
+        self.stated = {
+            name: part for name, part in islice(given, _MOST) if isinstance(name, str) and isinstance(part, Mapping)
+        }
+        self.varying = [(path, _kind_of(value)) for path, value in islice(varying_in(tables).items(), _MOST)]
+        self._known: dict[str, Kind | None] = dict.fromkeys(DIMENSIONS, LENGTH)
+        self._known |= dict(self.varying) | {name: of.kind for name, of in FACTS.items()}
+        self.names = frozenset((*self._known, *self.stated))
+        self._units = Units(self.names)
+
+    def of(self, text: str) -> Kind | None:
+        """Return the kind of a formula; None while that of a name in it is not known. Raises InputError."""
+        if not text.strip():
+            raise InputError('is missing; write a formula such as "offset - 2 * crank"')
+        node = parse(text, self._units)
+        found = {}
+        for name in names_in(node):
+            if name not in self.names:
+                raise unknown_name(name, [*self._known, *self.stated], self._units)
+            found[name] = self.own(name)
+        known = {name: kind for name, kind in found.items() if kind is not None}
+        return kind_of_formula(node, known) if len(known) == len(found) else None
+
+    def own(self, name: str) -> Kind | None:
+        """Return the kind of a quantity of the job's own; None while it is not known."""
+        if name not in self._known:
+            self._known[name] = None  # until it is found: of one that defines itself it stays so
+            self._known[name] = self._found(self.stated[name])
+        return self._known[name]
+
+    def _found(self, part: Mapping[str, Any]) -> Kind | None:
+        unit, formula = part.get("unit"), part.get("formula")
+        try:
+            if isinstance(unit, str):
+                return kind_for(unit)
+            return self.of(formula) if isinstance(formula, str) else None
+        except InputError:
+            return None
+
+
+def _kind_of(given: object) -> Kind | None:
+    """Return the kind of the first value with a unit in a range, in choices or in a table of values."""
+    if isinstance(given, Mapping):
+        return next((kind for item in given.values() if (kind := _kind_of(item))), None)
+    if isinstance(given, list | tuple):
+        return next((kind for item in given[:2] if (kind := _kind_of(item))), None)
+    if not (isinstance(given, str) and is_value(given)):
+        return None
+    return kind_for(given.strip().lstrip("+-.0123456789eE").strip())

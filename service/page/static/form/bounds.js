@@ -1,0 +1,61 @@
+/** Bounds of a requirement: exactly, at least, at most, or between two; each a value or a formula. */
+
+import { h } from "../lib/dom.js";
+import { completing } from "./completion.js";
+import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
+import { at, idOf, isTable } from "./path.js";
+import { taken } from "./typed_field.js";
+import { convert, split } from "./units.js";
+
+const ANY = ["any", "any"];
+const MODES = [["equals", "exactly"], ["min", "at least"], ["max", "at most"], ["between", "between"]];
+/** @type {Record<string, string[]>} */
+const KEYS = { any: [], equals: ["equals"], min: ["min"], max: ["max"], between: ["min", "max"] };
+/** What is asked of a bound, in words. @type {Record<string, string>} */
+export const SAID = { equals: "exactly", min: "at least", max: "at most" };
+
+/**
+ * Return the controls of the bounds that stand at a spot, and what they are: {mode, keys, inputs, controls}.
+ * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void }} given any: whether nothing may be asked; again: draws them anew
+ */
+export function bounds(form, spot, { label, kind, any = false, again }) {
+  const given = form.at(spot.path);
+  const mode = modeOf(given);
+  const select = h("select", { id: idOf(spot.id, any ? "c" : "m"), class: "mode", "aria-label": any ? null : `${label}: what must hold` }, (any ? [ANY, ...MODES] : MODES).map(([value, text]) => h("option", { value, selected: value === mode }, text)));
+  const keys = KEYS[mode];
+  const parts = keys.map((key) => split(at(given, [key]), kind));
+  const unit = parts.find((one) => one.number !== "")?.unit ?? (kind ? split(undefined, kind).unit : "");
+  const units = keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
+  const inputs = keys.map((key, place) => numberInput(idOf(spot.id, key), convert(parts[place].number, parts[place].unit, unit, kind), `${label}, ${SAID[key]}`));
+  /** @param {string[]} names */
+  const write = (names = keys) => {
+    /** @type {Record<string, unknown>} */
+    const found = {};
+    names.forEach((key, place) => {
+      const input = inputs[Math.min(place, inputs.length - 1)];
+      const typed = input && (kind ? taken(input, { kind, select: units }) : number(input));
+      found[key] = typed ?? ""; // the service says that it is missing
+    });
+    form.put(spot.path, names.length ? found : undefined);
+  };
+  inputs.forEach((input) => input.addEventListener("input", () => write()));
+  units?.addEventListener("change", () => {
+    changeUnit(units, inputs, kind);
+    write();
+  });
+  select.addEventListener("change", () => {
+    write(KEYS[select.value]);
+    again();
+  });
+  const [low, high] = inputs.map((input) => completing(input, form, { number: true }));
+  const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter((one) => one instanceof HTMLElement);
+  return { mode, keys, inputs, controls };
+}
+
+/** Return which kind of requirement is given. @param {unknown} given */
+function modeOf(given) {
+  if (!isTable(given)) return "any";
+  if (given.equals !== undefined) return "equals";
+  if (given.min !== undefined && given.max !== undefined) return "between";
+  return given.max !== undefined ? "max" : "min";
+}

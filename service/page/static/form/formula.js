@@ -1,0 +1,206 @@
+/** Formulas of a job: of a requirement, of an objective, or with a name of their own. */
+
+import { byId, fill, focused, h } from "../lib/dom.js";
+import { bounds } from "./bounds.js";
+import { completing } from "./completion.js";
+import { plain } from "./controls.js";
+import { field } from "./field.js";
+import { wanted } from "./objective.js";
+import { at, idOf, isTable, put, renamed, written } from "./path.js";
+import { say } from "./typed_field.js";
+import { join, kinds, usual } from "./units.js";
+
+const WHY = "A formula of names, such as offset - 2 * crank or max(peak_torque, 3 N m): quantities, crank, rod, offset, numbers that vary; with + - * / **, brackets and functions. Names are offered while you type.";
+const NAME = /^[a-z][a-z0-9_]*$/;
+
+/** Return the formulas among the keys of a table of the job. @param {Form.Whole} form @param {string} table */
+export function formulasOf(form, table) {
+  return Object.keys(form.at([table]) ?? {}).filter((key) => key !== "slow_stroke" && !(form.quantities.has(key) && (table === "constraints" || form.schema.property([table, key]))));
+}
+
+/** Return the rows of the formulas that requirements are about, and a button for another one. @param {Form.Whole} form */
+export function formulaRequirements(form) {
+  return rows(form, "constraints", { max: "" }, (spot, kind, label, again) => {
+    const { keys, inputs, controls } = bounds(form, spot, { label, kind, again });
+    return { controls, parts: keys.map((key, place) => ({ key, input: inputs[place] })) };
+  });
+}
+
+/** Return the rows of the formulas that are objectives, and a button for another one. @param {Form.Whole} form */
+export function formulaObjectives(form) {
+  return rows(form, "objectives", "minimise", (spot, kind, label, again) => {
+    const controls = wanted(form, spot, { title: label, kind, again });
+    const input = controls.find((one) => one instanceof HTMLInputElement);
+    return { controls, parts: input ? [{ key: "target", input }] : [] };
+  });
+}
+
+/**
+ * @typedef {{ controls: HTMLElement[], parts: { key: string, input: HTMLElement }[] }} Asked
+ *
+ * @param {Form.Whole} form @param {string} table @param {unknown} first what a new one begins with
+ * @param {(spot: Form.Spot, kind: string | null, label: string, again: () => void) => Asked} asked what is asked of it
+ */
+function rows(form, table, first, asked) {
+  const keys = formulasOf(form, table);
+  const what = table === "constraints" ? "requirement" : "objective";
+  const add = h("button", { type: "button", id: `add-${what}-formula` }, `Add a formula as ${what === "objective" ? "an" : "a"} ${what}`);
+  add.addEventListener("click", () => {
+    if (!keys.includes("")) form.put([table, ""], structuredClone(first));
+    form.redraw(idOf([table, "formula", formulasOf(form, table).indexOf("")], "c"));
+  });
+  return [keys.length ? h("div", { class: "fields formulas" }, keys.map((key, place) => row(form, table, key, place, asked, what))) : null, h("p", {}, add)];
+}
+
+/**
+ * @param {Form.Whole} form @param {string} table @param {string} key @param {number} place
+ * @param {(spot: Form.Spot, kind: string | null, label: string, again: () => void) => Asked} asked @param {string} what
+ */
+function row(form, table, key, place, asked, what) {
+  const id = [table, "formula", place];
+  /** @type {Form.Spot} */
+  const spot = { path: [table, key], id };
+  const label = `formula ${place + 1}, ${what}`;
+  const input = h("input", { type: "text", id: idOf(id, "c"), value: key, autocomplete: "off", class: "formula", placeholder: "offset - 2 * crank" });
+  const below = h("div", { class: "field-controls asked" });
+  let kind = kindAt(form, spot.path);
+  /** @type {Set<string>} */
+  const early = new Set(); // bounds that were typed before the kind of the formula was known
+  /** Give a number that was typed without one the unit that its field begins with. @param {string} key @param {string} now */
+  const withUnit = (key, now) => {
+    const given = form.at([...spot.path, key]);
+    if (typeof given === "number") form.put([...spot.path, key], join(String(given), usual(now)));
+  };
+  const draw = () => {
+    form.forget((one) => below.contains(one.node));
+    const { controls, parts } = asked(spot, kind, label, draw);
+    fill(below, controls, parts.map(({ key: part, input: of }) => {
+      const error = h("p", { class: "error", id: `${of.id}-error`, hidden: true });
+      const path = [...spot.path, part];
+      form.register({ path, key: written(path), node: of, controls: [of], error });
+      if (kind === null) of.addEventListener("input", () => early.add(part));
+      return error;
+    }), drop);
+  };
+  const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
+  drop.addEventListener("click", () => {
+    form.put(spot.path, undefined);
+    form.redraw(`add-${what}-formula`);
+  });
+  input.addEventListener("input", () => {
+    delete input.dataset.wrong;
+    delete input.dataset.said;
+    const typed = input.value.trim().replace(/^=\s*/, "");
+    const before = String(spot.path[1]);
+    if (typed === before) return form.put(spot.path, form.at(spot.path));
+    if (/^\d*$/.test(typed) && typed) input.dataset.wrong = "A formula has a name in it, such as crank.";
+    else if (typed in /** @type {object} */ (form.at([table]) ?? {})) input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
+    else {
+      form.rename([table], before, typed, made);
+      spot.path = [table, typed];
+      return;
+    }
+    form.put(spot.path, form.at(spot.path)); // so that it is looked at again
+  });
+  const made = field(form, spot.path, label, [completing(input, form)], WHY, { wide: true });
+  made.querySelector(".field-controls")?.after(below);
+  draw();
+  watch(form, made, input, () => spot.path, (now) => {
+    if (now === kind) return;
+    if (kind === null && now !== null) for (const key of early) withUnit(key, now);
+    kind = now;
+    early.clear();
+    const focus = focused(below)?.id;
+    draw();
+    if (focus) byId(focus)?.focus();
+  });
+  return made;
+}
+
+/**
+ * Say the unit of a formula below it whenever the service has looked at the job; changed(kind) is called with the kind of its values.
+ * @param {Form.Whole} form @param {HTMLElement} made @param {HTMLInputElement} input @param {() => Form.Path} path @param {(kind: string | null) => void} changed
+ */
+function watch(form, made, input, path, changed) {
+  const tell = () => {
+    const found = form.said?.formulas.find((one) => one.path === written(path()));
+    if (found?.kind) input.dataset.said = !found.unit ? "a number without a unit" : kinds().includes(found.kind) ? `${found.kind}, in ${found.unit}` : found.kind;
+    else delete input.dataset.said;
+    say(input);
+    if (found) changed(kindAt(form, path()));
+  };
+  const own = form.fields.find(({ node }) => node === made);
+  if (own) own.tell = tell;
+  tell();
+}
+
+/** Return the kind of the values of a formula, as the service said it; null while it is not known, and for one that no field has units of. @param {Form.Whole} form @param {Form.Path} path */
+function kindAt(form, path) {
+  const found = form.said?.formulas.find((one) => one.path === written(path));
+  return found?.kind && kinds().includes(found.kind) ? found.kind : null;
+}
+
+/** Return the fields of the formulas that have names, and a button for another one. @param {Form.Whole} form */
+export function namedFormulas(form) {
+  const all = Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => isTable(part) && "formula" in part).map(([name]) => name);
+  const add = h("button", { type: "button", id: "add-named-formula" }, "Add a formula with a name");
+  add.addEventListener("click", () => {
+    const taken = Object.keys(form.at(["quantity"]) ?? {});
+    const name = Array.from({ length: taken.length + 1 }, (_, n) => `formula_${n + 1}`).find((one) => !taken.includes(one)) ?? "formula";
+    form.put(["quantity", name], { formula: "" });
+    form.redraw(idOf(["quantity", all.length, "name"], "c"));
+  });
+  return [all.map((name, place) => named(form, name, place)), h("p", { class: "wide" }, add)];
+}
+
+/** Return the names of the formulas that have one. @param {Form.Whole} form */
+export function namesGiven(form) {
+  return Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => isTable(part) && "formula" in part).map(([name, part]) => String(at(part, ["title"]) ?? name));
+}
+
+/** @param {Form.Whole} form @param {string} name @param {number} place */
+function named(form, name, place) {
+  const path = ["quantity", name];
+  const label = `formula with a name ${place + 1}`;
+  const called = h("input", { type: "text", id: idOf(["quantity", place, "name"], "c"), value: name, autocomplete: "off", spellcheck: "false" });
+  called.addEventListener("change", () => {
+    const typed = called.value.trim();
+    delete called.dataset.wrong;
+    if (!NAME.test(typed)) called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
+    else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {})) called.dataset.wrong = `Another formula is called “${typed}” already.`;
+    if (called.dataset.wrong) return form.put(path, form.at(path));
+    if (typed === name) return;
+    setTimeout(() => { // once whatever has the focus next has it, and is not drawn anew before it is clicked
+      callIt(form, name, typed);
+      form.redraw();
+    });
+  });
+  const input = h("input", { type: "text", id: idOf(["quantity", place, "formula"], "c"), value: String(form.at([...path, "formula"]) ?? ""), autocomplete: "off", class: "formula", placeholder: "offset - crank" });
+  input.addEventListener("input", () => form.put([...path, "formula"], input.value.trim().replace(/^=\s*/, "")));
+  const made = field(form, [...path, "formula"], "formula", [completing(input, form)], WHY, { wide: true });
+  watch(form, made, input, () => [...path, "formula"], () => {});
+  const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
+  drop.addEventListener("click", () => {
+    form.put(path, undefined);
+    form.redraw("add-named-formula");
+  });
+  return h("fieldset", { class: "inner" }, h("legend", {}, label), h("div", { class: "fields" },
+    field(form, path, "name", [called], "By which objectives, requirements and other formulas call it."),
+    plain(form, [...path, "title"], { control: "text", label: "title", why: "For people; the name if left out." }),
+    plain(form, [...path, "unit"], { control: "text", label: "shown in", why: "A unit such as mm; the usual one of its kind if left out." }),
+    made), h("p", {}, drop));
+}
+
+/** Give a formula another name, wherever the job has it. @param {Form.Whole} form @param {string} before @param {string} after */
+function callIt(form, before, after) {
+  const word = new RegExp(`(?<![\\w.])${before}(?![\\w.(])`, "g");
+  /** @param {unknown} part @returns {unknown} */
+  const inside = (part) => (typeof part === "string" ? part.replace(word, after) : isTable(part) && !Array.isArray(part) ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, inside(value)])) : part);
+  for (const table of ["constraints", "objectives"]) {
+    const given = form.at([table]);
+    if (isTable(given)) put(form.job, [table], Object.fromEntries(Object.entries(given).map(([key, value]) => [form.quantities.has(key) ? key : key.replace(word, after), inside(value)])));
+  }
+  for (const [name, part] of Object.entries(form.at(["quantity"]) ?? {})) if (isTable(part) && typeof part.formula === "string") put(form.job, ["quantity", name, "formula"], part.formula.replace(word, after));
+  put(form.job, ["quantity"], renamed(/** @type {Record<string, unknown>} */ (form.at(["quantity"])), before, after));
+  form.put(["quantity", after], form.at(["quantity", after]));
+}
