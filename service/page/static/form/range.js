@@ -1,51 +1,109 @@
-/** Range of a dimension: from one length to another, fixed, or one of several. */
+/** Values that a dimension or another number may take: from one to another, fixed, in steps, preferred numbers, or some only. */
 
 import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
-import { at, idOf } from "./path.js";
+import { at, idOf, isTable } from "./path.js";
 import { taken } from "./typed_field.js";
 import { convert, join, split } from "./units.js";
 
-const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["choices", "one of"]];
+/** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
+
+/** @type {[Mode, string][]} */
+const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["step", "in steps"], ["series", "from a series"], ["values", "only these"], ["choices", "one of"]];
+const LISTS = ["values", "choices"];
+const STEPS = 20; // at least, of the step that is begun with
 
 /**
- * Return the field of the range of crank, rod or offset; why: {sentence, name}.
- * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why }} looks
+ * Return the field of the values that a number may take; why: {sentence, name}; fixed: whether it may have one value only.
+ * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, removed?: () => void }} looks
  */
-export function range(form, path, { label, why }) {
+export function range(form, path, { label, why, kind = "length", fixed = true, removed }) {
   const given = form.at(path);
-  const mode = Array.isArray(given) ? "range" : given !== null && typeof given === "object" ? "choices" : given === undefined ? "range" : "fixed";
-  const ends = mode === "range" ? [at(given, [0]), at(given, [1])] : mode === "fixed" ? [given] : [at(given, ["choices"]) ?? []].flat();
-  const parts = ends.map((end) => split(end, "length"));
-  const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, "length").unit;
-  const numbers = parts.map((one) => convert(one.number, one.unit, unit, "length"));
-  const select = h("select", { id: idOf(path, "c"), class: "mode" }, MODES.map(([value, text]) => h("option", { value, selected: value === mode }, text)));
-  const units = unitSelect(label, "length", unit, false, idOf(path, "u"));
-  const inputs =
-    mode === "choices"
-      ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, lengths to choose from, separated by commas` })]
-      : numbers.map((value, place) => numberInput(idOf(path, place), value, mode === "fixed" ? `${label}, fixed at` : `${label}, ${place ? "to" : "from"}`));
-  const typed = () => (mode === "choices" ? inputs[0].value.split(",") : inputs.map((one) => one.value));
-  /** @param {string} to */
+  const mode = modeOf(given);
+  const ends = endsOf(given, mode);
+  const parts = ends.map((end) => split(end, kind));
+  const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, kind).unit;
+  const numbers = parts.map((one) => convert(one.number, one.unit, unit, kind));
+  const select = h("select", { id: idOf(path, "c"), class: "mode" }, MODES.filter(([value]) => fixed || value !== "fixed").map(([value, text]) => h("option", { value, selected: value === mode }, text)));
+  const units = kind ? unitSelect(label, kind, unit, false, idOf(path, "u")) : null;
+  const list = LISTS.includes(mode);
+  const titles = mode === "fixed" ? ["fixed at"] : ["from", "to", "step"];
+  const inputs = list
+    ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, values, separated by commas` })]
+    : numbers.map((value, place) => numberInput(idOf(path, place), value, `${label}, ${titles[place]}`));
+  const series = mode === "series" ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"])) : null;
+  const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
+  /** @returns {unknown[]} */
+  const values = () => (list ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined))) : inputs.map((one) => (units ? taken(one, { kind, select: units }) : plain(taken(one)))));
+  /** @param {Mode} to */
   const write = (to = mode) => {
-    const values = mode === "choices" ? typed().map((text) => join(text, units.value)) : inputs.map((one) => taken(one, { kind: "length", select: units }));
-    const first = values.find((one) => one !== undefined);
-    if (to === "range") form.put(path, first === undefined ? undefined : [values[0] ?? "", values.at(-1) ?? ""]);
-    else if (to === "fixed") form.put(path, first);
-    else form.put(path, { choices: values.filter((one) => one !== undefined) });
+    const found = values();
+    const some = found.filter((one) => one !== undefined);
+    const between = { min: found[0] ?? "", max: (list ? found.at(-1) : found[1] ?? found[0]) ?? "" };
+    if (to === "range") form.put(path, some.length ? [between.min, between.max] : undefined);
+    else if (to === "fixed") form.put(path, some[0]);
+    else if (to === "step") form.put(path, { ...between, step: mode === "step" ? found[2] ?? "" : firstStep(inputs, units?.value ?? "") });
+    else if (to === "series") form.put(path, { ...between, series: series?.value ?? seriesOf(form)[0] });
+    else form.put(path, { [to]: mode === "step" ? some.slice(0, 2) : some });
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
-  units.addEventListener("change", () => {
+  series?.addEventListener("change", () => write());
+  units?.addEventListener("change", () => {
     const from = units.dataset.from ?? units.value;
-    if (mode === "choices") inputs[0].value = typed().map((text) => convert(text.trim(), from, units.value, "length")).join(", ");
-    changeUnit(units, mode === "choices" ? [] : inputs, "length");
+    if (list) inputs[0].value = typed().map((text) => convert(text.trim(), from, units.value, kind)).join(", ");
+    changeUnit(units, list ? [] : inputs, kind);
     write();
   });
   select.addEventListener("change", () => {
-    write(select.value);
+    write(/** @type {Mode} */ (select.value));
     form.redraw();
   });
-  const between = mode === "range" ? [inputs[0], h("span", { class: "to" }, "to"), inputs[1]] : inputs;
-  return field(form, path, label, [select, ...between, units], why);
+  const [first, second, third] = inputs;
+  /** @param {string} text */
+  const word = (text) => h("span", { class: "to" }, text);
+  const controls = [select, first, ...(second ? [word("to"), second] : []), ...(third ? [word("by"), third] : []), series, units].filter((one) => one instanceof HTMLElement);
+  const drop = removed && h("button", { type: "button", "aria-label": `${label} does not vary`, onclick: removed }, "Remove");
+  const made = field(form, path, label, drop ? [...controls, drop] : controls, why);
+  made.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
+  return made;
+}
+
+/** @param {unknown} given @returns {Mode} */
+function modeOf(given) {
+  if (given === undefined || Array.isArray(given)) return "range";
+  if (!isTable(given)) return "fixed";
+  return MODES.map(([mode]) => mode).find((mode) => mode in given) ?? "choices";
+}
+
+/** Return the values of a number that fields show, in their order. @param {unknown} given @param {Mode} mode @returns {unknown[]} */
+function endsOf(given, mode) {
+  if (mode === "range") return [at(given, [0]), at(given, [1])];
+  if (mode === "fixed") return [given];
+  if (mode === "step" || mode === "series") return ["min", "max", ...(mode === "step" ? ["step"] : [])].map((key) => at(given, [key]));
+  return [at(given, [mode]) ?? []].flat();
+}
+
+/** Return the names of the series of preferred numbers, as the schema of the dimensions has them. @param {Form.Whole} form */
+function seriesOf(form) {
+  return (form.schema.property(["variables", "crank", "series"])?.enum ?? []).map(String);
+}
+
+/** @param {Form.Whole} form @param {string} label @param {string} id @param {unknown} given */
+function seriesSelect(form, label, id, given) {
+  const known = seriesOf(form);
+  const names = given === undefined || known.includes(String(given)) ? known : [...known, String(given)];
+  return h("select", { id, "aria-label": `${label}, series of preferred numbers` }, names.map((one) => h("option", { value: one, selected: one === given }, one)));
+}
+
+/** Return the step to begin with, a power of ten that divides the range well. @param {HTMLInputElement[]} inputs @param {string} unit */
+function firstStep(inputs, unit) {
+  const span = Math.abs(Number(inputs[1]?.value) - Number(inputs[0].value));
+  const step = span > 0 && Number.isFinite(span) ? Number((10 ** Math.floor(Math.log10(span / STEPS))).toPrecision(1)) : 1;
+  return unit ? `${step} ${unit}` : step;
+}
+
+/** Return a number of a job that has no unit. @param {string | undefined} typed */
+function plain(typed) {
+  return typed !== undefined && Number.isFinite(Number(typed)) ? Number(typed) : typed;
 }

@@ -11,6 +11,7 @@ import { range } from "./range.js";
 import { requirement } from "./requirement.js";
 import { solving } from "./solving.js";
 import { speed } from "./speed.js";
+import { varying, varyingNames } from "./varying.js";
 
 const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity"]);
 
@@ -23,6 +24,7 @@ export function sections(form) {
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
+      more(["Further numbers that vary", varyingNames(form).join(", ")], varying(form)),
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
@@ -146,9 +148,8 @@ function robust(form) {
 /** Return which parts of the job have no fields. @param {Form.Whole} form */
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
-  const varying = Object.keys(form.at(["variables"]) ?? {}).filter((key) => !["crank", "rod", "offset"].includes(key));
   const functions = Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => !(isTable(part) && "formula" in part)).map(([name]) => `the function ${name}`);
-  const names = [...parts, ...varying.map((key) => `variables.${key}`), ...functions];
+  const names = [...parts, ...functions];
   if (!names.length) return null;
   return section("Other parts of the job", h("p", {}, `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`));
 }

@@ -1,0 +1,104 @@
+/** Further numbers that vary: which of the numbers of the job do, and the values that each may take. */
+
+import { h } from "../lib/dom.js";
+import { at, idOf, isTable } from "./path.js";
+import { range } from "./range.js";
+import { describe, words } from "./schema.js";
+
+const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table that says values
+
+/** Return the fields of the numbers that vary besides the dimensions, and a choice of another one. @param {Form.Whole} form */
+export function varying(form) {
+  const all = leaves(form);
+  const taken = new Set(all.map(({ name }) => name));
+  const left = numbers(form).filter(({ name }) => !taken.has(name));
+  const select = h("select", { id: "add-varying" }, h("option", { value: "" }, "choose a number …"), left.map(({ name }) => h("option", { value: name }, titleOf(name))));
+  select.addEventListener("change", () => {
+    const chosen = left.find(({ name }) => name === select.value);
+    if (!chosen) return;
+    const path = ["variables", ...chosen.name.split(".")];
+    form.put(path, around(chosen.value));
+    form.redraw(idOf(path, 0));
+  });
+  return [
+    all.length
+      ? h("div", { class: "fields ranges" }, all.map(({ path, name }) => range(form, path, { ...looksOf(form, name), fixed: false, removed: () => {
+        form.put(path, undefined);
+        form.redraw("add-varying");
+      } })))
+      : null,
+    left.length ? h("p", { class: "row wide" }, h("label", { for: "add-varying" }, "Another number that varies"), select) : null,
+  ];
+}
+
+/** Return the names of the numbers that vary besides the dimensions, in words. @param {Form.Whole} form */
+export function varyingNames(form) {
+  return leaves(form).map(({ name }) => titleOf(name));
+}
+
+/** Return the tables whose numbers may vary. @param {Form.Whole} form */
+function roots(form) {
+  return Object.entries(form.schema.property(["variables"])?.properties ?? {}).filter(([, node]) => form.schema.resolve(node).type === "object").map(([key]) => key);
+}
+
+/** Return where numbers vary: path in the job, and the name of the number. @param {Form.Whole} form */
+function leaves(form) {
+  const known = roots(form);
+  /** @type {{ path: Form.Path, name: string }[]} */
+  const found = [];
+  /** @param {unknown} part @param {Form.Path} path */
+  const walk = (part, path) => {
+    const table = isTable(part) && !Array.isArray(part) && !Object.keys(part).some((key) => VALUES.includes(key));
+    if (table && Object.keys(part).length) for (const [key, inner] of Object.entries(part)) walk(inner, [...path, key]);
+    else found.push({ path, name: path.slice(1).join(".") });
+  };
+  const given = form.at(["variables"]);
+  for (const [key, part] of Object.entries(isTable(given) ? given : {})) if (known.includes(key.split(".")[0])) walk(part, ["variables", key]);
+  return found;
+}
+
+/** Return the numbers of the job that may vary: {name, value}. @param {Form.Whole} form */
+function numbers(form) {
+  /** @type {{ name: string, value: string | number }[]} */
+  const found = [];
+  /** @param {unknown} part @param {Form.Path} path */
+  const walk = (part, path) => {
+    if (isTable(part)) {
+      for (const [key, inner] of Object.entries(part)) walk(inner, [...path, Array.isArray(part) ? Number(key) : key]);
+    } else if (typeof part === "number" || typeof part === "string") {
+      const node = form.schema.property(path);
+      const control = node && describe(node).control;
+      const one = typeof path[path.length - 1] === "string"; // not of a table of points
+      if (one && (control === "quantity" || control === "ratio") && !/%\s*$/.test(String(part))) found.push({ name: nameOf(path), value: part });
+    }
+  };
+  for (const root of roots(form)) walk(form.at([root]), [root]);
+  return found;
+}
+
+/** Return the name of a number as variables have it: places of lists count from 1. @param {Form.Path} path */
+function nameOf(path) {
+  return path.map((key) => (typeof key === "number" ? key + 1 : key)).join(".");
+}
+
+/** Return a name in words: "mechanism.slider.mass" is "slider mass". @param {string} name */
+function titleOf(name) {
+  return words(name.replace(/^mechanism\./, "").replaceAll(".", " "));
+}
+
+/** @param {Form.Whole} form @param {string} name */
+function looksOf(form, name) {
+  const path = name.split(".").map((key) => (/^\d+$/.test(key) ? Number(key) - 1 : key));
+  const node = form.schema.property(path);
+  const found = node && describe(node);
+  const given = at(form.job, path);
+  return { label: titleOf(name), kind: found?.kind ?? null, why: `${found?.description ?? ""}; ${given === undefined ? "it needs a value in its own place too" : `${given} where single designs are analysed`}`.replace(/^; /, "") };
+}
+
+/** Return a range around a value. @param {string | number} value */
+function around(value) {
+  const [, number, unit] = /^\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*(.*)$/is.exec(String(value)) ?? [];
+  if (number === undefined || Number(number) === 0) return ["", ""];
+  const ends = [0.5, 2].map((factor) => Number((factor * Number(number)).toPrecision(3))).sort((a, b) => a - b);
+  return unit ? ends.map((end) => `${end} ${unit}`) : ends;
+}

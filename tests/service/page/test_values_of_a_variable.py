@@ -1,0 +1,94 @@
+"""Values that dimensions and other numbers may take, in the form of a new run: steps, series, lists, further numbers."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import partial
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from slidercrank.optimise.job import parse_job
+from slidercrank.service.store import Store
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+
+
+@pytest.fixture
+def form(open_page: Open) -> Open:
+    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
+    return partial(open_page, reduced_motion="reduce")
+
+
+def ready(page: Page) -> None:
+    status = page.get_by_role("complementary").get_by_role("status")
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+
+
+def text_of(page: Page) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())
+    return found
+
+
+def test_steps_preferred_numbers_and_lists_are_those_of_the_job_and_units_change_them_together(
+    form: Open, store: Store
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    dimensions = page.get_by_role("region", name="Dimensions")
+    dimensions.get_by_label("crank", exact=True).select_option("step")
+    expect(dimensions.get_by_label("crank, step")).to_have_value("1")  # of 80 to 160 mm
+    dimensions.get_by_label("crank, step").fill("1/2")
+    dimensions.get_by_label("rod", exact=True).select_option("series")
+    dimensions.get_by_label("rod, series of preferred numbers").select_option("R20")
+    dimensions.get_by_label("offset", exact=True).select_option("values")
+    dimensions.get_by_label("offset, values").fill("20, 40, 60")
+    page.get_by_label("stroke", exact=True).and_(page.get_by_role("combobox")).select_option("between")
+    page.get_by_label("stroke, at least").fill("270")
+    page.get_by_label("stroke, at most").fill("290")
+    ready(page)
+    variables = text_of(page)["variables"]
+    assert variables == {
+        "crank": {"min": "80 mm", "max": "160 mm", "step": "0.5 mm"},
+        "rod": {"min": "200 mm", "max": "600 mm", "series": "R20"},
+        "offset": {"values": ["20 mm", "40 mm", "60 mm"]},
+    }
+    crank, rod, offset = parse_job(text_of(page)).discrete
+    assert len(crank.values) == 161
+    assert [round(1e3 * value) for value in rod.values][:3] == [200, 224, 250]
+    assert [round(1e3 * value) for value in offset.values] == [20, 40, 60]
+    page.get_by_label("Unit of crank", exact=True).select_option("cm")
+    assert text_of(page)["variables"]["crank"] == {"min": "8 cm", "max": "16 cm", "step": "0.05 cm"}
+    dimensions.get_by_label("crank, step").fill("0")
+    expect(dimensions.get_by_label("crank, step")).to_have_attribute("aria-invalid", "true")
+    expect(dimensions.get_by_text(re.compile("Step must be positive"))).to_be_visible()
+    dimensions.get_by_label("crank", exact=True).select_option("range")
+    ready(page)
+    assert text_of(page)["variables"]["crank"] == ["8 cm", "16 cm"]
+
+
+def test_a_further_number_varies_over_a_range_or_takes_some_values_and_then_is_fixed_again(
+    form: Open, store: Store
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    page.get_by_text("Further numbers that vary").click()
+    page.get_by_label("Another number that varies").select_option("mechanism.slider.mass")
+    expect(page.get_by_label("slider mass, from")).to_be_focused()
+    ready(page)
+    assert text_of(page)["variables"]["mechanism"] == {"slider": {"mass": ["0.975 kg", "3.9 kg"]}}
+    page.get_by_label("Another number that varies").select_option("load.1.force")
+    mass = page.get_by_role("region", name="Dimensions").get_by_label("slider mass", exact=True)
+    mass.select_option("series")
+    ready(page)
+    job = text_of(page)
+    assert job["variables"]["mechanism"]["slider"]["mass"] == {"min": "0.975 kg", "max": "3.9 kg", "series": "R5"}
+    assert job["variables"]["load"] == {"1": {"force": ["30 N", "120 N"]}}
+    assert [item.name for item in parse_job(job).mechanism.nominal.varying] or parse_job(job).discrete
+    require_accessible(page)
+    page.get_by_role("button", name="slider mass does not vary").click()
+    page.get_by_role("button", name="load 1 force does not vary").click()
+    ready(page)
+    assert set(text_of(page)["variables"]) == {"crank", "rod", "offset"}
