@@ -4,6 +4,7 @@ import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
 import { idOf, isTable } from "./path.js";
+import { held } from "./strength.js";
 
 /** @type {Record<string, { title: string, first: Form.Job | undefined, keys: string[], more: string[] }>} */
 const WAYS = {
@@ -17,12 +18,15 @@ const WAYS = {
   },
 };
 
+const VARY = ["width", "depth"]; // of a bar
+
 /** Return the fields of crank or rod. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
 export function link(form, path, label) {
   const given = form.at(path);
   const way = given === undefined ? "none" : isTable(given) && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";
   const select = h("select", { id: idOf(path, "c") }, Object.entries(WAYS).map(([key, { title }]) => h("option", { value: key, selected: key === way }, title)));
   select.addEventListener("change", () => {
+    form.put(["variables", ...path], undefined);
     form.put(path, structuredClone(WAYS[select.value].first));
     form.redraw();
   });
@@ -31,7 +35,7 @@ export function link(form, path, label) {
   const fields = (names) => names.map((key) => byschema(form, [...path, key], { label: `${label}, ${key.replace("_", " ")}`, required: true }));
   return [
     field(form, path, `mass of the ${label}`, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),
-    fields(keys),
+    way === "section" ? keys.map((key) => (VARY.includes(key) ? held(form, [...path, key], `${label}, ${key}`) : fields([key]))) : fields(keys),
     more.length ? h("details", { class: "more" }, h("summary", {}, `Mass centre and inertia of the ${label}`), h("div", { class: "fields" }, fields(more))) : null,
   ];
 }

@@ -16,9 +16,9 @@ const STEPS = 20; // at least, of the step that is begun with
 
 /**
  * Return the field of the values that a number may take; why: {sentence, name}; fixed: whether it may have one value only.
- * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, removed?: () => void }} looks
+ * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, drop?: string, removed?: () => void }} looks drop: what the button says that calls removed
  */
-export function range(form, path, { label, why, kind = "length", fixed = true, removed }) {
+export function range(form, path, { label, why, kind = "length", fixed = true, drop: text = "Remove", removed }) {
   const given = form.at(path);
   const mode = modeOf(given);
   const ends = endsOf(given, mode);
@@ -63,7 +63,7 @@ export function range(form, path, { label, why, kind = "length", fixed = true, r
   /** @param {string} text */
   const word = (text) => h("span", { class: "to" }, text);
   const controls = [select, first, ...(second ? [word("to"), second] : []), ...(third ? [word("by"), third] : []), series, units].filter((one) => one instanceof HTMLElement);
-  const drop = removed && h("button", { type: "button", "aria-label": `${label} does not vary`, onclick: removed }, "Remove");
+  const drop = removed && h("button", { type: "button", "aria-label": `${text} ${label}`, onclick: removed }, text);
   const made = field(form, path, label, drop ? [...controls, drop] : controls, why);
   made.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
   return made;

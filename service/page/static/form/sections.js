@@ -11,9 +11,10 @@ import { range } from "./range.js";
 import { requirement } from "./requirement.js";
 import { solving } from "./solving.js";
 import { speed } from "./speed.js";
+import { strength, strengthGiven } from "./strength.js";
 import { varying, varyingNames } from "./varying.js";
 
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity"]);
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
@@ -28,7 +29,7 @@ export function sections(form) {
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Several cylinders on one crankshaft", byschema(form, ["mechanism", "cylinders"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
+    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Several cylinders on one crankshaft", byschema(form, ["mechanism", "cylinders"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
     section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),

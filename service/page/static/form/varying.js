@@ -5,13 +5,15 @@ import { at, idOf, isTable } from "./path.js";
 import { range } from "./range.js";
 import { describe, words } from "./schema.js";
 
+/** Numbers that have their values beside them. */
+const BESIDE = /^(sections\.pins\.\w+|mechanism\.(crank|rod)\.(width|depth))$/;
 const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table that says values
 
 /** Return the fields of the numbers that vary besides the dimensions, and a choice of another one. @param {Form.Whole} form */
 export function varying(form) {
-  const all = leaves(form);
-  const taken = new Set(all.map(({ name }) => name));
-  const left = numbers(form).filter(({ name }) => !taken.has(name));
+  const taken = new Set(leaves(form).map(({ name }) => name));
+  const all = leaves(form).filter(({ name }) => !beside(form, name));
+  const left = numbers(form).filter(({ name }) => !taken.has(name) && !beside(form, name));
   const select = h("select", { id: "add-varying" }, h("option", { value: "" }, "choose a number …"), left.map(({ name }) => h("option", { value: name }, titleOf(name))));
   select.addEventListener("change", () => {
     const chosen = left.find(({ name }) => name === select.value);
@@ -29,6 +31,11 @@ export function varying(form) {
       : null,
     left.length ? h("p", { class: "row wide" }, h("label", { for: "add-varying" }, "Another number that varies"), select) : null,
   ];
+}
+
+/** Whether a number has the values that it may take beside it, elsewhere in the form. @param {Form.Whole} form @param {string} name */
+function beside(form, name) {
+  return BESIDE.test(name) && at(form.job, name.split(".")) !== undefined && form.at(["variables", name]) === undefined;
 }
 
 /** Return the names of the numbers that vary besides the dimensions, in words. @param {Form.Whole} form */
@@ -82,7 +89,7 @@ function nameOf(path) {
 }
 
 /** Return a name in words: "mechanism.slider.mass" is "slider mass". @param {string} name */
-function titleOf(name) {
+export function titleOf(name) {
   return words(name.replace(/^mechanism\./, "").replaceAll(".", " "));
 }
 
@@ -96,7 +103,7 @@ function looksOf(form, name) {
 }
 
 /** Return a range around a value. @param {string | number} value */
-function around(value) {
+export function around(value) {
   const [, number, unit] = /^\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*(.*)$/is.exec(String(value)) ?? [];
   if (number === undefined || Number(number) === 0) return ["", ""];
   const ends = [0.5, 2].map((factor) => Number((factor * Number(number)).toPrecision(3))).sort((a, b) => a - b);

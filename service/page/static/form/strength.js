@@ -1,0 +1,69 @@
+/** Material, pins and sizes of crank and rod as bars, for stress and safety; what of these is held and what varies. */
+
+import { h } from "../lib/dom.js";
+import { byschema, choice } from "./controls.js";
+import { at, isTable } from "./path.js";
+import { range } from "./range.js";
+import { around, titleOf } from "./varying.js";
+
+const PATH = ["sections"];
+const RANGES = ["width", "depth"];
+
+/** Return the fields of material and pins. @param {Form.Whole} form */
+export function strength(form) {
+  const table = form.schema.property(PATH);
+  const on = form.at(PATH) !== undefined;
+  const select = choice(
+    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => given(form, value ? structuredClone(table?.examples?.[0]) : undefined), register: () => {} },
+    ["sections", "on"],
+    { options: ["yes"], label: "with material and pins", fallback: "no", why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for. The first values are an example, a common steel.", changed: () => form.redraw() },
+  );
+  if (!on) return [select];
+  const missing = ["crank", "rod"].filter((link) => !isTable(form.at(["mechanism", link])) || at(form.job, ["mechanism", link, "width"]) === undefined);
+  const rest = Object.keys(table?.properties ?? {}).filter((key) => !["material", "pins", ...RANGES].includes(key));
+  return [
+    select,
+    missing.length ? h("p", { class: "quiet wide" }, `Stresses and safety need ${missing.join(" and ")} as a bar of rectangular section, above.`) : null,
+    byschema(form, [...PATH, "material"]),
+    h("fieldset", { class: "inner" }, h("legend", {}, "pins"), h("div", { class: "fields" }, keysOf(form, [...PATH, "pins"]).map((key) => held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`)))),
+    h("details", { class: "more" }, h("summary", {}, "Safety, and sizes that can be made"), h("div", { class: "fields" }, rest.map((key) => byschema(form, [...PATH, key])), RANGES.map((key) => range(form, [...PATH, key], { label: `${key} that can be made`, why: form.schema.property([...PATH, key])?.description ?? "" })))),
+  ];
+}
+
+/** Give material and pins, or take them away with what varies of them. @param {Form.Whole} form @param {unknown} table */
+function given(form, table) {
+  if (table === undefined) form.put(["variables", ...PATH], undefined);
+  form.put(PATH, table);
+}
+
+/** Return what is given of material and pins, in a line. @param {Form.Whole} form */
+export function strengthGiven(form) {
+  const pins = Object.values(form.at([...PATH, "pins"]) ?? {}).map(String);
+  const yields = form.at([...PATH, "material", "yield_strength"]);
+  return form.at(PATH) === undefined ? "" : [yields && `yield strength ${yields}`, pins.length && `pins ${pins.join(", ")}`].filter(Boolean).join("; ");
+}
+
+/** @param {Form.Whole} form @param {Form.Path} path */
+function keysOf(form, path) {
+  return Object.keys(form.schema.property(path)?.properties ?? {});
+}
+
+/** Return the field of a number that is held, with a button that lets it vary; or, once it does, its values too. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
+export function held(form, path, label) {
+  const varies = ["variables", ...path];
+  const own = byschema(form, path, { label, required: true });
+  if (form.at(varies) === undefined) {
+    const button = h("button", { type: "button", "aria-label": `Let ${label} vary` }, "Let it vary");
+    button.addEventListener("click", () => {
+      const value = form.at(path);
+      form.put(varies, around(typeof value === "number" ? value : String(value ?? "")));
+      form.redraw();
+    });
+    own?.querySelector(".field-controls")?.append(button);
+    return [own];
+  }
+  return [own, range(form, varies, { label: `${label}, varying`, drop: "Hold", why: "The search chooses it within these; the value beside it is that of single analyses.", fixed: false, removed: () => {
+    form.put(varies, undefined);
+    form.redraw();
+  } })];
+}
