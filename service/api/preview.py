@@ -18,6 +18,7 @@ from .throttle import READING
 if TYPE_CHECKING:
     from ...objectives.kinds import Kind
     from ..preview.preview import Look
+    from ..preview.swinging import PossibleSwing
 
 router = APIRouter(tags=["jobs"])
 
@@ -86,6 +87,41 @@ class ExampleModel(BaseModel):
     motion: MotionModel
 
 
+class SwingCurve(BaseModel):
+    """The slider over a turn of the crank, evenly spaced from 0 deg; null beyond the swing."""
+
+    crank_angle_deg: list[float]
+    slider_position_mm: list[float | None]
+
+
+class SwingExample(BaseModel):
+    """A linkage within the ranges that makes the swing. feasible: whether it meets all that was checked."""
+
+    crank_mm: float = Field(examples=[1400.0])
+    rod_mm: float = Field(examples=[1800.0])
+    offset_mm: float = Field(examples=[-50.0])
+    feasible: bool
+    travel_mm: float = Field(examples=[2200.0])
+    motion: SwingCurve
+
+
+class SwingPreview(BaseModel):
+    """Values that the ranges of a job of a swing allow, from samples.
+
+    closing_share: of the designs within the ranges that make the swing. travel_mm: of the slider between its two ends.
+    feasible_share: of the sampled designs that meet all requirements which were checked.
+    """
+
+    from_deg: float = Field(examples=[11.16])
+    to_deg: float = Field(examples=[101.16])
+    closing_share: float = Field(examples=[0.6])
+    travel_mm: Ends | None = Field(description="null where nothing makes the swing", examples=[[1900.0, 2400.0]])
+    feasible_share: float = Field(examples=[0.3])
+    sampled: int = Field(examples=[512])
+    unchecked: list[str] = Field(examples=[[]])
+    example: SwingExample | None = Field(description="null where nothing makes the swing")
+
+
 class FormulaModel(BaseModel):
     """A formula of a job: its place, as mistakes name it, and the kind and unit of its values.
 
@@ -112,6 +148,7 @@ class PreviewModel(BaseModel):
     understood: Understood | None = Field(description="what was understood, once nothing is wrong")
     allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
     example: ExampleModel | None = Field(description="null where nothing turns fully")
+    swing: SwingPreview | None = Field(description="of a job whose crank swings, once swing and ranges can be read")
     formulas: list[FormulaModel] = Field(description="of the job, in their order", examples=[[]])
     names: list[NameModel] = Field(description="that its formulas may have beside /quantities", examples=[[]])
 
@@ -128,6 +165,7 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
             understood=None if look.problem is None else understood(look.problem, draft.job),
             allowed=_allowed(look),
             example=_example(look),
+            swing=_swing(look.swing),
             formulas=[
                 FormulaModel(path=of.key[:500], kind=of.kind and of.kind.plain, unit=_unit(of.kind))
                 for of in look.formulas
@@ -178,6 +216,48 @@ def _example(look: Look) -> ExampleModel | None:
         time_ratio=float(linkage.time_ratio),
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
         motion=_motion(linkage),
+    )
+
+
+def _swing(found: PossibleSwing | None) -> SwingPreview | None:
+    if found is None:
+        return None
+    return SwingPreview(
+        from_deg=math.degrees(found.swing.start),
+        to_deg=math.degrees(found.swing.end),
+        closing_share=found.closing,
+        travel_mm=_in(1e3, found.travel),
+        feasible_share=found.feasible,
+        sampled=found.sampled,
+        unchecked=list(found.unchecked),
+        example=None if found.example is None else _swing_example(found, found.example),
+    )
+
+
+def _swing_example(found: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
+    from ..preview.swinging import positions
+
+    swing, design = found.swing, np.array([lengths])
+    low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
+    # One point a degree; of a whole turn those of the swing, and one beyond each end with the place at that end.
+    angles = range(math.floor(low), math.floor(high) + 2)
+    inside = np.radians(np.clip(angles, low, high))
+    places = {
+        angle % 360: float(positions(at, found.branch, design)[0]) for angle, at in zip(angles, inside, strict=True)
+    }
+    curve = [places.get(angle, math.nan) for angle in range(360)]
+    ends = [float(positions(end, found.branch, design)[0]) for end in (swing.start, swing.end)]
+    crank, rod, offset = (1e3 * length for length in lengths)
+    return SwingExample(
+        crank_mm=crank,
+        rod_mm=rod,
+        offset_mm=offset,
+        feasible=found.example_feasible,
+        travel_mm=1e3 * abs(ends[1] - ends[0]),
+        motion=SwingCurve(
+            crank_angle_deg=[float(angle) for angle in range(360)],
+            slider_position_mm=[1e3 * x if math.isfinite(x) else None for x in curve],
+        ),
     )
 
 

@@ -33,6 +33,7 @@ class QuantityModel(BaseModel):
     picture: str = Field(examples=["stroke"])
     better: str = Field(description='the usual direction, low or high; "" for a dimension', examples=["low"])
     offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
+    motion: str = Field(description="of the crank that it is of, turn or swing; empty for either", examples=["turn"])
 
 
 class FunctionModel(BaseModel):
@@ -131,6 +132,7 @@ def _quantity(of: Quantity) -> QuantityModel:
         unit=of.unit.symbol,
         kind=of.kind.plain,
         group=of.group.value,
+        motion="swing" if of.table == "motion" else "turn" if of.turning else "",
     )
 
 
@@ -151,6 +153,7 @@ def _dimension(name: str) -> QuantityModel:
         picture=name,
         better="",
         offered=[],
+        motion="",
     )
 
 

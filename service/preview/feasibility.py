@@ -34,7 +34,7 @@ Ends = tuple[float, float]
 _SAMPLES = 512
 _BATCH = 64
 _MOMENT = 0.06  # s, for the designs of quantities that take a cycle
-_PATIENCE = 0.12  # s, until these are left out
+PATIENCE = 0.12  # s, until these are left out
 _WIDTHS = (0.1, 0.05, 0.025, 0.012, 0.006, 0.003, 0.0015)
 _ON_EDGE = 128
 _PARENTS, _CHILDREN = 12, 12
@@ -75,18 +75,18 @@ class Possible:
 def possible(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
     free = replace(problem, constraints=())
-    box = _designs(free, _SAMPLES)
+    box = designs_of(free, _SAMPLES)
     turning = _turns(box)
     light, costly = _light(problem)
-    screened = within(_PATIENCE, lambda: _screened(problem)) if costly else None
-    found, violation = _screened(light) if screened is None else screened
+    made = within(PATIENCE, lambda: screened(problem)) if costly else None
+    found, violation = screened(light) if made is None else made
     feasible = violation <= FEASIBLE
     example, nearest = None, np.flatnonzero(np.isfinite(violation))
     if len(nearest):
         best = np.flatnonzero(feasible) if feasible.any() else nearest[[int(np.argmin(violation[nearest]))]]
-        example = _middle(found[best])
+        example = middle_of(found[best])
     elif turning.any():
-        example = _middle(box[turning])
+        example = middle_of(box[turning])
     return Possible(
         turning=float(turning.mean()),
         stroke=_reach(problem, "stroke"),
@@ -97,7 +97,7 @@ def possible(problem: Problem) -> Possible:
         hardest=_hardest(problem, box[turning]),
         example=example,
         example_feasible=bool(feasible.any()),
-        unchecked=costly if screened is None else (),
+        unchecked=costly if made is None else (),
     )
 
 
@@ -109,7 +109,7 @@ def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     return replace(problem, mechanism=machine, constraints=closed), costly
 
 
-def _designs(problem: Problem, count: int) -> Array:
+def designs_of(problem: Problem, count: int) -> Array:
     """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
     parts = []
     for index, sheet in enumerate(sheets(problem)):
@@ -123,7 +123,7 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
 
 
-def _screened(problem: Problem) -> tuple[Array, Array]:
+def screened(problem: Problem) -> tuple[Array, Array]:
     """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
     end = time.monotonic() + _MOMENT
     designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
@@ -250,7 +250,7 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
     return min(shares.items(), key=lambda item: item[1]) if shares else None
 
 
-def _middle(designs: Array) -> tuple[float, float, float]:
+def middle_of(designs: Array) -> tuple[float, float, float]:
     """Return the design nearest to the middle of some, in each dimension on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size

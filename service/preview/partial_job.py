@@ -33,7 +33,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
     the machine are left out without it, those that only a search can afford always.
     """
-    ranges, motion = _ranges(tables.get("variables")), tables.get("motion")
+    ranges, motion = ranges_of(tables.get("variables")), tables.get("motion")
     if ranges is None or (isinstance(motion, Mapping) and motion.get("kind") == "swing"):
         return None
     machine = _turning(tables.get("mechanism")) if whole is None else whole.part(0).mechanism.nominal
@@ -88,7 +88,8 @@ def _turning(part: object) -> Mechanism:
     return Mechanism(speed=speed, branch="crossed" if given.get("branch") == "crossed" else "open")
 
 
-def _ranges(part: object) -> dict[str, Range] | None:
+def ranges_of(part: object) -> dict[str, Range] | None:
+    """Return the ranges of the dimensions in a table of variables; None while one of them cannot be read."""
     if not isinstance(part, Mapping):
         return None
     found = {}

@@ -18,6 +18,7 @@ from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from .feasibility import Ends, Possible, possible
 from .partial_job import geometry, left_out
+from .swinging import PossibleSwing, possible_swing
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
@@ -38,7 +39,7 @@ class Look:
 
     stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
     requirements that were not looked at. said: sentences on what cannot be had. formulas: of the job, in their order.
-    names: that formulas of this job alone may have.
+    names: that formulas of this job alone may have. swing: what the ranges of a job of a swing allow.
     """
 
     wrong: list[Wrong]
@@ -49,6 +50,7 @@ class Look:
     said: list[str]
     formulas: list[StatedFormula] = field(default_factory=list)
     names: list[OwnName] = field(default_factory=list)
+    swing: PossibleSwing | None = None
 
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
@@ -60,7 +62,8 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     look = _looked(tables, read)
     formulas = stated_formulas(tables)
     wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
-    return replace(look, wrong=wrong, formulas=formulas, names=own_names(tables))
+    swing = possible_swing(tables, look.problem)
+    return replace(look, wrong=wrong, formulas=formulas, names=own_names(tables), swing=swing)
 
 
 def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:

@@ -59,6 +59,7 @@ declare global {
     type Quantity = Schemas["QuantityModel"];
     type Requirement = Schemas["RequirementModel"];
     type Requirements = Schemas["RequirementsModel"];
+    type SwingPreview = Schemas["SwingPreview"];
     type Understood = Schemas["Understood"];
     type Units = Schemas["UnitTable"]["inch"];
     type WhatIf = Schemas["WhatIfModel"];

@@ -260,3 +260,31 @@ def test_a_job_of_formulas_made_of_each_other_is_looked_at_within_a_moment(share
     found = preview(shared, {"quantity": own})
     assert time.monotonic() - begin < 2.0
     assert {formula["unit"] for formula in found["formulas"]} == {"mm"}
+
+
+def test_a_swing_has_its_travel_share_and_an_example_that_closes_between_its_two_ends(
+    shared: httpx.Client, pytestconfig: pytest.Config
+) -> None:
+    job = tomllib.loads((pytestconfig.rootpath / "runs" / "support.toml").read_text())
+    found = preview(shared, job)
+    swing, example = found["swing"], found["swing"]["example"]
+    assert found["allowed"] is found["example"] is None
+    assert (swing["from_deg"], swing["to_deg"]) == pytest.approx((11.16, 101.16), rel=1e-12)
+    assert 0.0 < swing["feasible_share"] < swing["closing_share"] < 1.0
+    assert example["feasible"]
+    crank, rod, offset = (example[f"{name}_mm"] for name in ("crank", "rod", "offset"))
+
+    def place(angle: float) -> float:
+        theta = math.radians(angle)
+        return float(crank * math.cos(theta)) + math.sqrt(rod**2 - (offset - crank * math.sin(theta)) ** 2)
+
+    assert example["travel_mm"] == pytest.approx(abs(place(101.16) - place(11.16)), rel=1e-9)
+    assert swing["travel_mm"][0] <= example["travel_mm"] <= swing["travel_mm"][1] <= 2400.0 * (1 + 1e-6)
+    places = example["motion"]["slider_position_mm"]
+    assert [n for n, x in enumerate(places) if x is not None] == list(range(11, 103))
+    assert places[60] == pytest.approx(place(60.0), rel=1e-9)
+    unfinished = preview(shared, job | {"name": ""})["swing"]
+    assert unfinished["closing_share"] == swing["closing_share"]
+    assert unfinished["unchecked"] == ["actuator_travel"]
+    assert preview(shared, job | {"motion": {"kind": "swing", "from": "0 deg"}})["swing"] is None
+    assert preview(shared, job | {"motion": job["motion"] | {"to": "360 deg"}})["swing"]["example"] is None

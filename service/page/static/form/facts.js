@@ -5,13 +5,15 @@ import { fill, h } from "../lib/dom.js";
 import { limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
-export function showFacts(place, { allowed, example, understood }) {
+export function showFacts(place, { allowed, example, understood, swing }) {
+  if (swing) {
+    fill(place, h("dl", { class: "terms" }, row("makes the swing", share(swing.closing_share), "of the ranges"), row("travel of the slider", between(swing.travel_mm, "mm")), row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`)), told(swing.unchecked, understood));
+    return;
+  }
   if (!allowed) {
     fill(place, h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."));
     return;
   }
-  /** @param {string} title @param {Dom.Child} value @param {string | null} note */
-  const row = (title, value, note = null) => [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
   fill(
     place,
     h(
@@ -24,11 +26,23 @@ export function showFacts(place, { allowed, example, understood }) {
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       example ? row("slow stroke", example.slow_stroke) : null,
     ),
-    allowed.unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${allowed.unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
-    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
-    allowed.said.map((sentence) => h("p", { class: "warning" }, sentence)),
-    understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
+    told(allowed.unchecked, understood, allowed.said),
   );
+}
+
+/** @param {string} title @param {Dom.Child} value @param {string | null} note */
+function row(title, value, note = null) {
+  return [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
+}
+
+/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {string[]} said */
+function told(unchecked, understood, said = []) {
+  return [
+    unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
+    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
+    said.map((sentence) => h("p", { class: "warning" }, sentence)),
+    understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
+  ];
 }
 
 /** @param {Api.Understood} understood */

@@ -2,6 +2,7 @@
 
 import { h } from "../lib/dom.js";
 import { idOf, written } from "./path.js";
+import { inWords, WORDS } from "./words.js";
 
 const CONTROLS = "input, select, textarea";
 
@@ -60,8 +61,9 @@ export function showWrong(fields, wrong) {
   const elsewhere = [];
   for (const { path, sentence } of wrong) {
     const found = path === "" ? null : nearest(fields, path);
-    if (!found) elsewhere.push(path ? `${path}: ${sentence}` : sentence);
-    else told.set(found, [...(told.get(found) ?? []), found.key === path ? sentence : `${rest(found.key, path)}: ${sentence}`]);
+    const text = inWords(sentence);
+    if (!found) elsewhere.push(path ? `${path}: ${text}` : text);
+    else told.set(found, [...(told.get(found) ?? []), below(found, path) + text]);
   }
   for (const [one, sentences] of told) say(one, sentences);
   return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
@@ -94,9 +96,16 @@ function nearest(fields, path) {
   return above[0] ?? fields.find((one) => within(path, one.key)) ?? null;
 }
 
-/** @param {string} outer @param {string} path */
-function rest(outer, path) {
-  return path.startsWith(outer) ? path.slice(outer.length).replace(/^\./, "") : path;
+/**
+ * Return which part of a field a sentence is of, in words: none of a field that shows one number, or whose sentence is of the whole.
+ * @param {Form.Field} one @param {string} path
+ */
+function below(one, path) {
+  if (one.key === path) return "";
+  if (!path.startsWith(one.key)) return `${path}: `;
+  const key = path.slice(one.key.length).replace(/^[. ]/, "");
+  const numbers = one.controls.filter((control) => control instanceof HTMLInputElement);
+  return key in WORDS && numbers.length < 2 ? "" : `${WORDS[key] ?? key.replaceAll("_", " ").replaceAll(".", ", ")}: `;
 }
 
 /** @param {string} text */

@@ -5,23 +5,23 @@ import { byschema, choice, quantity } from "./controls.js";
 import { formulaObjectives, formulaRequirements, namedFormulas, namesGiven } from "./formula.js";
 import { link } from "./link.js";
 import { loads } from "./load.js";
+import { fits, motion, swings } from "./motion.js";
 import { objective } from "./objective.js";
 import { isTable } from "./path.js";
 import { range } from "./range.js";
 import { requirement } from "./requirement.js";
 import { solving } from "./solving.js";
-import { speed } from "./speed.js";
 import { strength, strengthGiven } from "./strength.js";
 import { varying, varyingNames } from "./varying.js";
 
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections"]);
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(speed(form), requirements(form, offered(form, "motion")), byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })), more("Acceleration of the crank, uneven speed, crossed branch", byschema(form, ["mechanism", "acceleration"]), byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
+    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more(swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
@@ -56,12 +56,12 @@ function more(title, ...content) {
 }
 
 /**
- * Return the names of the quantities that a part of the form asks for without being told to.
+ * Return the names of the quantities that a part of the form asks for without being told to, and those that it has of another motion.
  * @param {Form.Whole} form
  * @param {string} part
  */
 function offered(form, part) {
-  return [...form.quantities.values()].filter((one) => one.offered.includes(part)).map(({ name }) => name);
+  return [...form.quantities.values()].filter((one) => one.offered.includes(part) && (fits(form, one) || form.at(["constraints", one.name]) !== undefined)).map(({ name }) => name);
 }
 
 /** @param {Form.Whole} form */
@@ -86,7 +86,7 @@ function others(form) {
 /** @param {Form.Whole} form */
 function adding(form) {
   const taken = new Set([...asked(form), ...Object.keys(form.at(["constraints"]) ?? {})]);
-  const left = form.judging().filter(({ name }) => !taken.has(name));
+  const left = form.judging().filter((one) => !taken.has(one.name) && fits(form, one));
   const select = h("select", { id: "add-requirement" }, h("option", { value: "" }, "choose a quantity …"), left.map(({ name, title }) => h("option", { value: name }, title)));
   select.addEventListener("change", () => {
     if (!select.value) return;
@@ -118,7 +118,7 @@ function pins(form) {
 function wishes(form) {
   const given = Object.keys(form.at(["objectives"]) ?? {});
   const main = new Set([...offered(form, "objective"), ...given]);
-  const all = form.judging();
+  const all = form.judging().filter((one) => fits(form, one) || given.includes(one.name));
   return [
     h("div", { class: "fields" }, all.filter(({ name }) => main.has(name)).map((one) => objective(form, one))),
     h("details", { class: "more" }, h("summary", {}, "More quantities"), h("div", { class: "fields" }, all.filter(({ name }) => !main.has(name)).map((one) => objective(form, one)))),

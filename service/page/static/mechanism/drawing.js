@@ -9,7 +9,7 @@ import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
@@ -20,7 +20,7 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
- *   small (low, and without the offset in words).
+ *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before).
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
@@ -77,6 +77,7 @@ export function drawing(place, { label }) {
     /** @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Options} options */
     show(linkage, motion, options = {}) {
       shown = { linkage, motion, options };
+      angle = options.angle ?? angle;
       arrange();
     },
     turn,

@@ -170,7 +170,8 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     status.classList.toggle("good", count === 0);
     say(count === 0 ? "Ready to start." : count === 1 ? "One thing to correct." : `${count} things to correct.`);
     showFacts(facts, answer);
-    drawn.show(answer.example);
+    if (answer.swing) drawn.swing(answer.swing);
+    else drawn.show(answer.example);
   }
 
   /** @param {SubmitEvent} event */

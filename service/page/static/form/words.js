@@ -1,0 +1,43 @@
+/** Sentences of the service in the words of the form: its messages name the keys of a job file, which the form has no need of. */
+
+/** Titles of the parts of the form, by the tables of a job. @type {Record<string, string>} */
+const PARTS = {
+  mechanism: "Masses and loads",
+  motion: "Motion",
+  load: "Masses and loads",
+  friction: "Friction",
+  tolerances: "Tolerances",
+  variables: "Dimensions",
+  constraints: "Requirements",
+  objectives: "Objectives",
+  sections: "Material and pins",
+  choice: "Choices",
+  optimiser: "Search",
+  quantity: "Formulas with names",
+};
+
+/** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
+const SAID = [
+  [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
+  [/got \[motion\] kind = "swing"/g, "got one that swings"],
+  [/write kind = "swing"/g, "let the crank swing"],
+  [/(?:set )?\[motion\] driver = "(\w+)"/g, (_, end) => `let the ${end} be the driven end`],
+  [/got driver = "(\w+)"/g, (_, end) => `got the ${end} as the driven end`],
+  [/, or as a plain number in [^;.]+/g, ""],
+  [/ \(a plain number is in rad\)/g, ""],
+  [/(write|add) (?:it )?for example [a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g, (verb, _, __, value) => `${verb.startsWith("add") ? "add" : "write"} for example ${value}`],
+  [/(min|max|equals|step|target) = "([^"]+)"/g, (_, word, value) => `${WORDS[word] ?? word} ${value}`],
+  [/\[\[?(\w+)\]\]?/g, (whole, table) => (PARTS[table] ? `“${PARTS[table]}”` : whole)],
+  [/\b(constraints|objectives)\.(\w+)/g, (_, table, name) => `the ${table === "constraints" ? "requirement on" : "objective"} ${name.replaceAll("_", " ")}`],
+  [/\b(?:variables|mechanism|tolerances|motion)\.(?=[a-z])/g, ""],
+  [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
+  [/\bgot min (\S+ ?\S*) and max /g, "got at least $1 and at most "],
+];
+
+/** Names of bounds, in words. @type {Record<string, string>} */
+export const WORDS = { min: "at least", max: "at most", equals: "exactly", target: "to come near to", step: "by" };
+
+/** Return a sentence of the service in the words of the form. @param {string} sentence */
+export function inWords(sentence) {
+  return SAID.reduce((text, [found, said]) => text.replace(found, /** @type {string} */ (said)), sentence);
+}

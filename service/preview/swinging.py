@@ -1,0 +1,127 @@
+"""Values that the ranges of a job of a swing allow, from samples: closing, travel, feasible share, an example."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from ...model.errors import InputError
+from ...model.kinematics.position import motion
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.closure import passes
+from ...model.swing.swing import Swing
+from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_TRANSMISSION_ANGLE
+from ...objectives.tables.swinging import swing_quantities
+from ...optimise.job.motion import MotionPart, with_margin
+from ...optimise.problem.problem import Problem
+from ...optimise.problem.requirements import Objective
+from ...optimise.problem.violation import FEASIBLE
+from .feasibility import PATIENCE, Ends, designs_of, middle_of, screened, within
+from .partial_job import ranges_of
+
+Array = NDArray[np.float64]
+_SAMPLES = 512
+
+
+@dataclass(frozen=True, kw_only=True)
+class PossibleSwing:
+    """Values that the ranges of a job of a swing allow. closing: share of the designs in the box that make the swing.
+
+    travel (m): its ends, of designs that keep the margin and whatever else was checked, where some do; None where no
+    design makes the swing. feasible: share of the `sampled` designs that meet every requirement that was checked.
+    example: crank, rod and offset, m; None if nothing makes the swing. unchecked: requirements that would have taken
+    longer than a moment, or that wait for the rest of the job.
+    """
+
+    swing: Swing
+    branch: float
+    closing: float
+    travel: Ends | None
+    feasible: float
+    sampled: int
+    example: tuple[float, float, float] | None
+    example_feasible: bool
+    unchecked: tuple[str, ...]
+
+
+def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> PossibleSwing | None:
+    """Return the values that the ranges of a job allow; None while they or its swing cannot be read, or of a turn.
+
+    whole: the problem of the whole job, if it is valid. Of several options the first one counts.
+    """
+    try:
+        part = MotionPart.model_validate(tables.get("motion", {}))
+        swing, ranges = part.build(), ranges_of(tables.get("variables"))
+        margin = with_margin((), part.margin_asked)
+    except (InputError, ValidationError):
+        return None
+    if swing is None or ranges is None:
+        return None
+    given = tables.get("mechanism")
+    crossed = isinstance(given, Mapping) and given.get("branch") == "crossed"
+    wanted = (Objective(quantity=ACTUATOR_TRAVEL.name, sense="minimise"),)
+    light = Problem(
+        name="preview",
+        mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open"),
+        crank=ranges["crank"],
+        rod=ranges["rod"],
+        offset=ranges["offset"],
+        objectives=wanted,
+        constraints=margin,
+        motion=swing,
+        own=swing_quantities(swing),
+    )
+    full = None if whole is None else replace(whole.part(0), objectives=wanted)
+    found = None if full is None else within(PATIENCE, lambda: screened(full))
+    named = _names(tables)
+    unchecked = () if found is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
+    designs, violation = screened(light) if found is None else found
+    return _possible(swing, light, designs, violation, unchecked)
+
+
+def _possible(
+    swing: Swing, light: Problem, designs: Array, violation: Array, unchecked: tuple[str, ...]
+) -> PossibleSwing:
+    sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
+    box = designs_of(replace(light, constraints=()), _SAMPLES)
+    turning = passes(swing, sign, box)
+    made = np.isfinite(violation)
+    good = violation <= FEASIBLE
+    example = None
+    if good.any():
+        example = middle_of(designs[good])
+    elif made.any():
+        example = middle_of(designs[[int(np.argmin(violation))]])
+    elif turning.any():
+        example = middle_of(box[turning])
+    kept = designs[good] if good.any() else designs[made] if made.any() else box[turning]
+    travel = np.abs(positions(swing.end, sign, kept) - positions(swing.start, sign, kept))
+    return PossibleSwing(
+        swing=swing,
+        branch=sign,
+        closing=float(turning.mean()),
+        travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
+        feasible=float(good.mean()) if len(good) else 0.0,
+        sampled=len(good),
+        example=example,
+        example_feasible=bool(good.any()),
+        unchecked=unchecked,
+    )
+
+
+def positions(angle: float | Array, sign: float, designs: Array) -> Array:
+    """Return the slider's place (n,), m, of designs (n, 3) at a crank angle, rad; NaN where one does not close."""
+    r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        closes = np.abs(e - r * np.sin(angle)) < l
+        return np.where(closes, motion(np.sin(angle), np.cos(angle), r, l, e, sign).x, np.nan)
+
+
+def _names(tables: Mapping[str, Any]) -> list[str]:
+    given = tables.get("constraints")
+    return [str(name)[:60] for name in given][:40] if isinstance(given, Mapping) else []

@@ -1,0 +1,91 @@
+"""A swing in the form of a new run: its fields, its two ends in the sketch, and what it does not have."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import partial
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from slidercrank.optimise.job import parse_job
+from slidercrank.service.store import Store
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import Open
+
+
+@pytest.fixture
+def form(open_page: Open) -> Open:
+    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
+    return partial(open_page, reduced_motion="reduce")
+
+
+def ready(page: Page) -> None:
+    status = page.get_by_role("complementary").get_by_role("status")
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+
+
+def text_of(page: Page) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())
+    return found
+
+
+def test_the_shipped_support_is_shown_changed_and_started_with_the_two_ends_of_its_swing(
+    form: Open, store: Store
+) -> None:
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    beside = page.get_by_role("complementary")
+    expect(beside).to_contain_text("from 11.16° to 101.16°, the slider travels")
+    expect(beside).to_contain_text("makes the swing")
+    expect(beside.locator("svg .ghost")).to_have_count(2)
+    assert "NaN" not in beside.inner_html()
+    before = text_of(page)
+    page.get_by_label("to crank angle", exact=True).fill("95")
+    page.get_by_label("margin from dead points", exact=True).fill("0.35 rad")
+    page.get_by_label("margin from dead points", exact=True).blur()
+    expect(beside).to_contain_text("to 95°")
+    page.get_by_label("motion over time", exact=True).select_option("polynomial")
+    expect(page.get_by_text(re.compile("that is not slow needs its duration"))).to_be_visible()
+    page.get_by_label("duration of one way", exact=True).fill("30")
+    ready(page)
+    motion = text_of(page)["motion"]
+    assert motion == before["motion"] | {
+        "to": "95 deg",
+        "margin": motion["margin"],
+        "law": "polynomial",
+        "duration": "30 s",
+    }
+    assert parse_job(text_of(page)).motion is not None
+    require_accessible(page)
+    page.get_by_role("button", name="Start the search").click()
+    page.wait_for_url("**/#/jobs/1")
+    assert store.tables(1)["motion"] == motion
+
+
+def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    page.get_by_label("the crank", exact=True).select_option("swing")
+    expect(page.locator("#notices")).to_contain_text("stroke, least transmission angle, time ratio, peak torque")
+    ready(page)
+    job = text_of(page)
+    assert job["motion"] == {"kind": "swing", "from": "0 deg", "to": "60 deg", "driver": "slider"}
+    assert job["objectives"] == {"peak_actuator_force": "minimise"}
+    expect(page.get_by_label("slow stroke", exact=True)).to_have_count(0)
+    page.get_by_label("driven end", exact=True).select_option("crank")
+    force = page.get_by_label("peak actuator force", exact=True).and_(page.get_by_role("checkbox"))
+    expect(force).to_have_attribute("aria-invalid", "true")
+    said = page.locator(f"#{force.get_attribute('aria-describedby')}")
+    expect(said).to_contain_text("or let the slider be the driven end")
+    expect(said).not_to_contain_text("[")
+    page.get_by_label("driven end", exact=True).select_option("slider")
+    page.get_by_label("to crank angle", exact=True).fill("0")
+    expect(page.get_by_text(re.compile("swing needs two different crank angles"))).to_be_visible()
+    page.get_by_label("to crank angle", exact=True).fill("355")
+    expect(page.get_by_role("complementary")).to_contain_text("No linkage of these ranges makes the swing.")
+    page.get_by_label("the crank", exact=True).select_option("")
+    expect(page.get_by_role("complementary")).to_contain_text("turns fully")
+    assert "motion" not in text_of(page)
