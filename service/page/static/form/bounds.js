@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { completing } from "./completion.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { at, idOf, isTable } from "./path.js";
-import { taken } from "./typed_field.js";
+import { drawnFrom, taken } from "./typed_field.js";
 import { convert, split } from "./units.js";
 
 const ANY = ["any", "any"];
@@ -27,6 +27,7 @@ export function bounds(form, spot, { label, kind, any = false, again }) {
   const unit = parts.find((one) => one.number !== "")?.unit ?? (kind ? split(undefined, kind).unit : "");
   const units = keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
   const inputs = keys.map((key, place) => numberInput(idOf(spot.id, key), convert(parts[place].number, parts[place].unit, unit, kind), `${label}, ${SAID[key]}`));
+  inputs.forEach((input, place) => drawnFrom(input, at(given, [keys[place]]), units));
   /** @param {string[]} names */
   const write = (names = keys) => {
     /** @type {Record<string, unknown>} */

@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
-import { ordered, taken } from "./typed_field.js";
+import { drawnFrom, ordered, taken } from "./typed_field.js";
 import { convert, split, unitsOf, usual } from "./units.js";
 
 /** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
@@ -33,6 +33,7 @@ export function quantity(form, path, { kind, percent = false, label, why, wide }
   const { number, unit } = split(form.at(path), kind);
   const input = numberInput(idOf(path, "c"), number);
   const select = kind ? unitSelect(label, kind, unit, percent, idOf(path, "u")) : null;
+  drawnFrom(input, form.at(path), select);
   const write = () => form.put(path, taken(input, { kind, percent, select }));
   input.addEventListener("input", write);
   select?.addEventListener("change", () => {

@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { explanation, field } from "./field.js";
 import { at, idOf } from "./path.js";
-import { taken } from "./typed_field.js";
+import { drawnFrom, taken } from "./typed_field.js";
 import { kindOf, split } from "./units.js";
 
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
@@ -47,6 +47,7 @@ export function wanted(form, spot, { title, kind, again }) {
   const { number: value, unit } = split(target === "" ? undefined : target, kind);
   const input = numberInput(idOf(spot.id, "t"), value, `${title}: value to come near to`);
   const units = kind ? unitSelect(title, kind, unit, false, idOf(spot.id, "u")) : null;
+  drawnFrom(input, target === "" ? undefined : target, units);
   const write = () => form.put(spot.path, { target: (units ? taken(input, { kind, select: units }) : number(input)) ?? "" });
   input.addEventListener("input", write);
   units?.addEventListener("change", () => {

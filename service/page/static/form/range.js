@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { taken } from "./typed_field.js";
+import { drawnFrom, taken } from "./typed_field.js";
 import { convert, join, split } from "./units.js";
 
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
@@ -33,6 +33,7 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
     ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, values, separated by commas` })]
     : numbers.map((value, place) => numberInput(idOf(path, place), value, `${label}, ${titles[place]}`));
   const series = mode === "series" ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"])) : null;
+  if (!list) inputs.forEach((input, place) => drawnFrom(input, ends[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
   /** @returns {unknown[]} */
   const values = () => (list ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined))) : inputs.map((one) => (units ? taken(one, { kind, select: units }) : plain(taken(one)))));
@@ -103,7 +104,7 @@ function firstStep(inputs, unit) {
   return unit ? `${step} ${unit}` : step;
 }
 
-/** Return a number of a job that has no unit. @param {string | undefined} typed */
+/** Return a number of a job that has no unit. @param {string | number | undefined} typed */
 function plain(typed) {
   return typed !== undefined && Number.isFinite(Number(typed)) ? Number(typed) : typed;
 }

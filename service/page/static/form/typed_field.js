@@ -5,14 +5,31 @@ import { factorsOf, join } from "./units.js";
 
 /** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null }} Measure */
 
+/** What the job had for an input, as it was drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, given: unknown }>} */
+const drawn = new WeakMap();
+
+/**
+ * Remember what the job has for an input: as long as nothing else is typed it stays so, in its own unit.
+ * @param {HTMLInputElement} input @param {unknown} given @param {HTMLSelectElement | null} [select]
+ */
+export function drawnFrom(input, given, select) {
+  if (typeof given === "string" || typeof given === "number") drawn.set(input, { value: input.value, unit: select?.value, given });
+}
+
 /**
  * Return what a job holds for what is typed in an input: a number in the unit that the field shows, or the text as it is where
  * only the service can say what it means; undefined for nothing. What cannot be read is said at the field.
- * @param {HTMLInputElement} input @param {Measure} measure @returns {string | undefined}
+ * @param {HTMLInputElement} input @param {Measure} measure @returns {string | number | undefined}
  */
 export function taken(input, { kind = null, percent = false, select = null } = {}) {
   const found = read(input.value, { unit: select?.value ?? "", factors: factorsOf(kind), percent });
   delete input.dataset.wrong;
+  const before = drawn.get(input);
+  if (before && before.value === input.value && before.unit === select?.value) {
+    for (const name of ["said", "number"]) delete input.dataset[name];
+    say(input);
+    return /** @type {string | number} */ (before.given);
+  }
   if (input.value !== input.dataset.number) for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
   if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
   if (found.number === undefined) {

@@ -74,6 +74,6 @@ export function join(number, unit) {
  */
 export function convert(number, from, to, kind) {
   const factors = KINDS[kind ?? ""] ?? {};
-  if (!(from in factors) || !(to in factors) || number.trim() === "" || !Number.isFinite(Number(number))) return number;
+  if (from === to || !(from in factors) || !(to in factors) || number.trim() === "" || !Number.isFinite(Number(number))) return number;
   return String(Number(((Number(number) * factors[from]) / factors[to]).toPrecision(10)));
 }

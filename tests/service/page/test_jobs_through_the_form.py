@@ -1,0 +1,106 @@
+"""Jobs that go through the form and stay what they are, word for word, though every field of them is touched."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from slidercrank.optimise.job import parse_job
+from slidercrank.service.store import Store
+from tests.service.page.conftest import Open
+
+Job = dict[str, Any]
+TOUCH = """() => {
+  let count = 0;
+  for (const one of document.querySelectorAll(".sections input:not([type=checkbox]), .sections textarea")) {
+    one.dispatchEvent(new Event("input", { bubbles: true }));
+    one.dispatchEvent(new Event("change", { bubbles: true }));
+    count += 1;
+  }
+  return count;
+}"""
+"""Touch every field without changing it."""
+
+
+@pytest.fixture
+def form(open_page: Open) -> Open:
+    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
+    return partial(open_page, reduced_motion="reduce")
+
+
+def whole(sieve: Job) -> Job:
+    """Return a job with one of everything that the form has fields for."""
+    return sieve | {
+        "variables": {
+            "crank": {"min": "80 mm", "max": "160 mm", "step": "0.5 mm"},
+            "rod": {"min": "200 mm", "max": "600 mm", "series": "R20"},
+            "offset": {"values": ["20 mm", "40 mm", "60 mm"]},
+            "mechanism": {"slider": {"mass": ["1 kg", "3 kg"]}, "rod": {"width": {"choices": ["20 mm", "30 mm"]}}},
+            "sections": {"pins": {"crank_pin": ["10 mm", "20 mm"]}},
+            "load.1.force": ["50 N", "70 N"],
+        },
+        "quantity": {"room": {"formula": "rod - crank", "title": "room", "unit": "cm"}, "two": {"formula": "2 * room"}},
+        "constraints": {
+            "stroke": {"min": "2 * crank", "max": "300 mm"},
+            "2 * crank + rod": {"max": "900 mm"},
+            "rod / crank": {"min": 1.5},
+            "room": {"min": "10 mm", "max": "1 m"},
+            "rod": {"max": "580 mm"},
+            "transmission_angle": {"min": 0.7},
+        },
+        "objectives": {
+            "peak_torque": "minimise",
+            "peak_torque_outward / peak_torque_inward": {"target": 1.1},
+            "two": {"target": "900 mm"},
+            "time_ratio": {"target": 1.2},
+        },
+        "sections": {
+            "material": {
+                "density": "7850 kg/m^3",
+                "elasticity": "207 GPa",
+                "yield_strength": "350 MPa",
+                "ultimate_strength": "520 MPa",
+                "endurance": "150 MPa",
+                "bearing_pressure": "20 MPa",
+            },
+            "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
+            "width": ["10 mm", "80 mm"],
+            "eye_concentration": 2.5,
+        },
+    }
+
+
+def through(page: Page, job: Job, tmp_path: Path) -> None:
+    """Bring a job into the form, touch every field, and compare."""
+    file = tmp_path / "job.json"
+    file.write_text(json.dumps(job))
+    page.get_by_label("Job file to import").set_input_files(file)
+    expect(page.get_by_label("name", exact=True).first).to_have_value(job["name"])
+    status = page.get_by_role("complementary").get_by_role("status")
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+    assert page.evaluate(TOUCH) > 15
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+    found = json.loads(page.locator("#job-text").input_value())
+    assert found == job
+    for table in ("constraints", "objectives", "quantity"):
+        assert list(found.get(table, {})) == list(job.get(table, {}))
+
+
+def test_every_job_that_ships_and_those_of_the_tests_stay_word_for_word_with_every_field_touched(
+    form: Open, store: Store, pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    root = pytestconfig.rootpath
+    files = sorted([*(root / "runs").glob("*.toml"), *(root / "tests" / "data").glob("*.toml")])
+    jobs = [tomllib.loads(file.read_text()) for file in files]
+    assert len(jobs) >= 5
+    sieve = next(job for job in jobs if job["name"] == "Vibrating sieve")
+    parse_job(whole(sieve))
+    page = form(store, "#/new")
+    for job in [*jobs, whole(sieve)]:
+        through(page, job, tmp_path)
