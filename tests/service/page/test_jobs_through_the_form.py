@@ -60,6 +60,14 @@ def whole(sieve: Job) -> Job:
             "two": {"target": "900 mm"},
             "time_ratio": {"target": 1.2},
         },
+        "load": [
+            {"force": "60 N", "opposes": "motion"},
+            {
+                "crank_angles": ["0 deg", "90 deg", "3 rad"],
+                "forces": ["0 N", "-100 N", 5],
+                "measured_from": "outer dead centre",
+            },
+        ],
         "sections": {
             "material": {
                 "density": "7850 kg/m^3",
@@ -104,3 +112,24 @@ def test_every_job_that_ships_and_those_of_the_tests_stay_word_for_word_with_eve
     page = form(store, "#/new")
     for job in [*jobs, whole(sieve)]:
         through(page, job, tmp_path)
+
+
+def test_points_of_a_load_are_pasted_from_a_table_with_their_units_and_mistakes_are_said_with_their_line(
+    form: Open, store: Store
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    page.get_by_label("kind of load").first.select_option("crank_angles")
+    table = page.get_by_label("points, one a line", exact=True)
+    table.fill("angle (deg);force (kN)\n0;0\n90;-0,5\n270;0,25")
+    expect(page.get_by_label("Unit of forces")).to_have_value("kN")
+    status = page.get_by_role("complementary").get_by_role("status")
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+    load = json.loads(page.locator("#job-text").input_value())["load"][0]
+    assert load == {"crank_angles": ["0 deg", "90 deg", "270 deg"], "forces": ["0 kN", "-0.5 kN", "0.25 kN"]}
+    page.get_by_label("Unit of forces").select_option("N")
+    expect(table).to_have_value("0\t0\n90\t-500\n270\t250")
+    table.fill("0 0\n90\n270 5")
+    expect(table).to_have_attribute("aria-invalid", "true")
+    expect(page.get_by_text("Line 2 must have two numbers")).to_be_visible()
+    table.fill("0 0\n270 5\n90 1")
+    expect(page.get_by_text("Must increase")).to_be_visible()

@@ -412,7 +412,7 @@ def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: O
     expect(status(page)).to_have_text("One thing to correct.")
     for fold in page.locator("main summary").all():
         fold.click()
-    page.get_by_role("button", name="What is stroke?").first.click()
+    page.get_by_role("button", name="What is crank?").first.click()
     require_accessible(page)
     page.set_viewport_size({"width": 390, "height": 800})
     page.evaluate("scrollTo(0, 0)")

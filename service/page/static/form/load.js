@@ -4,6 +4,8 @@ import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
 import { idOf, isTable } from "./path.js";
+import { points } from "./points.js";
+import { describe, words } from "./schema.js";
 
 /**
  * Return the fields of all loads, with buttons to add and to remove one.
@@ -36,7 +38,11 @@ function one(form, load, place, all) {
     form.redraw("add-load");
   });
   const { properties, required } = kind.table;
-  const fields = Object.keys(properties ?? {}).map((key) => byschema(form, [...path, key], { required: required?.includes(key) }));
+  const columns = Object.entries(properties ?? {}).filter(([, node]) => node.type === "array").map(([key, node]) => ({ key, label: words(key), kind: describe(form.schema.resolve(node.items ?? {})).kind ?? null }));
+  const [first, second] = columns;
+  const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "") : null;
+  const rest = Object.keys(properties ?? {}).filter((key) => !table || !columns.some((one) => one.key === key));
+  const fields = [table, rest.map((key) => byschema(form, [...path, key], { required: required?.includes(key) }))];
   return h(
     "fieldset",
     { class: "inner" },

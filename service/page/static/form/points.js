@@ -1,0 +1,77 @@
+/** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit. */
+
+import { h } from "../lib/dom.js";
+import { unitSelect } from "./controls.js";
+import { field } from "./field.js";
+import { idOf, written } from "./path.js";
+import { convert, factorsOf, join, split } from "./units.js";
+
+/** @typedef {{ key: string, label: string, kind: string | null }} Column */
+
+/**
+ * Return the field of the points that two lists of a table say, one a line.
+ * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why
+ */
+export function points(form, path, columns, why) {
+  const given = columns.map(({ key }) => form.at([...path, key]));
+  const lists = given.map((one) => (Array.isArray(one) ? one : []));
+  const units = columns.map(({ label, kind }, n) => (kind ? unitSelect(label, kind, split(lists[n][0], kind).unit, false, idOf([...path, columns[n].key], "u")) : null));
+  const cells = lists.map((list, n) => list.map((value) => {
+    const { number, unit } = split(value, columns[n].kind);
+    return unit ? convert(number, unit, units[n]?.value ?? unit, columns[n].kind) : number;
+  }));
+  const rows = Array.from({ length: Math.max(...lists.map(({ length }) => length)) }, (_, n) => cells.map((column) => column[n] ?? "").join("\t"));
+  const text = h("textarea", { id: idOf([...path, columns[0].key], "c"), rows: Math.min(Math.max(rows.length + 1, 4), 12), class: "points", spellcheck: "false", value: rows.join("\n") });
+  const drawn = text.value;
+  const chosen = () => units.map((one) => one?.value ?? "");
+  const begun = chosen().join(" ");
+  const write = () => {
+    delete text.dataset.wrong;
+    const same = text.value === drawn && chosen().join(" ") === begun;
+    const read = pointsOf(text.value, columns.map(({ kind }) => Object.keys(factorsOf(kind))));
+    if (read.wrong) text.dataset.wrong = read.wrong;
+    read.units.forEach((unit, n) => {
+      const select = units[n];
+      if (unit && select) select.value = select.dataset.from = unit;
+    });
+    columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));
+  };
+  text.addEventListener("input", write);
+  units.forEach((select, n) => select?.addEventListener("change", () => {
+    const { rows: before } = pointsOf(text.value, []);
+    for (const row of before) row[n] = convert(row[n], select.dataset.from ?? select.value, select.value, columns[n].kind);
+    text.value = before.map((row) => row.join("\t")).join("\n");
+    select.dataset.from = select.value;
+    write();
+  }));
+  const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, n ? `, ${label}` : label), units[n]]);
+  const made = field(form, [...path, columns[0].key], "points, one a line", [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
+  const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
+  made.append(error);
+  form.register({ path: [...path, columns[1].key], key: written([...path, columns[1].key]), node: made, controls: [units[1] ?? text], error });
+  return made;
+}
+
+/**
+ * Return the rows of a pasted text, and what its first line says of units: {rows, units, wrong}. Between cells stand tabs or semicolons,
+ * where numbers may have a decimal comma; or spaces; or commas.
+ * @param {string} text @param {string[][]} known units of each column
+ * @returns {{ rows: string[][], units: string[], wrong: string | null }}
+ */
+export function pointsOf(text, known) {
+  const lines = text.split(/\r?\n/).map((line) => line.trim()).filter(Boolean);
+  const apart = lines.map((line) => {
+    const parts = /[\t;]/.test(line) ? line.split(/[\t;]/) : /\d\s+[-+\d.,]/.test(line) && !/,\s/.test(line) ? line.split(/\s+/) : line.split(",");
+    return parts.map((part) => part.trim());
+  });
+  /** @type {string[]} */
+  let units = [];
+  if (apart.length && /[A-Za-zµ°]/.test(apart[0].join("")) && !/^[-+\d.,]/.test(apart[0][0])) {
+    units = apart.shift()?.map((cell) => /[([]([^)\]]+)[)\]]/.exec(cell)?.[1].trim() ?? "").map((unit, n) => (known[n]?.includes(unit) ? unit : "")) ?? [];
+  }
+  const skipped = lines.length - apart.length;
+  const bad = apart.findIndex((row) => row.length !== 2 || row.some((cell) => cell === ""));
+  const wrong = bad < 0 ? null : `Line ${bad + skipped + 1} must have two numbers, with a tab, a semicolon or a space between them; got “${lines[bad + skipped].slice(0, 40)}”.`;
+  const rows = apart.map((row) => [0, 1].map((n) => (row[n] ?? "").replace(/^([-+]?\d*),(\d+)$/, "$1.$2")));
+  return { rows, units, wrong };
+}
