@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field
 from .. import presets
 from .job_requests import EXAMPLE, TOML, Asked, asked_for
 from .problems import problem_responses
+from .throttle import READING
 
 router = APIRouter(tags=["jobs"])
 
@@ -36,6 +37,24 @@ class Tables(BaseModel, extra="forbid", strict=True):
     """The tables of a job."""
 
     job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
+
+
+class CatalogueText(BaseModel, extra="forbid", strict=True):
+    """A catalogue as a table. own: names of the job's own quantities, which it may limit."""
+
+    table: str = Field(
+        max_length=10_000_000,
+        description="CSV, a row an option, with units in the header",
+        examples=["name,peak_torque max (N m)\nGM 40,40\nGM 90,90\n"],
+    )
+    own: list[str] = Field(default=[], max_length=100, examples=[["clearance"]])
+
+
+class CatalogueModel(BaseModel):
+    """The options of a choice that no other one beats, as a job has them. rows: of the table."""
+
+    option: list[dict[str, Any]] = Field(examples=[[{"name": "GM 40", "constraints": {}}]])
+    rows: int = Field(examples=[3])
 
 
 @router.get("/presets")
@@ -64,6 +83,16 @@ def _presets() -> PresetList:
 def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
     """Give the tables of a job file, which is sent as for a submission. Whether the job is valid is not checked."""
     return Tables(job=dict(asked.tables))
+
+
+@router.post("/catalogue")
+def read_catalogue(given: CatalogueText) -> CatalogueModel:
+    """Give the options of a catalogue that is sent as a table; rows that others beat in everything are left out."""
+    from ...optimise.job.catalogue import options_of
+
+    with READING:
+        option, rows = options_of(given.table, "the table", frozenset(given.own))
+    return CatalogueModel(option=option, rows=rows)
 
 
 @router.post(

@@ -101,3 +101,13 @@ def test_every_quantity_is_explained(shared: httpx.Client, pytestconfig: pytest.
             )
         if item["source"].startswith("R. Chetana"):
             assert "*Analysis of Position Error in Offset Slider Crank Mechanism*, Eq. (3)" in theory
+
+
+def test_a_catalogue_that_is_sent_as_a_table_gives_the_options_that_no_other_one_beats(shared: httpx.Client) -> None:
+    table = "name,room min (mm),peak_torque max (N m)\nA,3,40\nB,4,40\nC,5,90\n"
+    found = shared.post("/catalogue", json={"table": table, "own": ["room"]}).json()
+    assert found["rows"] == 3
+    assert [option["name"] for option in found["option"]] == ["A", "C"]
+    assert found["option"][0]["constraints"] == {"room": {"min": "3 mm"}, "peak_torque": {"max": "40 N m"}}
+    for wrong, said in (("", "empty"), ("name,peak_torque max (mm)\nA,1", "unit"), ("name,crank\nA,=1", "formula")):
+        assert said in refused(shared.post("/catalogue", json={"table": wrong}), 422)

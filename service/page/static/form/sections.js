@@ -1,6 +1,7 @@
 /** The sections of the form, in the order in which an engineer thinks. */
 
 import { h } from "../lib/dom.js";
+import { choices, choicesGiven } from "./catalogue.js";
 import { byschema, choice, quantity } from "./controls.js";
 import { formulaObjectives, formulaRequirements, namedFormulas, namesGiven } from "./formula.js";
 import { link } from "./link.js";
@@ -14,7 +15,7 @@ import { solving } from "./solving.js";
 import { strength, strengthGiven } from "./strength.js";
 import { varying, varyingNames } from "./varying.js";
 
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion"]);
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion", "choice"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
@@ -26,6 +27,7 @@ export function sections(form) {
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
       more(["Further numbers that vary", varyingNames(form).join(", ")], varying(form)),
+      more(["Catalogues to choose from", choicesGiven(form)], choices(form)),
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),

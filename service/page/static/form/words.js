@@ -21,6 +21,7 @@ const SAID = [
   [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
   [/got \[motion\] kind = "swing"/g, "got one that swings"],
   [/write kind = "swing"/g, "let the crank swing"],
+  [/must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g, (_, count) => `must have two options or more; got ${count}; paste a table of them`],
   [/(?:set )?\[motion\] driver = "(\w+)"/g, (_, end) => `let the ${end} be the driven end`],
   [/got driver = "(\w+)"/g, (_, end) => `got the ${end} as the driven end`],
   [/, or as a plain number in [^;.]+/g, ""],
