@@ -44,7 +44,7 @@ export function points(form, path, columns, why) {
     select.dataset.from = select.value;
     write();
   }));
-  const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, n ? `, ${label}` : label), units[n]]);
+  const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, `${label} in`), units[n]]);
   const made = field(form, [...path, columns[0].key], "points, one a line", [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
   const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
   made.append(error);

@@ -10,7 +10,7 @@ import { convert, join, split } from "./units.js";
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
 
 /** @type {[Mode, string][]} */
-const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["step", "in steps"], ["series", "from a series"], ["values", "only these"], ["choices", "one of"]];
+const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["step", "in steps"], ["series", "in a series"], ["values", "only these"], ["choices", "one of"]];
 const LISTS = ["values", "choices"];
 const STEPS = 20; // at least, of the step that is begun with
 
@@ -66,6 +66,7 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
   const controls = [select, first, ...(second ? [word("to"), second] : []), ...(third ? [word("by"), third] : []), series, units].filter((one) => one instanceof HTMLElement);
   const drop = removed && h("button", { type: "button", "aria-label": `${text} ${label}`, onclick: removed }, text);
   const made = field(form, path, label, drop ? [...controls, drop] : controls, why);
+  made.classList.add("range");
   made.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
   return made;
 }

@@ -11,10 +11,12 @@ import { objective } from "./objective.js";
 import { isTable } from "./path.js";
 import { range } from "./range.js";
 import { requirement } from "./requirement.js";
+import { words } from "./schema.js";
 import { solving } from "./solving.js";
 import { strength, strengthGiven } from "./strength.js";
 import { varying, varyingNames } from "./varying.js";
 
+const LINE = 90; // characters of what a group has
 const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion", "choice"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
@@ -22,7 +24,7 @@ export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more(swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
+    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
@@ -31,11 +33,11 @@ export function sections(form) {
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more("Counterweight", byschema(form, ["mechanism", "counterweight"])), more("Several cylinders on one crankshaft", byschema(form, ["mechanism", "cylinders"])), more("Friction", byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
+    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"])), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
     section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
-    section("Search", solving(form), more("Robust designs", robust(form)), more("Loose joint, for the simulation of its impacts", byschema(form, ["clearance"], { label: "clearance" }))),
+    section("Search", solving(form), more(["Robust designs", has(form, "robust")], robust(form)), more(["Loose joint, for the simulation of its impacts", has(form, "clearance")], byschema(form, ["clearance"], { label: "clearance" }))),
     kept(form),
   ].filter(Boolean);
 }
@@ -55,6 +57,18 @@ function fields(...content) {
 function more(title, ...content) {
   const [name, has] = [title].flat();
   return h("details", { class: "more" }, h("summary", {}, name, has ? h("span", { class: "has" }, has) : null), h("div", { class: "fields" }, content));
+}
+
+/** Return what the job has at some places, in a line; "" for nothing. @param {Form.Whole} form @param {...string} places */
+function has(form, ...places) {
+  /** @param {unknown} part @param {string} key @returns {string[]} */
+  const said = (part, key) => {
+    if (part === undefined) return [];
+    if (Array.isArray(part)) return [`${key} ${part.join(", ")}`];
+    return isTable(part) ? Object.entries(part).flatMap(([inner, value]) => said(value, words(inner))) : [`${key} ${part}`];
+  };
+  const text = places.flatMap((place) => said(form.at(place.split(".")), words(place.split(".").at(-1) ?? ""))).join("; ");
+  return text.length > LINE ? `${text.slice(0, LINE)} …` : text;
 }
 
 /**
@@ -133,7 +147,7 @@ function tolerances(form) {
   const dimension = (key) => byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
-    more("Clearances, and where the position matters", byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
+    more(["Clearances, and where the position matters", has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke")], byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
   ];
 }
 

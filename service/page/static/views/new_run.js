@@ -147,6 +147,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     redraw();
     file.refresh();
     checked = null;
+    if (!text) {
+      status.classList.remove("good");
+      say("Checking …");
+    }
     check(form.job, { now: true });
   }
   /** @param {Api.Wrong[]} wrong */
