@@ -63,6 +63,7 @@ declare global {
     type Understood = Schemas["Understood"];
     type Units = Schemas["UnitTable"]["inch"];
     type WhatIf = Schemas["WhatIfModel"];
+    type Wished = Schemas["WishedModel"];
     type Wrong = Schemas["WrongModel"];
     /** A design: its cells by the keys of columns. */
     type Row = Record<string, Cell>;

@@ -10,7 +10,7 @@ declare namespace Dom {
   };
   type Named =
     | "accept" | "autocomplete" | "autofocus" | "checked" | "class" | "colspan" | "cx" | "cy" | "d" | "datetime" | "disabled" | "download"
-    | "for" | "height" | "hidden" | "href" | "id" | "inputmode" | "max" | "maxlength" | "method" | "min" | "name" | "novalidate" | "placeholder"
+    | "for" | "height" | "hidden" | "href" | "id" | "inputmode" | "max" | "maxlength" | "method" | "min" | "name" | "novalidate" | "open" | "placeholder"
     | "r" | "required" | "reversed" | "role" | "rows" | "rx" | "scope" | "selected" | "spellcheck" | "step" | "tabindex" | "text-anchor"
     | "title" | "transform" | "type" | "value" | "viewBox" | "width" | "x" | "x1" | "x2" | "y" | "y1" | "y2";
   type Attributes<Of extends Element = Element> = Listeners<Of> & { [Name in Named]?: Value } & { [name: `data-${string}` | `aria-${string}`]: Value };

@@ -52,7 +52,9 @@ declare namespace Page {
   }
   /** A design that is marked in a chart. */
   interface Mark {
-    row: number;
+    /** Of the front; without one it is another design, with `cells`. */
+    row?: number;
+    cells?: Api.Row;
     colour: string;
     width?: number;
     name?: string;

@@ -161,12 +161,22 @@ export function parallel(chart) {
         context.fillRect(x - 3, y - 0.5, 6, 1);
       }
     });
-    for (const { row, colour, width = 2.5, read = false } of chart.marks()) {
+    for (const { row = 0, cells, colour, width = 2.5, read = false } of chart.marks()) {
       context.strokeStyle = colour;
       context.lineWidth = width;
-      line(context, row, axes.length, across, heights);
+      if (cells) line(context, 0, axes.length, across, heightsOf(cells));
+      else line(context, row, axes.length, across, heights);
       if (read) drawValues(context, row);
     }
+  }
+
+  /** Return where a design that is none of the front crosses the axes, just beyond the end of one that does not reach it. @param {Api.Row} cells */
+  function heightsOf(cells) {
+    return Int16Array.from(view.axes, ({ key }, axis) => {
+      const words = chart.data.words(key);
+      const y = view.scales[axis].at(words ? words.indexOf(String(cells[key])) : Number(cells[key] ?? NaN));
+      return Number.isFinite(y) ? Math.min(view.height - ROOM / 2, Math.max(ROOM / 2, y)) : -1;
+    });
   }
 
   /** Write the values of a design at the axes, on the side where no ticks stand. @param {Page.Canvas} context @param {number} row */

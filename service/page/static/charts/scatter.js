@@ -17,6 +17,7 @@ import { shadesOf } from "./shades.js";
  * @property {() => string} y
  * @property {() => string} colour
  * @property {() => Page.Mark[]} marks
+ * @property {() => Api.Row[]} others designs that are marked and none of the front; the axes reach to them
  * @property {(row: number | null) => void} point
  * @property {(row: number) => void} open
  * @property {(row: number) => void} select
@@ -30,6 +31,13 @@ const NEAR = 10; // pixels within which a design is pointed at
 const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
 const [BACK, FRONT, OVER] = [0, 1, 2];
 const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
+
+/** @param {Page.Canvas} context @param {number} x @param {number} y @param {number} size */
+function diamond(context, x, y, size) {
+  context.moveTo(x, y - size);
+  for (const [a, b] of [[1, 0], [0, 1], [-1, 0]]) context.lineTo(x + a * size, y + b * size);
+  context.closePath();
+}
 
 /**
  * Return {place, draw(what), colours()}. `chart` gives what is drawn: data, limits, x(), y(), colour() (keys), marks()
@@ -72,12 +80,24 @@ export function scatter(chart) {
     const { data } = chart;
     const column = data.column(key);
     const words = data.words(key);
-    const { low, high } = words ? { low: -0.5, high: words.length - 0.5 } : range(data.numbers(key));
+    const { low, high } = words ? { low: -0.5, high: words.length - 0.5 } : range(withOthers(key));
     const drawn = scale(low, high, start, end);
     const factor = inShown(1, column.unit);
     const shown = scale(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
     const ticks = words ? wordTicks(words) : shown.ticks.map((tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]));
     return { ...drawn, column, ticks, better: data.better(key) };
+  }
+
+  /** Return the numbers that an axis has to reach. @param {string} key @returns {Iterable<Api.Row[string]>} */
+  function withOthers(key) {
+    const others = chart.others();
+    return others.length ? [...chart.data.numbers(key), ...others.map((row) => row[key])] : chart.data.numbers(key);
+  }
+
+  /** Return where a mark stands. @param {Page.Mark} mark @returns {Page.Point} */
+  function placeOf({ row = 0, cells }) {
+    if (!cells) return [view.across[row], view.up[row]];
+    return [view.x.at(Number(cells[chart.x()])), view.y.at(Number(cells[chart.y()]))];
   }
 
   /** @param {Page.Canvas} context @param {number} row */
@@ -106,16 +126,24 @@ export function scatter(chart) {
   function drawOver() {
     stack.clear(OVER);
     const context = contexts[OVER];
-    const { across, up, ink } = view;
+    const { ink } = view;
     /** @type {{ start: number, end: number, y: number }[]} */
     const written = [];
-    for (const { row, colour, name } of chart.marks()) {
+    for (const mark of chart.marks()) {
+      const { colour, name } = mark;
+      const [x, y] = placeOf(mark);
+      if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
       context.strokeStyle = colour;
       context.lineWidth = 2.5;
       context.beginPath();
-      context.arc(across[row], up[row], 8, 0, 7);
+      if (mark.cells) diamond(context, x, y, 7);
+      else context.arc(x, y, 8, 0, 7);
+      if (mark.cells) {
+        context.fillStyle = colour;
+        context.fill();
+      }
       context.stroke();
-      if (name) write(context, name, across[row], up[row], ink, written);
+      if (name) write(context, name, x, y, ink, written);
     }
     if (box) {
       context.fillStyle = ink.mark;

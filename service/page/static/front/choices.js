@@ -1,5 +1,7 @@
 /** Choices in the explorer of a front, to and from the address. */
 
+import { wishesFrom, wishQuery } from "./wishes.js";
+
 /**
  * @typedef {{ key: string, flipped: boolean }} Axis
  * @typedef {ReturnType<typeof choicesFrom>} Chosen
@@ -8,7 +10,7 @@
 const MOST = 3; // designs side by side
 
 /**
- * Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights.
+ * Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights, wish.
  * @param {URLSearchParams} query @param {Api.Front} front
  */
 export function choicesFrom(query, front) {
@@ -45,6 +47,7 @@ export function choicesFrom(query, front) {
     page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
     selected: list("selected").map(Number).filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count).slice(0, MOST),
     weights: weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10) ? weights : null,
+    wish: wishesFrom(query, front.objectives),
     standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes, ...strokes].join(",") },
   };
 }
@@ -90,6 +93,7 @@ export function queryOf(chosen, lasso) {
     selected: chosen.selected.join(","),
     weights: chosen.weights?.join(",") ?? "",
     lasso: lasso ? [lasso.x, lasso.y, ...lasso.line.flat().map((number) => Number(number.toPrecision(5)))].join(",") : "",
+    ...wishQuery(chosen.wish),
   };
   for (const [key, limit] of chosen.limits) {
     if (limit.words) query[`is.${key}`] = limit.words.join("|");

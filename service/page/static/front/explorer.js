@@ -20,6 +20,7 @@ import { saving } from "./saving.js";
 import { scatterPanel } from "./scatter_panel.js";
 import { selectedBar } from "./selected.js";
 import { designTable } from "./table.js";
+import { wishingPanel } from "./wishing.js";
 
 const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
 const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
@@ -87,7 +88,7 @@ export class Explorer {
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
     });
     this.dots = scatter({
-      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"),
+      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"), others: () => this.others().map(({ cells }) => cells),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
       box: (x, y) => {
         this.limits.set(chosen.x, x);
@@ -100,6 +101,7 @@ export class Explorer {
     this.marksPanel = marksPanel(this);
     this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
+    this.wishing = wishingPanel(this);
     const columns = data.columns;
     place.replaceChildren(
       h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
@@ -109,6 +111,7 @@ export class Explorer {
         h("p", { class: "quiet hint" }, "Drag along an axis to keep a part of it; double click to let go. The fields below do the same."),
         h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
       this.scatterPanel.place,
+      this.wishing.place,
       h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
         h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place, this.saving.node,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
@@ -210,6 +213,7 @@ export class Explorer {
     else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
     this.linkagePanel.draw(what);
+    this.wishing.draw(what);
     this.selected.draw();
   }
 
@@ -235,9 +239,16 @@ export class Explorer {
     if (kind === "dots") for (const [row, names] of this.names()) found.push({ row, colour: ink.text, name: names[0] });
     else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
     if (this.picked !== null) found.push({ row: this.picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
+    for (const { cells, name } of this.others()) found.push({ cells, colour: ink["series-4"], name, width: 3 });
     for (const number of this.chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
     if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${this.pointed + 1}` : "", read: true });
     return found;
+  }
+
+  /** Return the designs that are marked though they are none of the front, each with its name. */
+  others() {
+    const wished = this.wishing?.cells();
+    return wished ? [{ cells: wished, name: "wished" }] : [];
   }
 
   /** Return the names of marked designs by their row: knee, best in an objective, by weights. */

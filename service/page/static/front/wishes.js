@@ -1,0 +1,119 @@
+/** Wishes for the objectives of a front: to and from the address, to the service, and those that were made before. */
+
+/**
+ * @typedef {"free" | "value" | "improve" | "keep" | "limit"} Kind
+ * @typedef {{ kind: Kind, value?: number }} Wish value: in the unit of the API
+ * @typedef {{ of: Map<string, Wish>, design: number | null }} Wishes by quantity; what is not there is free. design: that classes speak of
+ * @typedef {{ id: string, text: string }} Problem At an objective, at the "design", or about all: "".
+ */
+
+const CLASSES = ["improve", "keep"];
+const MOST = 20; // wishes that are remembered of a run
+
+/** Return the wishes that an address has; null without any. @param {URLSearchParams} query @param {readonly { quantity: string }[]} objectives @returns {Wishes | null} */
+export function wishesFrom(query, objectives) {
+  /** @type {Map<string, Wish>} */
+  const of = new Map();
+  for (const { quantity } of objectives) {
+    const text = query.get(`wish.${quantity}`) ?? "";
+    const [, limit, number] = /^(to )?(.+)$/.exec(text) ?? [];
+    if (CLASSES.includes(text)) of.set(quantity, { kind: /** @type {Kind} */ (text) });
+    else if (number && Number.isFinite(Number(number))) of.set(quantity, { kind: limit ? "limit" : "value", value: Number(number) });
+  }
+  const design = Number(query.get("wish.design"));
+  return of.size ? { of, design: Number.isInteger(design) && design > 0 ? design : null } : null;
+}
+
+/** Return the part of an address that has wishes. @param {Wishes | null} wishes */
+export function wishQuery(wishes) {
+  /** @type {Record<string, string>} */
+  const query = {};
+  for (const [quantity, { kind, value }] of wishes?.of ?? []) query[`wish.${quantity}`] = kind === "limit" ? `to ${value}` : kind === "value" ? String(value) : kind;
+  if (wishes?.design) query["wish.design"] = String(wishes.design);
+  return query;
+}
+
+/**
+ * Return wishes as the service takes them.
+ * @param {Wishes} wishes @param {readonly { quantity: string, unit: string }[]} objectives
+ */
+export function asked({ of, design }, objectives) {
+  const units = new Map(objectives.map(({ quantity, unit }) => [quantity, unit]));
+  const at = [...of].map(([quantity, { kind, value }]) => {
+    const number = `${value} ${units.get(quantity) ?? ""}`.trim();
+    return [quantity, kind === "value" ? number : kind === "limit" ? `may worsen to ${number}` : kind];
+  });
+  return { at: Object.fromEntries(at), design: relative({ of, design }) ? design : null };
+}
+
+/** Whether any wish speaks of a design. @param {Wishes} wishes */
+export function relative({ of }) {
+  return [...of.values()].some(({ kind }) => CLASSES.includes(kind));
+}
+
+/**
+ * Return what is wrong with wishes by what they say alone, each with its place.
+ * @param {Wishes} wishes @param {readonly { quantity: string }[]} objectives @param {number} count of designs @returns {Problem[]}
+ */
+export function wrongIn(wishes, objectives, count) {
+  const { of, design } = wishes;
+  /** @type {Problem[]} */
+  const found = [];
+  for (const [quantity, { kind, value }] of of) {
+    if ((kind === "value" || kind === "limit") && !Number.isFinite(value ?? NaN)) found.push({ id: quantity, text: "A number is needed here; write one, or choose “free”." });
+  }
+  const kinds = objectives.map(({ quantity }) => of.get(quantity)?.kind ?? "free");
+  if (relative(wishes) && (design === null || !Number.isInteger(design) || design < 1 || design > count)) found.push({ id: "design", text: `“Improve” and “keep” speak of a design of the front; give its number, 1 to ${count}.` });
+  if (!kinds.some((kind) => kind === "value" || kind === "improve")) found.push({ id: "", text: "Nothing is wished yet; give one objective a value, or let it improve." });
+  else if (kinds.every((kind) => CLASSES.includes(kind))) found.push({ id: "", text: "No design improves while all other objectives keep; let one be free, or worsen to a value." });
+  return found;
+}
+
+/** Return where a refusal of the service belongs: to the objective that it names first. @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem} */
+export function placed(detail, objectives) {
+  const named = objectives.map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) })).filter(({ at }) => at >= 0);
+  named.sort((one, other) => one.at - other.at || other.quantity.length - one.quantity.length);
+  const text = `${detail.charAt(0).toUpperCase()}${detail.slice(1)}.`;
+  return { id: named.length === 1 ? named[0].quantity : "", text };
+}
+
+/** @param {number} job */
+const key = (job) => `wishes ${job}`;
+
+/** Return the wishes that were made of a run in this browser, the latest first, as parts of addresses. @param {number} job @returns {string[]} */
+export function wishedBefore(job) {
+  try {
+    const found = JSON.parse(localStorage.getItem(key(job)) ?? "[]");
+    return Array.isArray(found) ? found.filter((one) => typeof one === "string") : [];
+  } catch {
+    return [];
+  }
+}
+
+/** Remember wishes of a run, as the latest. @param {number} job @param {Wishes} wishes */
+export function remember(job, wishes) {
+  const text = new URLSearchParams(wishQuery(wishes)).toString();
+  try {
+    localStorage.setItem(key(job), JSON.stringify([text, ...wishedBefore(job).filter((one) => one !== text)].slice(0, MOST)));
+  } catch {
+    // A browser that keeps nothing: the link has the latest wish all the same.
+  }
+}
+
+/**
+ * Return the number of the design, from 1, whose objectives are nearest to a row, each as a share of its range over the front.
+ * @param {Api.Row} row @param {{ column: string }[]} objectives
+ * @param {{ count: number, numbers: (key: string) => Float64Array, range: (key: string) => Page.Range }} data
+ */
+export function nearest(row, objectives, data) {
+  let [best, least] = [0, Infinity];
+  for (let other = 0; other < data.count; other += 1) {
+    let sum = 0;
+    for (const { column } of objectives) {
+      const { low, high } = data.range(column);
+      sum += ((data.numbers(column)[other] - Number(row[column])) / (high - low || 1)) ** 2;
+    }
+    if (sum < least) [best, least] = [other, sum];
+  }
+  return best + 1;
+}

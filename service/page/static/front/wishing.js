@@ -1,0 +1,240 @@
+/** Choosing by wishing: a class or a value for each objective, and the optimal design that comes nearest, solved anew. */
+
+import { link } from "../lib/address.js";
+import { get, isAbort, post, sentenceOf } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { read } from "../lib/typed.js";
+import { LENGTHS } from "./linkages.js";
+import { asked, nearest, placed, relative, remember, wishedBefore, wishesFrom, wrongIn } from "./wishes.js";
+
+/** @import { Explorer } from "./explorer.js" */
+/** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
+
+/** @type {[Kind, string][]} */
+const KINDS = [["free", "is free"], ["value", "is wished"], ["improve", "improves"], ["keep", "keeps"], ["limit", "may worsen to"]];
+const APART = 1e-9; // of a number: less is rounding
+
+/** Return {place, draw(what), cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
+export function wishingPanel(explorer) {
+  const { data, chosen, job } = explorer;
+  const { objectives } = data;
+  const rows = objectives.map(row);
+  const design = h("input", { type: "text", inputmode: "numeric", id: "wish-design", class: "number", "aria-describedby": "wish-design-wrong", onchange: clean });
+  const wrongDesign = h("p", { class: "error", id: "wish-design-wrong" });
+  const from = h("div", { class: "wish-from" }, h("label", { for: "wish-design" }, "“Improves” and “keeps” speak of design "), design, wrongDesign);
+  const solve = h("button", { class: "primary" }, "Solve");
+  const none = h("button", { type: "button", onclick: () => take(null) }, "Without wishes");
+  const wrong = h("p", { class: "error", role: "alert" });
+  const answer = h("div", { class: "wish-answer", "aria-live": "polite" });
+  const before = h("div", { class: "wish-history" });
+  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); submit(); } },
+    h("div", { class: "wish-rows" }, rows.map(({ node }) => node)), from, h("div", { class: "row" }, solve, none), wrong);
+  const place = h("section", { class: "panel wishing", "aria-labelledby": "wishing-title" },
+    h("h2", { id: "wishing-title" }, "Choose by wishing"),
+    h("p", { class: "quiet hint" }, "Say what you would like to have. The optimal design that comes nearest is solved anew; it need not be one of the list. A wished value is no bound."),
+    h("div", { class: "wish-columns" }, form, answer), before);
+  place.hidden = objectives.length < 2 || data.count === 0;
+  /** @type {Api.Wished | null} */
+  let found = null;
+  let near = 0; // the number of the nearest design of the front
+  let way = ""; // the link of the design
+  let turn = 0; // of the latest question
+
+  /** @param {Api.Objective} objective */
+  function row({ quantity, title, unit }) {
+    const id = `wish-${quantity}`;
+    const kind = h("select", { id, onchange: () => { shape(); clean(); } }, KINDS.map(([value, words]) => h("option", { value }, words)));
+    const value = h("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": `Value for ${title}`, "aria-describedby": `${id}-wrong`, onchange: clean });
+    const units = h("span", { class: "quiet" });
+    const refused = h("p", { class: "error", id: `${id}-wrong` });
+    function shape() {
+      const wanted = kind.value === "value" || kind.value === "limit";
+      for (const node of [value, units]) node.hidden = !wanted;
+      units.textContent = unitOf(unit);
+    }
+    return {
+      quantity, value, refused, shape,
+      node: h("div", { class: "wish-row" }, h("label", { for: id }, title), kind, h("span", { class: "wish-value" }, value, units), refused),
+      /** @returns {Wish | null} */
+      get() {
+        if (kind.value === "free") return null;
+        const typed = read(value.value, { unit: "", factors: {} });
+        return value.hidden ? { kind: /** @type {Kind} */ (kind.value) } : { kind: /** @type {Kind} */ (kind.value), value: fromShown(Number(typed.number), unit) };
+      },
+      /** @param {Wish | undefined} wish */
+      set(wish) {
+        kind.value = wish?.kind ?? "free";
+        value.value = wish?.value === undefined ? "" : String(Number(inShown(wish.value, unit).toPrecision(10))).replace("-", "−");
+        shape();
+      },
+    };
+  }
+
+  /** Return what the fields say. @returns {Wishes} */
+  function said() {
+    /** @type {[string, Wish][]} */
+    const of = rows.flatMap((one) => { const wish = one.get(); return wish ? [[one.quantity, wish]] : []; });
+    return { of: new Map(of), design: design.value.trim() === "" ? null : Number(design.value) };
+  }
+
+  /** Show the wishes of the address, or none, in the fields. */
+  function showFields() {
+    for (const one of rows) one.set(chosen.wish?.of.get(one.quantity));
+    design.value = String(chosen.wish?.design ?? explorer.chosen.selected[0] ?? (explorer.front.knee ?? 0) + 1);
+    clean();
+  }
+
+  function clean() {
+    tell([]);
+    from.classList.toggle("wanted", relative(said()));
+  }
+
+  /** Say at each field what is wrong with it. @param {Problem[]} problems */
+  function tell(problems) {
+    /** @param {string} id */
+    const of = (id) => problems.filter((one) => one.id === id).map((one) => one.text).join(" ");
+    for (const one of [...rows, { quantity: "design", value: design, refused: wrongDesign }]) {
+      one.refused.textContent = of(one.quantity);
+      if (of(one.quantity)) one.value.setAttribute("aria-invalid", "true");
+      else one.value.removeAttribute("aria-invalid");
+    }
+    wrong.textContent = of("");
+    rows.find(({ quantity }) => of(quantity))?.value.focus();
+  }
+
+  function submit() {
+    const wishes = said();
+    const problems = wrongIn(wishes, objectives, data.count);
+    if (problems.length) tell(problems);
+    else take(wishes);
+  }
+
+  /** Take over wishes, null to have none, and ask for the design. @param {Wishes | null} wishes */
+  function take(wishes) {
+    explorer.change({ wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } }, "marks");
+    showFields();
+    ask();
+  }
+
+  async function ask() {
+    const { wish } = chosen;
+    const own = (turn += 1);
+    if (!wish) {
+      found = null;
+      return show();
+    }
+    solve.disabled = true;
+    try {
+      const given = await post(`jobs/${job.id}/wish`, asked(wish, objectives), { signal: explorer.signal });
+      if (own !== turn) return;
+      if (given.design) await locate(given.design);
+      found = given;
+      remember(job.id, wish);
+      show();
+    } catch (problem) {
+      if (own !== turn || isAbort(problem)) return;
+      found = null;
+      show();
+      tell([placed(sentenceOf(problem), objectives)]);
+    } finally {
+      if (own === turn) solve.disabled = false;
+    }
+  }
+
+  /** Find the nearest design of the front, and the link to the wished one where only its lengths are others. @param {Api.Row} wished */
+  async function locate(wished) {
+    await data.need(objectives.map(({ column }) => column));
+    near = nearest(wished, objectives, data);
+    const path = /** @type {const} */ (`jobs/${job.id}/designs/${near}`);
+    const [{ ranges }, { design: other }] = await Promise.all([get(`${path}/requirements`, {}, explorer.signal), get(path, {}, explorer.signal)]);
+    const further = [...Object.keys(ranges).filter((key) => !LENGTHS.includes(key)), ...Object.keys(wished).filter((key) => key.startsWith("choice_"))];
+    const alike = further.every((key) => wished[key] === other[key] || Math.abs(Number(wished[key]) - Number(other[key])) <= APART * Math.abs(Number(other[key])));
+    way = alike ? link(["jobs", job.id, "designs", near], Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])]))) : "";
+    beside = other;
+  }
+  /** @type {Api.Row} */
+  let beside = {}; // the nearest design
+
+  function show() {
+    drawAnswer();
+    drawBefore();
+    explorer.update("all");
+  }
+
+  function drawAnswer() {
+    none.hidden = !chosen.wish;
+    if (!found) return fill(answer);
+    const [head] = found.sentences;
+    const sentence = h("p", { class: found.possible ? "good" : null }, `${head.charAt(0).toUpperCase()}${head.slice(1)}.`);
+    const { design: wished } = found;
+    if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
+    const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
+    fill(answer, sentence, outcomes(found, nearby),
+      h("div", { class: "row" }, way ? h("a", { class: "button primary", href: way }, "Open the wished design") : h("span", { class: "quiet" }, "More than its lengths is new, so all of its numbers are here.")),
+      h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)));
+  }
+
+  /** @param {Api.Wished} given @param {Node} nearby */
+  function outcomes(given, nearby) {
+    const lines = given.objectives.map((one) => {
+      const objective = objectives.find(({ quantity }) => quantity === one.quantity);
+      const value = objective && Number(beside[objective.column]);
+      const words = { free: "free", improve: `better than ${withUnit(one.before, one.unit, 4)}`, keep: `as ${withUnit(one.before, one.unit, 4)}`, value: withUnit(one.wished, one.unit, 4), limit: `to ${withUnit(one.wished, one.unit, 4)}` }[one.wish];
+      return h("tr", {}, h("th", { scope: "row" }, one.title), h("td", { class: "number quiet" }, words),
+        h("td", { class: "number", "data-key": one.quantity, "data-value": String(one.reached) }, withUnit(one.reached, one.unit)),
+        h("td", {}, one.wish === "free" ? null : h("span", { class: one.met ? "good" : "at-limit" }, one.met ? "✓ met" : `short by ${withUnit(one.short, one.unit, 3)}`)),
+        h("td", { class: "number quiet" }, value === undefined ? "" : signed(one.reached - value, one.unit)));
+    });
+    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Wished and reached" }, h("table", {}, h("caption", { class: "hidden" }, "Wished and reached"),
+      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Objective"), h("th", { scope: "col", class: "number" }, "wished"), h("th", { scope: "col", class: "number" }, "reached"), h("th", { scope: "col" }, h("span", { class: "hidden" }, "met")), h("th", { scope: "col", class: "number" }, "against ", nearby))),
+      h("tbody", {}, lines)));
+  }
+
+  /** @param {Api.Wished} given @param {Api.Row} wished */
+  function numbers({ columns }, wished) {
+    const shown = columns.filter(({ key }) => !key.startsWith("slack_"));
+    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "All numbers of the wished design" }, h("table", {}, h("caption", { class: "hidden" }, "All numbers of the wished design"),
+      h("thead", {}, h("tr", {}, ["Quantity", "wished design", `design ${near}`].map((title, n) => h("th", { scope: "col", class: n ? "number" : null }, title)))),
+      h("tbody", {}, shown.map(({ key, title, unit }) => h("tr", {}, h("th", { scope: "row" }, title),
+        h("td", { class: "number", "data-key": key, "data-value": String(wished[key]) }, withUnit(wished[key], unit)), h("td", { class: "number quiet" }, withUnit(beside[key], unit)))))));
+  }
+
+  /** Offer the wishes that were made before. */
+  function drawBefore() {
+    const latest = wishedBefore(job.id).map((one) => ({ one, wishes: wishesFrom(new URLSearchParams(one), objectives) }));
+    const items = latest.flatMap(({ wishes }) => (wishes ? [h("li", {}, h("button", { type: "button", class: "linked", onclick: () => take(wishes) }, inWords(wishes)))] : []));
+    fill(before, items.length > 0 && h("details", {}, h("summary", {}, `Wishes so far (${items.length})`), h("ol", {}, items)));
+  }
+
+  /** @param {Wishes} wishes */
+  function inWords(wishes) {
+    const parts = objectives.flatMap(({ quantity, title, unit }) => {
+      const wish = wishes.of.get(quantity);
+      if (!wish) return [];
+      const value = withUnit(wish.value ?? null, unit, 5);
+      return [`${title} ${{ value, limit: `may worsen to ${value}`, improve: "improves", keep: "keeps", free: "" }[wish.kind]}`];
+    });
+    return `${parts.join(", ")}${wishes.design ? `, from design ${wishes.design}` : ""}`;
+  }
+
+  let units = ""; // that the answer is drawn in
+  /** @param {string} what */
+  function draw(what) {
+    const now = unitOf("mm");
+    if (what !== "all" || units === now) return;
+    const first = units === "";
+    units = now;
+    showFields();
+    drawAnswer();
+    drawBefore();
+    if (first && chosen.wish) ask();
+  }
+
+  return { place, draw, cells: () => found?.design ?? null };
+}
+
+/** Return a difference with its sign. @param {number} value @param {string} unit */
+function signed(value, unit) {
+  return value === 0 ? "=" : `${value > 0 ? "+" : ""}${text(value, unit, 3)}`;
+}

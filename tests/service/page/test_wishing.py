@@ -1,0 +1,136 @@
+"""Choosing by wishing beside the front: the numbers of the API, on the charts, in a link, again from the history."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from tests.service.api.fixed_front import API, Solved, served
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import watch
+
+STILL: dict[str, Any] = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 900}}
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
+    """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
+    wrong: list[str] = []
+    with served(solved.store) as address, contextlib.closing(browser.new_context(**STILL)) as context:
+        page = context.new_page()
+        watch(page, address, wrong, expected=("422",))
+        page.goto(f"{address}/#/help")
+        yield page, address
+    assert wrong == []
+
+
+@pytest.fixture
+def page(opened: tuple[Page, str], solved: Solved) -> Page:
+    """Return the front as if for the first time."""
+    page, _ = opened
+    page.evaluate("localStorage.clear(); sessionStorage.clear(); location.hash = '#/help'")
+    expect(page.locator(".wishing")).to_have_count(0)
+    page.evaluate("view => { location.hash = view; }", f"#/jobs/{solved.number}")
+    expect(page.locator(".wishing")).to_be_visible(timeout=30_000)
+    return page
+
+
+def panel(page: Page) -> Locator:
+    return page.get_by_role("region", name="Choose by wishing")
+
+
+def wish(page: Page, objective: str, kind: str, value: str = "") -> None:
+    panel(page).get_by_label(objective, exact=True).select_option(kind)
+    if value:
+        panel(page).get_by_label(f"Value for {objective}").fill(value)
+
+
+def solve(page: Page) -> dict[str, Any]:
+    """Ask for the wished design, and return the answer of the service."""
+    with page.expect_response("**/wish") as answered:
+        panel(page).get_by_role("button", name="Solve").click()
+    found: dict[str, Any] = answered.value.json()
+    return found
+
+
+def test_the_wished_design_is_that_of_the_api_and_opens(page: Page, opened: tuple[Page, str], solved: Solved) -> None:
+    wish(page, "time ratio", "is wished", "1,3")
+    wish(page, "least transmission angle", "is wished", "50")
+    solve(page)
+    at = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
+    expected = httpx.post(f"{opened[1]}{API}/jobs/{solved.number}/wish", json={"at": at}, timeout=60.0).json()
+    for one in expected["objectives"]:
+        cell = panel(page).locator(f"td[data-key={one['quantity']}]").first
+        assert float(str(cell.get_attribute("data-value"))) == one["reached"]
+    assert "wish.time_ratio=1.3" in page.url
+    page.reload()  # as whoever gets the link sees it
+    panel(page).get_by_role("link", name="Open the wished design").click()
+    expect(page.locator(".what-if .verdict")).to_contain_text(
+        "On the front as far as the objectives tell", timeout=30_000
+    )
+    for one in expected["objectives"]:
+        cell = page.locator(f".before-after td[data-key={expected['columns'][_place(expected, one)]['key']}]")
+        assert float(str(cell.get_attribute("data-value"))) == pytest.approx(one["reached"], rel=1e-9)
+
+
+def _place(answer: dict[str, Any], outcome: dict[str, Any]) -> int:
+    """Return the place of the column of an objective."""
+    return next(place for place, one in enumerate(answer["columns"]) if one["title"] == outcome["title"])
+
+
+def test_classes_speak_of_a_design_and_earlier_wishes_come_back(page: Page) -> None:
+    wish(page, "time ratio", "improves")
+    page.get_by_label("speak of design").fill("3")
+    wish(page, "least transmission angle", "may worsen to", "41")
+    first = solve(page)
+    assert first["number"] == 3
+    assert first["objectives"][0]["reached"] > first["objectives"][0]["before"]
+    wish(page, "time ratio", "is wished", "1.25")
+    wish(page, "least transmission angle", "is free")
+    solve(page)
+    panel(page).get_by_text("Wishes so far (2)").click()
+    with page.expect_response("**/wish") as answered:
+        panel(page).get_by_role("button", name="time ratio improves").click()
+    assert answered.value.json()["design"] == first["design"]
+    expect(panel(page).get_by_label("Value for least transmission angle")).to_have_value("41")
+    panel(page).get_by_role("button", name="Without wishes").click()
+    expect(panel(page).get_by_role("link", name="Open the wished design")).to_have_count(0)
+
+
+def test_what_cannot_be_wished_is_said_at_its_field(page: Page) -> None:
+    button = panel(page).get_by_role("button", name="Solve")
+    alert = panel(page).get_by_role("alert")
+    button.click()
+    expect(alert).to_contain_text("Nothing is wished yet")
+    wish(page, "time ratio", "is wished", "fast")
+    button.click()
+    value = panel(page).get_by_label("Value for time ratio")
+    expect(value).to_have_attribute("aria-invalid", "true")
+    expect(panel(page).locator("#wish-time_ratio-wrong")).to_contain_text("A number is needed here")
+    wish(page, "time ratio", "improves")
+    page.get_by_label("speak of design").fill("99")
+    button.click()
+    expect(panel(page).locator("#wish-design-wrong")).to_contain_text("give its number, 1 to 8")
+    page.get_by_label("speak of design").fill("3")
+    wish(page, "least transmission angle", "keeps")
+    button.click()
+    expect(alert).to_contain_text("No design improves while all other objectives keep")
+    wish(page, "least transmission angle", "may worsen to", "89")
+    button.click()
+    expect(panel(page).locator("#wish-transmission_angle-wrong")).to_contain_text("better; write the value alone")
+
+
+def test_wishing_bars_the_way_of_nobody(page: Page) -> None:
+    panel(page).get_by_label("time ratio", exact=True).focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Tab")
+    page.keyboard.type("1.2")
+    with page.expect_response("**/wish"):
+        page.keyboard.press("Enter")
+    expect(panel(page).get_by_role("link", name="Open the wished design")).to_be_visible()
+    require_accessible(page)
