@@ -79,6 +79,14 @@ declare global {
       slider_velocity_m_s: number | null;
       slider_acceleration_m_s2: number | null;
     }
+    /** What /rounded gives, which its description leaves open. */
+    interface Rounded {
+      met: boolean;
+      message: string;
+      designs: RoundedRow[];
+      notes: string[];
+    }
+    type RoundedRow = Row & { missed: string[]; tightest: string | null };
     /** What /analysis gives for "sensitivity", which its description leaves open: rates such as crank_per_mm beside the rest. */
     interface Sensitivity {
       quantities: Sensitive[];

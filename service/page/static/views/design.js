@@ -5,6 +5,7 @@ import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { panelsOf } from "../design/panels.js";
+import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
 import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
@@ -44,11 +45,11 @@ export async function show(place, { parts, query, signal }) {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
   };
-  const places = Object.fromEntries(["objectives", "stage", "what-if", "curves", "way-back", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
+  const places = Object.fromEntries(["objectives", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
   const files = takeAway(job, number, { signal });
   fill(place, top(shared), files.node, places.objectives,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"]), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics);
-  for (const name of ["stage", "what-if", "trade-offs"]) places[name].classList.add("panel");
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics);
+  for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
   const machines = stage(places.stage, angle);
   const charts = curveCharts(places.curves, hold);
   angle.listen(charts.turn);
@@ -82,6 +83,7 @@ export async function show(place, { parts, query, signal }) {
     },
     refused: () => machines.fade(true),
   });
+  const steps = rounding(places.rounding, { job, number, base: main.row, requirements, objectives, signal });
   const drawAll = () => {
     showObjectives(places.objectives, { objectives, front: rows, designs: [main], names });
     draw()();
@@ -90,7 +92,7 @@ export async function show(place, { parts, query, signal }) {
   tradeOffs(places["trade-offs"], shared);
   wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(at, true), signal });
   topics(places.topics, shared);
-  window.addEventListener("units", () => [drawAll, sliders.draw].forEach((each) => each()), { signal });
+  window.addEventListener("units", () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()), { signal });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
 
