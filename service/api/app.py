@@ -23,6 +23,7 @@ from . import (
     inverse,
     job_files,
     jobs,
+    kept,
     measured,
     preview,
     quantities,
@@ -55,6 +56,7 @@ _PARTS = (
     rounded,
     swing,
     wish,
+    kept,
     design_files,
     figures,
     exports,
@@ -80,7 +82,7 @@ time_ratio = "maximise"
 transmission_angle = "maximise"
 """
 _NUMBER = "/api/v1/jobs/{number}"
-_FIRST = {"design": 1}
+_FIRST = {"design": 1, "kept": 1}
 
 
 def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:

@@ -264,6 +264,35 @@ class Client:
         """
         return self._post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
 
+    def kept(self, number: int) -> list[Record]:
+        """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
+        found: list[Record] = self._get(f"jobs/{number}/kept")["designs"]
+        return found
+
+    def keep(
+        self,
+        number: int,
+        design: int | None = None,
+        *,
+        dimensions: Mapping[str, float | str] | None = None,
+        name: str = "",
+        note: str = "",
+        star: bool = False,
+    ) -> Record:
+        """Keep a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
+        body = {"design": design, "dimensions": dict(dimensions or {}), "name": name, "note": note, "star": star}
+        return self._post(f"jobs/{number}/kept", body, again=False)
+
+    def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
+        """Change name, note, star, decided or reason of a kept design and return it."""
+        path = f"jobs/{number}/kept/{kept}"
+        found: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
+        return found
+
+    def drop_kept(self, number: int, kept: int) -> None:
+        """Delete a kept design."""
+        self._connection.request("DELETE", f"jobs/{number}/kept/{kept}", again=True)
+
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
         """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
 

@@ -29,11 +29,12 @@ _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 class StoredDesign:
     """A design of a stored front. values: crank, rod, offset, m, and of each varying number, SI.
 
-    part: the problem that it answers, with the choices that it made in place.
+    part: the problem that it answers, with the choices that it made in place. variant: of these, counted from 0.
     """
 
     part: Problem
     values: tuple[float, ...]
+    variant: int = 0
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -53,7 +54,8 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
     Raises `RunError` for a row that does not belong to the problem.
     """
     values = _values(row, _factors(problem.mechanism))
-    return StoredDesign(problem.part(_variant(problem, row, values)), values)
+    variant = _variant(problem, row, values)
+    return StoredDesign(problem.part(variant), values, variant)
 
 
 def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
@@ -61,7 +63,8 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
     if result.exact is None:
         return design_of(problem, result.designs[number - 1])
     variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
-    return StoredDesign(problem.part(variants[number - 1] if variants else 0), values)
+    variant = variants[number - 1] if variants else 0
+    return StoredDesign(problem.part(variant), values, variant)
 
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:

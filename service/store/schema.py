@@ -6,6 +6,7 @@
     designs       the front of a finished job, one row a design, as it is shown
     exact         the same designs in SI with their slopes, one file a front; fronts of early stores have none
     artefacts     files of a job
+    kept          designs that people keep of a front, with their names, notes and reasons
     workers       who solves jobs, and when each was heard of last
 
 Every change of a job, and every row that belongs to it, is written in a transaction that updates its row in `jobs`
@@ -108,6 +109,22 @@ artefacts = sa.Table(
     sa.Column("media_type", sa.String(255), nullable=False),
     sa.Column("at", sa.Double, nullable=False),
     sa.Column("content", sa.LargeBinary, nullable=False),
+)
+
+kept = sa.Table(
+    "kept",
+    metadata,
+    _of_a_job(),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("name", sa.Text, nullable=False),
+    sa.Column("note", sa.Text, nullable=False),
+    sa.Column("star", sa.Boolean, nullable=False),
+    sa.Column("decided", sa.Boolean, nullable=False),
+    sa.Column("reason", sa.Text, nullable=False),
+    sa.Column("design", sa.Integer),
+    sa.Column("variant", sa.Integer, nullable=False),
+    sa.Column("dimensions", sa.Text, nullable=False),
+    sa.Column("at", sa.Double, nullable=False),
 )
 
 workers = sa.Table(

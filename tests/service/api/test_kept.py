@@ -1,0 +1,112 @@
+"""Kept designs over the API: their numbers, changes, one decision, the table, and refusals in a sentence."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+
+from slidercrank.service.client import Client
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from tests.service.api.fixed_front import Solved, client_of, served
+
+LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
+
+
+@pytest.fixture(scope="module")
+def store(solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
+    """Return a copy of the store of the small job, to keep designs in."""
+    path = tmp_path_factory.mktemp("kept") / "store.db"
+    back_up(solved.store, path)
+    with Store(path) as opened:
+        yield opened
+
+
+@pytest.fixture
+def client(store: Store, solved: Solved) -> Iterator[httpx.Client]:
+    with client_of(store) as opened:
+        for one in opened.get(f"{solved.path}/kept").json()["designs"]:
+            assert opened.delete(f"{solved.path}/kept/{one['number']}").status_code == 204
+        yield opened
+
+
+def kept(client: httpx.Client, solved: Solved, **body: Any) -> dict[str, Any]:
+    answer = client.post(f"{solved.path}/kept", json=body)
+    assert answer.status_code == 201, answer.text
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_a_kept_what_if_has_the_numbers_of_the_what_if(client: httpx.Client, solved: Solved) -> None:
+    row = solved.result.designs[2]
+    lengths: dict[str, Any] = {key: row[key] for key in LENGTHS} | {"rod_mm": 650.0}
+    one = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", note="=1+1", star=True)
+    expected = client.post(f"{solved.path}/designs/3/what-if", json={**lengths, "angles": 0}).json()
+    assert (one["cells"], one["outside"], one["broken"]) == (expected["design"], ["rod_mm"], expected["broken"])
+    assert (one["name"], one["note"], one["star"], one["design"], one["changed"]) == ("Long", "=1+1", True, 3, True)
+    assert client.get(f"{solved.path}/kept").json()["designs"] == [one]
+
+
+def test_a_design_of_the_front_and_one_of_dimensions_alone_are_kept(client: httpx.Client, solved: Solved) -> None:
+    first = kept(client, solved, design=2)
+    assert (first["name"], first["changed"], first["broken"], first["outside"]) == ("Kept 1", False, [], [])
+    dimensions = {key: first["cells"][key] for key in LENGTHS}
+    second = kept(client, solved, dimensions=dimensions)
+    assert (second["design"], second["changed"]) == (None, True)
+    numbers = {key: value for key, value in first["cells"].items() if isinstance(value, float)}
+    assert {key: second["cells"][key] for key in numbers} == pytest.approx(numbers, rel=1e-9, abs=1e-9)
+
+
+def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client: httpx.Client, solved: Solved) -> None:
+    with served(store) as address, Client(address) as opened:
+        for design in (1, 2):
+            opened.keep(solved.number, design, name=f"Design {design}", note="=cmd")
+        opened.change_kept(solved.number, 1, decided=True, reason="most robust")
+        changed = opened.change_kept(solved.number, 2, decided=True, reason="in stock", star=True)
+        assert (changed["decided"], changed["star"], changed["name"]) == (True, True, "Design 2")
+        assert [one["decided"] for one in opened.kept(solved.number)] == [False, True]
+        table = client.get(f"{solved.path}/kept.csv").text
+        opened.drop_kept(solved.number, 1)
+        assert [one["number"] for one in opened.kept(solved.number)] == [2]
+    rows = list(csv.DictReader(io.StringIO(table)))
+    assert [row["reason"] for row in rows] == ["most robust", "in stock"]
+    assert rows[0]["note"] == "'=cmd"
+    assert float(rows[1]["time_ratio"]) == pytest.approx(solved.result.designs[1]["time_ratio"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "words"),
+    [
+        ({}, 422, "got neither"),
+        ({"design": 99}, 404, "got 99"),
+        ({"design": 1, "dimensions": {"width": 3.0}}, 422, "got 'width'"),
+        ({"design": 1, "dimensions": {"rod_mm": -3.0}}, 422, "rod_mm is at least"),
+        ({"design": 1, "dimensions": {"rod_mm": "long"}}, 422, "rod_mm is a number"),
+        ({"design": 1, "dimensions": {"rod_mm": 10.0}}, 422, "full rotation"),
+        ({"dimensions": {"rod_mm": 300.0}}, 422, "got none for crank_mm, offset_mm"),
+        ({"design": 1, "name": "x" * 201}, 422, "name"),
+    ],
+)
+def test_what_cannot_be_kept_is_refused(
+    client: httpx.Client, solved: Solved, body: dict[str, Any], status: int, words: str
+) -> None:
+    answer = client.post(f"{solved.path}/kept", json=body)
+    assert (answer.status_code, words in answer.text) == (status, True), answer.text
+    assert client.get(f"{solved.path}/kept").json()["designs"] == []
+
+
+def test_a_kept_design_that_is_gone_is_not_found(client: httpx.Client, solved: Solved) -> None:
+    for answer in (
+        client.patch(f"{solved.path}/kept/5", json={"star": True}),
+        client.delete(f"{solved.path}/kept/5"),
+        client.get("/api/v1/jobs/99/kept"),
+    ):
+        assert answer.status_code == 404, answer.text
+    kept(client, solved, design=1)
+    assert client.patch(f"{solved.path}/kept/1", json={"name": ""}).status_code == 422
+    assert client.patch(f"{solved.path}/kept/1", json={"colour": "red"}).status_code == 422
