@@ -44,6 +44,15 @@ def beside_crank_loads(
 
 
 @analytic
+def on_crank(loads: Any) -> bool:
+    """Return whether there are loads on the crank."""
+    found = False
+    for k in range(loads.kind.shape[0]):
+        found = found or loads.factor[k, 2] != 0.0
+    return found
+
+
+@analytic
 def sense_of(d: Any) -> float:
     """Return the sense in which the crank turns: 1 counter-clockwise or at rest, -1 clockwise."""
     return 1.0 if d.speed.real >= 0.0 else -1.0

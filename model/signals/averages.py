@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
-from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.crank_loads import beside_crank_loads, on_crank, sense_of
 from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
 from ..kernel.arithmetic import STEP, analytic, root
@@ -36,14 +36,14 @@ from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
-from .signals import Signal, of_forces, of_motion
+from .signals import Signal, signal
 from .two_turns import averaged
 from .watch import inputs_of, watch_of
 
 Array = NDArray[np.float64]
 
 _NODES = 192  # of a smooth curve; why so many: `quadrature`
-_TORQUE, _FORCES = int(Signal.TORQUE), int(Signal.LINE_FORCE)
+_TORQUE = int(Signal.TORQUE)
 _TURN = 2.0 * math.pi
 
 
@@ -64,17 +64,18 @@ class Averages:
 def _curve(
     kind: Any, theta: Any, square: Any, d: Any, block: Any, outward: Any, loads: Any, piece: Any, shift: Any, sides: Any
 ) -> Any:
-    """Return the drive torque with its sign, or the size of another signal; square: the real l^2 cos^2(phi)."""
+    """Return the drive torque with its sign, without loads on the crank, or the size of another signal.
+
+    square: the real l^2 cos^2(phi).
+    """
     sine, cosine = math.sin(theta), math.cos(theta)
     across = d.e - d.r * sine
     rough = d.l * d.l - across * across
     m = motion_of(sine, cosine, d.r, across, d.branch * root(rough + (square - rough.real)))
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-    if kind <= _FORCES:
-        f = joint_forces(sine, cosine, m, d, load, sides)
-        torque = beside_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
-        return torque if kind == _TORQUE else of_forces(kind, f, torque, d)
-    return of_motion(kind, sine, cosine, m, d)
+    if kind == _TORQUE:
+        return joint_forces(sine, cosine, m, d, load, sides).torque
+    return signal(kind, sine, cosine, m, d, load, sides, (block, 0, theta, loads, piece, shift))
 
 
 @kernel
@@ -101,6 +102,7 @@ def _average(
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
     greatest = np.zeros(nv + 1)
     stack = np.empty((DEEPEST + 2, 3))
+    turned = kind == _TORQUE and on_crank(loads)
     for n in range(blocks.shape[0]):
         block, stepped = blocks[n], steps[n * nv : (n + 1) * nv]
         for v in range(nv):
@@ -144,10 +146,18 @@ def _average(
                         weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
                         square = square_along(theta, d, gaps[n])
                         value[i] = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
+                        if turned:  # added afterwards, so that machines without keep their last digits
+                            value[i] += beside_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
                         for v in range(nv):
                             z = design_at(stepped[v], 0)
                             z = _curve(kind, theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             slope[v, i] = z.imag / STEP
+                            if turned:
+                                own = design_at(stepped[v], 0)
+                                more = beside_crank_loads(
+                                    0j, own, stepped[v], 0, theta, sense_of(own), loads, piece, shift
+                                )
+                                slope[v, i] += more.imag / STEP
                     if rubbing:
                         for i in range(points):
                             greatest[nv] = max(greatest[nv], abs(value[i]))
@@ -174,6 +184,8 @@ def _average(
                     i, theta = (s + 1) % count if end else s, b if end else a
                     square = square_along(theta, d, gaps[n])
                     t = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
+                    if turned:
+                        t += beside_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
                     sign = (1.0 if end else -1.0) / (STEP * _TURN)
                     for v in range(nv):
                         z = design_at(stepped[v], 0)

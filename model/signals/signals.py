@@ -59,33 +59,21 @@ def signal(
     """
     if kind <= _LINE:
         f = joint_forces(sine, cosine, m, d, load, sides)
-        torque = f.torque
-        if place is not None and kind in (_TORQUE, _POWER):
-            block, j, theta, loads, piece, shift = place
-            torque = beside_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
-        return of_forces(kind, f, torque, d)
-    return of_motion(kind, sine, cosine, m, d)
-
-
-@analytic
-def of_forces(kind: Any, f: Any, torque: Any, d: Design) -> Any:
-    """Return the value of a `Signal` that follows from joint forces, of these and the drive torque."""
-    if kind == _TORQUE:
-        return magnitude(torque)
-    if kind == _POWER:
-        return magnitude(torque * d.speed)
-    if kind == _PIVOT:
-        return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
-    if kind == _CRANK_PIN:
-        return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
-    if kind == _SLIDER_PIN:
-        return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
-    return magnitude(f.slider_pin_x if kind == _LINE else f.guide)
-
-
-@analytic
-def of_motion(kind: Any, sine: Any, cosine: Any, m: Any, d: Design) -> Any:
-    """Return the value of a `Signal` that needs no joint forces."""
+        if kind in (_TORQUE, _POWER):
+            torque = f.torque
+            if place is not None:
+                block, j, theta, loads, piece, shift = place
+                torque = beside_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
+            return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
+        if kind == _PIVOT:
+            return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
+        if kind == _CRANK_PIN:
+            return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+        if kind == _SLIDER_PIN:
+            return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
+        if kind == _LINE:
+            return magnitude(f.slider_pin_x)
+        return magnitude(f.guide)
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:
