@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
-from importlib.resources import files
+from importlib.resources import as_file, files
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Response
@@ -66,11 +65,11 @@ def list_presets() -> PresetList:
 @cache
 def _presets() -> PresetList:
     """Return the files of runs/, which every installation carries."""
-    jobs = {
-        file.name.removesuffix(".toml"): tomllib.loads(file.read_text(encoding="utf-8"))
-        for file in files(presets).iterdir()
-        if file.name.endswith(".toml")
-    }
+    from ...optimise.job import read_job
+
+    with as_file(files(presets)) as folder:
+        # With the catalogues that lie beside them: who starts from one has no such file.
+        jobs = {file.stem: read_job(file) for file in folder.glob("*.toml")}
     return PresetList(
         presets=[
             PresetModel(name=name, title=job["name"], sentence=job.get("description", ""), job=job)

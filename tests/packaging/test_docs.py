@@ -217,6 +217,6 @@ def test_the_press_of_the_readme_presses_slowly(pages: dict[Path, str], root: Pa
     assert (front.dimensions[:, 2] < 0.0).all()
 
 
-@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor"])
+@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press"])
 def test_no_shipped_job_loads_its_fast_stroke(job: str, root: Path) -> None:
     assert expected_warnings(parse_job(tomllib.loads((root / "runs" / f"{job}.toml").read_text()))) == []

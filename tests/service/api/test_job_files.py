@@ -14,22 +14,24 @@ from hypothesis import strategies as st
 
 from slidercrank.model.errors import JobError
 from slidercrank.objectives.registry import FACTS, QUANTITIES
+from slidercrank.optimise.job import read_job
 from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
 TOML = {"Content-Type": "application/toml"}
-SHIPPED = ("feeder", "sieve", "support", "compressor")
+SHIPPED = ("feeder", "sieve", "support", "compressor", "press")
 
 
 def shipped(root: Path) -> dict[str, Any]:
-    return {file.stem: tomllib.loads(file.read_text()) for file in (root / "runs").glob("*.toml")}
+    return {file.stem: read_job(file) for file in (root / "runs").glob("*.toml")}
 
 
 def test_the_packaged_jobs_are_those_of_the_folder_runs(pytestconfig: pytest.Config) -> None:
     root = pytestconfig.rootpath
-    files = {file.name: file.read_bytes() for file in (root / "runs").glob("*.toml")}
-    packaged = {file.name: file.read_bytes() for file in (root / "service" / "presets").glob("*.toml")}
-    assert packaged == files, "copy runs/*.toml to service/presets"
+    for kind in ("*.toml", "*.csv"):
+        files = {file.name: file.read_bytes() for file in (root / "runs").glob(kind)}
+        packaged = {file.name: file.read_bytes() for file in (root / "service" / "presets").glob(kind)}
+        assert packaged == files, f"copy runs/{kind} to service/presets"
 
 
 def test_presets_are_the_shipped_jobs(shared: httpx.Client, pytestconfig: pytest.Config) -> None:
