@@ -110,7 +110,7 @@ WORK = Need(
 LOAD_WORK = Need(
     load_works_over_a_turn,
     "an efficiency is the share of the energy that reaches the load; got no load that takes net work over a turn; add "
-    "for example a [[load]] with a resistance, which opposes every motion",
+    'for example [[load]] force = "200 N", opposes = "motion"',
     without="undefined",
 )
 _RUBS = "add for example [friction] guide = 0.1"

@@ -282,7 +282,7 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
     within = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "force_transmission": 0.5}
-    within |= {"volumetric_efficiency": 0.5}
+    within |= {"volumetric_efficiency": 0.5, "efficiency": 0.5}
     value = (within | {"stroke": 0.05}).get(name, 4.0)
     job = small(
         constraints={name: {"min": value}},
@@ -290,12 +290,21 @@ def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
         tolerances={"crank": "0.05 mm"},
         friction={"guide": 0.1},
         load=[AIR],
-        sections=SECTIONS,
+        sections=SECTIONS | {"wear_coefficient": "1e-9 mm^2/N"},
     )
     job["mechanism"] = job["mechanism"] | {"crank": BAR, "rod": BAR}
     problem = parse_job(job)
     assert problem.constraints == (Constraint(quantity=name, lower=value),)
     assert problem.objectives == (Objective(quantity=name, sense="minimise"),)
+
+
+def test_a_bar_of_another_density_than_its_material_is_refused() -> None:
+    job = small(sections=SECTIONS)
+    job["mechanism"] = job["mechanism"] | {"crank": BAR, "rod": BAR | {"density": "7800 kg/m^3"}}
+    with pytest.raises(JobError, match=r"mechanism\.rod\.density: .* got 7800 kg/m\^3 and sections\.material\.density"):
+        parse_job(job)
+    job["variables"] = job["variables"] | {"mechanism": {"rod": {"density": ["2700 kg/m^3", "7850 kg/m^3"]}}}
+    assert parse_job(job).mechanism.strength is not None
 
 
 def test_a_file_with_a_byte_order_mark_or_windows_line_ends_is_read(tmp_path: Path) -> None:
