@@ -90,7 +90,8 @@ def test_a_formula_with_a_name_is_called_by_it_everywhere_and_renamed_everywhere
     named.get_by_label("name", exact=True).blur()
     page.get_by_role("button", name="Add a formula as a requirement").click()
     page.keyboard.type("clear")
-    expect(page.get_by_role("option", name="clearance room beside the crank, mm")).to_be_visible()
+    offered = page.get_by_role("option", name="clearance room beside the crank, mm")
+    expect(offered).to_be_visible(timeout=30_000)  # once the service has looked at it
     page.keyboard.type("ance")
     page.get_by_label("formula 1, requirement, at most").fill("90")
     page.get_by_label("stroke, exactly").fill("=2.4*crank + 0*clearance")
