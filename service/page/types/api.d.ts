@@ -34,7 +34,7 @@ declare global {
     /** Texts that may be paths. */
     type Text = { [Known in keyof paths]: Known extends `/api/v1/${infer Rest}` ? Filled<Rest> : never }[keyof paths];
     /** The answer to what is asked at a path; of no use where the API has no such path, or it is asked in another way. */
-    type Answer<Method extends "get" | "post" | "delete", Asked extends string> =
+    type Answer<Method extends "get" | "post" | "patch" | "delete", Asked extends string> =
       [Found<Asked>] extends [never] ? "no such path" : paths[Found<Asked>] extends Record<Method, infer Operation> ? Answered<Operation> : "no such path";
     /** What stands behind the "?" of an address; what is null is left out. */
     type Query = Record<string, string | number | boolean | null | undefined | readonly string[]>;
@@ -52,6 +52,7 @@ declare global {
     type Job = Schemas["JobShown"];
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];
+    type Kept = Schemas["KeptDesign"];
     type Objective = Schemas["ObjectiveModel"];
     type Preset = Schemas["PresetModel"];
     type Preview = Schemas["PreviewModel"];

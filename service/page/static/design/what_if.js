@@ -7,6 +7,7 @@ import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
+import { keeping } from "./keeping.js";
 import { rankOf } from "./objectives.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
@@ -42,7 +43,8 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
-  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, picture);
+  const keep = keeping({ job, design: Number(path.split("/").pop()), dimensions: () => (moved() ? { ...(answer ? lengthsOf(answer.design) : lengths) } : null) });
+  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, keep, picture);
   const map = frontMap(picture, { objectives, front });
   /** @type {Api.WhatIf | null} */
   let answer = null;
@@ -151,7 +153,8 @@ function lengthRow(key, title, [low, high], set) {
   /** @param {number} value */
   const digits = (value) => Number(inShown(value, "mm").toPrecision(6));
   const id = `what-if-${key}`;
-  const number = h("input", { type: "number", id, step: "any", disabled: fixed, min: digits(low), max: digits(high), oninput: ({ currentTarget }) => take(currentTarget, Number.parseFloat(currentTarget.value)) });
+  const outside = h("span", { class: "at-limit", role: "status", hidden: true }, " · outside the job");
+  const number = h("input", { type: "number", id, step: "any", disabled: fixed, oninput: ({ currentTarget }) => take(currentTarget, Number.parseFloat(currentTarget.value)) });
   const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: ({ currentTarget }) => {
     const value = low + (Number(currentTarget.value) / STEPS) * (high - low);
     number.value = String(digits(value));
@@ -161,22 +164,29 @@ function lengthRow(key, title, [low, high], set) {
   /** @param {Element} from @param {number} shown */
   function take(from, shown) {
     const value = fromShown(shown, "mm");
-    const inside = Number.isFinite(value) && value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high);
-    number.setAttribute("aria-invalid", String(!inside));
-    if (!inside) return;
+    const fine = Number.isFinite(value) && (value > 0 || key === "offset_mm");
+    number.setAttribute("aria-invalid", String(!fine));
+    mark(fine ? value : low);
+    if (!fine) return;
     if (from === number) slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
     slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
     set(value);
   }
 
+  /** Say whether a length is outside of the ranges of the job. @param {number} value */
+  function mark(value) {
+    outside.hidden = fixed || (value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high));
+  }
+
   return {
     key,
     node: h("div", { class: "length" }, h("label", { for: id }, title), slider, number, h("span", { class: "quiet" }, unitOf("mm")),
-      h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`)),
+      h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`, outside)),
     /** @param {number} value */
     show(value) {
       number.value = String(digits(value));
       number.setAttribute("aria-invalid", "false");
+      mark(value);
       slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
       slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
     },

@@ -11,6 +11,7 @@ import { axisFields } from "./axes.js";
 import { chooser } from "./chooser.js";
 import { choicesFrom, queryOf, toggled } from "./choices.js";
 import { FrontData } from "./data.js";
+import { keptPanel } from "./kept.js";
 import { Limits } from "./limits.js";
 import { keepListed } from "./listed.js";
 import { linkagePanel } from "./linkage_panel.js";
@@ -101,6 +102,7 @@ export class Explorer {
     this.marksPanel = marksPanel(this);
     this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
+    this.kept = keptPanel(this);
     this.wishing = wishingPanel(this);
     const columns = data.columns;
     place.replaceChildren(
@@ -112,6 +114,7 @@ export class Explorer {
         h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
       this.scatterPanel.place,
       this.wishing.place,
+      this.kept.place,
       h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
         h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place, this.saving.node,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
@@ -214,6 +217,7 @@ export class Explorer {
     this.marksPanel.draw(what);
     this.linkagePanel.draw(what);
     this.wishing.draw(what);
+    this.kept.draw(what);
     this.selected.draw();
   }
 
@@ -248,7 +252,7 @@ export class Explorer {
   /** Return the designs that are marked though they are none of the front, each with its name. */
   others() {
     const wished = this.wishing?.cells();
-    return wished ? [{ cells: wished, name: "wished" }] : [];
+    return [...(this.kept?.marks() ?? []), ...(wished ? [{ cells: wished, name: "wished" }] : [])];
   }
 
   /** Return the names of marked designs by their row: knee, best in an objective, by weights. */

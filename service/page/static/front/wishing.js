@@ -5,6 +5,7 @@ import { get, isAbort, post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
+import { keeping } from "../design/keeping.js";
 import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, remember, wishedBefore, wishesFrom, wrongIn } from "./wishes.js";
 
@@ -149,12 +150,15 @@ export function wishingPanel(explorer) {
     const path = /** @type {const} */ (`jobs/${job.id}/designs/${near}`);
     const [{ ranges }, { design: other }] = await Promise.all([get(`${path}/requirements`, {}, explorer.signal), get(path, {}, explorer.signal)]);
     const further = [...Object.keys(ranges).filter((key) => !LENGTHS.includes(key)), ...Object.keys(wished).filter((key) => key.startsWith("choice_"))];
+    free = [...LENGTHS, ...further];
     const alike = further.every((key) => wished[key] === other[key] || Math.abs(Number(wished[key]) - Number(other[key])) <= APART * Math.abs(Number(other[key])));
     way = alike ? link(["jobs", job.id, "designs", near], Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])]))) : "";
     beside = other;
   }
   /** @type {Api.Row} */
   let beside = {}; // the nearest design
+  /** @type {string[]} */
+  let free = []; // columns of what makes a design
 
   function show() {
     drawAnswer();
@@ -171,7 +175,8 @@ export function wishingPanel(explorer) {
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
     fill(answer, sentence, outcomes(found, nearby),
-      h("div", { class: "row" }, way ? h("a", { class: "button primary", href: way }, "Open the wished design") : h("span", { class: "quiet" }, "More than its lengths is new, so all of its numbers are here.")),
+      h("div", { class: "row" }, way ? h("a", { class: "button primary", href: way }, "Open the wished design") : h("span", { class: "quiet" }, "More than its lengths is new, so all of its numbers are here."),
+        keeping({ job: `${job.id}`, design: near, dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])), kept: () => explorer.kept?.ask() })),
       h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)));
   }
 

@@ -74,6 +74,17 @@ export function post(path, body = undefined, { signal, headers } = {}) {
 }
 
 /**
+ * Change what is at a path, and return it.
+ * @template {Api.Text} Path
+ * @param {Path} path
+ * @param {unknown} body
+ * @returns {Promise<Api.Answer<"patch", Path>>}
+ */
+export function patch(path, body) {
+  return ask("PATCH", address(path), body);
+}
+
+/**
  * Delete what is at a path.
  * @template {Api.Text} Path
  * @param {Path} path

@@ -1,0 +1,128 @@
+/** The kept designs of a run beside its front: names, notes, stars, the decision and its reason, for all who see the run. */
+
+import { link } from "../lib/address.js";
+import { address, get, isAbort, patch, post, remove } from "../lib/api.js";
+import { fill, first, focused, h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
+import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
+import { LENGTHS } from "./linkages.js";
+
+/** @import { Explorer } from "./explorer.js" */
+
+/** Return {place, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
+export function keptPanel(explorer) {
+  const { data, job, chosen } = explorer;
+  const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of kept designs" });
+  const none = h("p", { class: "quiet hint" }, "None yet. Keep a what-if or rounded design in its view, a wished one above, or the designs that are ticked in the table.");
+  const add = h("button", { type: "button", onclick: () => keepTicked().catch(sayProblem) });
+  const only = h("input", { type: "checkbox", onchange: () => draw("all") });
+  const stars = h("label", {}, only, " only with a star");
+  const file = h("a", { class: "button", download: "" }, "Kept as CSV");
+  const why = h("p", { class: "decision" });
+  const place = h("section", { class: "panel kept", "aria-labelledby": "kept-title" },
+    h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add, file), why, none, table);
+  /** @type {Api.Kept[]} */
+  let designs = [];
+
+  async function ask() {
+    try {
+      designs = (await get(`jobs/${job.id}/kept`, {}, explorer.signal)).designs;
+      show();
+    } catch (problem) {
+      if (!isAbort(problem)) sayProblem(problem);
+    }
+  }
+
+  /** Draw, also the marks on the charts. */
+  function show() {
+    drawTable();
+    explorer.update("all");
+  }
+
+  /** @param {number} number @param {Partial<Api.Kept>} changes */
+  async function change(number, changes) {
+    try {
+      await patch(`jobs/${job.id}/kept/${number}`, changes);
+    } catch (problem) {
+      sayProblem(problem);
+    }
+    await ask();
+  }
+
+  async function keepTicked() {
+    for (const number of chosen.selected) await post(`jobs/${job.id}/kept`, { design: number, name: `Design ${number}`, star: true });
+    await ask();
+  }
+
+  /** @param {Api.Kept} one */
+  async function drop({ number }) {
+    try {
+      await remove(`jobs/${job.id}/kept/${number}`);
+    } catch (problem) {
+      sayProblem(problem);
+    }
+    await ask();
+  }
+
+  /** Return the view of a kept design; null where more than its lengths is other than in the design that it began as. @param {Api.Kept} one */
+  function hrefOf({ design, changed, cells }) {
+    if (design === null) return null;
+    return changed ? link(["jobs", job.id, "designs", design], Object.fromEntries(LENGTHS.map((key) => [key, cells[key]]))) : explorer.hrefOf(design - 1);
+  }
+
+  /** @param {Api.Kept} one */
+  function line(one) {
+    const { number, name } = one;
+    const href = hrefOf(one);
+    /** @param {"note" | "reason"} key @param {string} label */
+    const words = (key, label) => h("td", {}, h("input", { type: "text", maxlength: 4000, value: one[key], "aria-label": `${label} ${name}`, "data-act": `${key}-${number}`, onchange: ({ currentTarget }) => change(number, { [key]: currentTarget.value }) }));
+    return h("tr", { class: one.decided ? "decided" : null },
+      h("td", {}, h("button", { type: "button", class: "star", "aria-pressed": String(one.star), "aria-label": `Star of ${name}`, "data-act": `star-${number}`, onclick: () => change(number, { star: !one.star }) }, one.star ? "★" : "☆")),
+      h("th", { scope: "row" }, href ? h("a", { href }, name) : name,
+        one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"), one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement")),
+      data.objectives.map(({ column, unit }) => h("td", { class: "number", "data-key": column, "data-value": String(one.cells[column]) }, withUnit(one.cells[column], unit, 5))),
+      words("note", "Note on"),
+      h("td", {}, h("input", { type: "radio", name: "decided", checked: one.decided, "aria-label": `Decided for ${name}`, "data-act": `decided-${number}`, onchange: () => change(number, { decided: true }) })),
+      words("reason", "Why, or why not,"),
+      LENGTHS.map((key) => h("td", { class: "number quiet", "data-key": key, "data-value": String(one.cells[key]) }, withUnit(one.cells[key], "mm", 6))),
+      h("td", {}, h("button", { type: "button", class: "small", "aria-label": `Drop ${name}`, title: "Drop", onclick: () => drop(one) }, "×")));
+  }
+
+  function drawTable() {
+    const held = focused(place)?.dataset.act;
+    const shown = only.checked ? designs.filter(({ star }) => star) : designs;
+    none.hidden = designs.length > 0;
+    table.hidden = shown.length === 0;
+    for (const node of [stars, file]) node.hidden = designs.length === 0;
+    file.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
+    const decided = designs.find((one) => one.decided);
+    fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`]);
+    why.hidden = !decided;
+    const heads = ["", "name", ...data.objectives.map(({ title }) => title), "note", "decided", "because, or why not", "crank", "rod", "offset", ""];
+    const words = 2 + data.objectives.length; // where those that are no numbers begin
+    fill(table, h("table", {}, h("caption", { class: "hidden" }, "Kept designs"),
+      h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n > 1 && (n < words || n > words + 2) && title ? "number" : null }, title || h("span", { class: "hidden" }, n ? "Drop" : "Star"))))), h("tbody", {}, shown.map(line))));
+    if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();
+  }
+
+  let drawn = "";
+  let ticked = "-";
+  /** @param {string} what */
+  function draw(what) {
+    if (ticked !== chosen.selected.join()) {
+      ticked = chosen.selected.join();
+      add.textContent = ticked ? `Keep design ${chosen.selected.join(", ")}` : "Keep ticked designs";
+      add.disabled = !ticked;
+    }
+    const now = `${unitOf("mm")} ${only.checked}`;
+    if (what !== "all" || drawn === now) return;
+    const early = drawn === "";
+    drawn = now;
+    if (early) ask();
+    drawTable();
+  }
+
+  /** Return those that are none of the front, for the charts. */
+  const marks = () => designs.filter(({ changed, star }) => changed && (star || !only.checked)).map(({ cells, name }) => ({ cells, name }));
+  return { place, draw, marks, ask };
+}

@@ -1,0 +1,80 @@
+"""Kept designs: a what-if outside the job is kept, starred, noted and decided for, beside the front for all."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from tests.service.api.fixed_front import API, Solved, served
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import watch
+
+
+@pytest.fixture(scope="module")
+def opened(
+    browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[tuple[Page, str, str]]:
+    """Return a page, the address of its service and of the job in the API; nothing may go wrong on the page."""
+    wrong: list[str] = []
+    path = tmp_path_factory.mktemp("kept") / "store.db"
+    back_up(solved.store, path)
+    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
+    with Store(path) as store, served(store) as address, contextlib.closing(context):
+        page = context.new_page()
+        watch(page, address, wrong)
+        yield page, address, f"{address}{API}/jobs/{solved.number}"
+    assert wrong == []
+
+
+def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/3")
+    rod = page.locator("#what-if-rod_mm")
+    expect(rod).to_be_visible(timeout=30_000)
+    if page.locator(".holding input").count():
+        page.locator(".holding input").uncheck()
+    rod.fill("650")
+    expect(page.locator(".length", has=rod)).to_contain_text("outside the job")
+    expect(rod).to_have_attribute("aria-invalid", "false")
+    expect(page.locator(".verdict")).to_contain_text("Misses a requirement")
+    page.locator(".what-if").get_by_text("Keep this design").click()
+    page.get_by_label("Name").fill("Long rod")
+    page.get_by_label("Note").fill("from stock")
+    page.get_by_role("button", name="Keep", exact=True).click()
+    expect(page.locator(".keeping")).to_contain_text("“Long rod” is kept")
+    page.get_by_role("link", name="beside the front").click()
+    line = page.locator(".kept tbody tr")
+    expect(line).to_contain_text("Long rod", timeout=30_000)
+    expect(line).to_contain_text("outside the job")
+    page.get_by_role("button", name="Star of Long rod").press("Enter")
+    expect(page.get_by_role("button", name="Star of Long rod")).to_have_attribute("aria-pressed", "true")
+    expect(page.get_by_role("button", name="Star of Long rod")).to_be_focused()
+    page.get_by_label("Why, or why not, Long rod").fill("the rod is in stock")
+    page.get_by_label("Why, or why not, Long rod").press("Tab")
+    page.get_by_label("Decided for Long rod").check()
+    expect(page.locator(".decision")).to_have_text("Decided for Long rod because the rod is in stock")
+    (one,) = httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]
+    told = (one["name"], one["note"], one["star"], one["decided"], one["reason"], one["outside"])
+    assert told == ("Long rod", "from stock", True, True, "the rod is in stock", ["rod_mm"])
+    for key in ("time_ratio", "least_transmission_angle_deg", "crank_mm", "rod_mm", "offset_mm"):
+        assert float(str(line.locator(f"[data-key={key}]").get_attribute("data-value"))) == one["cells"][key]
+    page.get_by_role("link", name="Long rod").click()
+    expect(page.locator("#what-if-rod_mm")).to_have_value("650", timeout=30_000)
+
+
+def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    before = len(httpx.get(f"{api}/kept", timeout=60.0).json()["designs"])
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{solved.number}?selected=2")
+    page.get_by_role("button", name="Keep design 2").click(timeout=30_000)
+    expect(page.locator(".kept tbody tr")).to_have_count(before + 1)
+    require_accessible(page)
+    page.get_by_role("button", name="Drop Design 2").click()
+    expect(page.locator(".kept tbody tr")).to_have_count(before)
