@@ -26,7 +26,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
   const titles = new Map(requirements.requirements.map(({ column, title }) => [names[column] ?? column, title]));
   const free = LENGTHS.filter(([key]) => ranges[key] && ranges[key][0] < ranges[key][1]);
   const fields = h("div", { class: "steps" });
-  const wrong = h("p", { class: "bad", role: "alert" });
+  const wrong = h("p", { class: "bad", role: "alert", hidden: true });
   const answer = h("div", { "aria-live": "polite" });
   const button = h("button", {}, "Find round numbers");
   const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, fields, button, wrong);
@@ -47,7 +47,13 @@ export function rounding(place, { job, number, base, requirements, objectives, s
     });
     fill(fields, inputs.map(({ name, input, said }) => h("div", { class: "step" }, h("label", { for: input.id }, `${name}, step`), input, h("span", { class: "quiet" }, unitOf("mm")), said)));
     fill(answer);
-    wrong.textContent = "";
+    refuse("");
+  }
+
+  /** Say what is wrong with all of it; nothing with an empty sentence. @param {string} sentence */
+  function refuse(sentence) {
+    wrong.textContent = sentence;
+    wrong.hidden = sentence === "";
   }
 
   /** @param {HTMLInputElement} input @param {HTMLElement} place @param {string} sentence */
@@ -76,7 +82,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
 
   async function ask() {
     const to = steps();
-    wrong.textContent = to?.length === 0 ? "No length has a step; write one of them." : "";
+    refuse(to?.length === 0 ? "No length has a step; write one of them." : "");
     if (!to?.length) return;
     const own = (turn += 1);
     button.disabled = true;
@@ -86,7 +92,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
       const sentence = sentenceOf(error);
-      wrong.textContent = `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`;
+      refuse(`${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`);
       fill(answer);
     } finally {
       if (own === turn) button.disabled = false;
