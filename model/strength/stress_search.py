@@ -247,7 +247,10 @@ def climb(
 
 @seldom_kernel
 def choose(given: Candidates, criteria: Table, values: Row, angles: Table, kept: IntegerTable) -> None:
-    """Number the highest candidates of each design, each maximum once: kept (n, k), -1 beyond the last one."""
+    """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
+
+    Of those that are one the highest counts: next to a breakpoint there may be two so near, one of them on it.
+    """
     count = -1
     for n in range(kept.shape[0]):
         for i in range(kept.shape[1]):
@@ -258,22 +261,24 @@ def choose(given: Candidates, criteria: Table, values: Row, angles: Table, kept:
         if n != last:
             last, found = n, 0
         p, q = criteria[given.pull[c], 0], criteria[given.pull[c], 1]
-        known = False
+        count = kept.shape[1]
+        place = min(found, count - 1)
+        full = found == count
         for i in range(found):
             o = kept[n, i]
-            known = known or (
+            if (
                 given.face[o] == given.face[c]
                 and given.pull[o] == given.pull[c]
                 and abs(given.share[o] - given.share[c]) < _PLACE
                 and (p == 0.0 or math.cos(angles[o, 0] - angles[c, 0]) > 1.0 - _ANGLE)
                 and (q == 0.0 or math.cos(angles[o, 1] - angles[c, 1]) > 1.0 - _ANGLE)
-            )
-        count = kept.shape[1]
-        if known or (found == count and values[c] <= values[kept[n, count - 1]]):
+            ):
+                place, full = i, True
+        if full and values[c] <= values[kept[n, place]]:
             continue
-        i = min(found, count - 1)
+        found += 0 if full else 1
+        i = place
         while i > 0 and values[kept[n, i - 1]] < values[c]:
             kept[n, i] = kept[n, i - 1]
             i -= 1
         kept[n, i] = c
-        found = min(found + 1, count)

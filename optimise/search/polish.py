@@ -204,18 +204,17 @@ class _Batch:
         u = self.u[rows]
         n, k = u.shape
         hessians = np.zeros((n, k, k))
-        for column in range(k):
-            step = np.where(u[:, column] < 0.5, _DIFFERENCE, -_DIFFERENCE)
-            moved = u.copy()
-            moved[:, column] += step
-            moved = np.where(self.evaluator.valid(moved)[:, None], moved, u)
-            goals, limits = self._evaluate(moved)
-            for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
-                change = difference(alone(self.goals, row), alone(goals, i), np.minimum(draft.goals, LOSS))
-                change = change + difference(
-                    alone(self.limits, row), alone(limits, i), np.minimum(draft.limits, _HEAVIEST)
-                )
-                hessians[i, column] = change / step[i]
+        steps = np.where(u < 0.5, _DIFFERENCE, -_DIFFERENCE)
+        still = np.tile(u, (k, 1))  # all coordinates in one batch: with few designs most of a batch's time is its own
+        moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
+        goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
+        for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
+            here, edge = alone(self.goals, row), alone(self.limits, row)
+            for column in range(k):
+                at = column * n + i
+                change = difference(here, alone(goals, at), np.minimum(draft.goals, LOSS))
+                change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
+                hessians[i, column] = change / steps[i, column]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
