@@ -41,8 +41,12 @@ def require_consistent(problem: Problem) -> None:
     require_slow_stroke(problem)
 
 
+_ONE_MATERIAL = 0.05
+"""Relative difference of densities up to which they may be of one material: steels lie between 7,700 and 8,000."""
+
+
 def _require_one_density(problem: Problem) -> None:
-    """Refuse a bar of the material of [sections] whose density is stated as another one; one that varies is its own."""
+    """Refuse a bar of the material of [sections] that has another material's density; one that varies is its own."""
     machine = problem.mechanism
     if machine.strength is None:
         return
@@ -51,9 +55,9 @@ def _require_one_density(problem: Problem) -> None:
     for name in ("crank", "rod"):
         bar = getattr(machine, name)
         stated = isinstance(bar, Bar) and f"{name}.density" not in free
-        if stated and not math.isclose(bar.density, density, rel_tol=1e-9):
+        if stated and not math.isclose(bar.density, density, rel_tol=_ONE_MATERIAL):
             raise JobError(
-                f"mechanism.{name}.density: a bar is of [sections.material], so both have one density; got "
+                f"mechanism.{name}.density: a bar is of [sections.material], so its density is that to {100.0 * _ONE_MATERIAL:.0f} %; got "
                 f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
             )
 

@@ -71,8 +71,18 @@ def worker(tmp_path: Path) -> Callable[[str], Worker]:
 
 def functions(of: int) -> list[psutil.Process]:
     """Return the processes below another one, guards included, but for those that compile kernels."""
-    found = psutil.Process(of).children(recursive=True)
+    found = [each for each in psutil.Process(of).children(recursive=True) if each not in EARLIER]
     return [each for each in found if not any("compile_all" in word for word in command_of(each))]
+
+
+EARLIER: list[psutil.Process] = []
+"""Processes that other tests of this process keep: servers, browsers, pools."""
+
+
+@pytest.fixture(autouse=True)
+def earlier() -> None:
+    """Note what runs before a test."""
+    EARLIER[:] = psutil.Process().children(recursive=True)
 
 
 def command_of(process: psutil.Process) -> list[str]:

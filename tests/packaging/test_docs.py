@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.optimise.job import parse_job, with_files
+from slidercrank.optimise.job import load_job, parse_job, with_files
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 from tests.packaging.feeder import numbers
@@ -219,4 +219,4 @@ def test_the_press_of_the_readme_presses_slowly(pages: dict[Path, str], root: Pa
 
 @pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press"])
 def test_no_shipped_job_loads_its_fast_stroke(job: str, root: Path) -> None:
-    assert expected_warnings(parse_job(tomllib.loads((root / "runs" / f"{job}.toml").read_text()))) == []
+    assert expected_warnings(load_job(root / "runs" / f"{job}.toml")) == []

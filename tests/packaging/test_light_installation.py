@@ -22,8 +22,8 @@ PRESS = """
 name = "Press"
 [mechanism]
 speed = "120 rpm"
-crank = { width = "30 mm", depth = "20 mm", density = "7800 kg/m^3" }
-rod = { width = "30 mm", depth = "20 mm", density = "7800 kg/m^3" }
+crank = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
+rod = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
 slider = { mass = "4 kg" }
 gravity = "9.81 m/s^2"
 [[load]]

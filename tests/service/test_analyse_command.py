@@ -49,6 +49,11 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
             "safety",
             "pressure",
             "shear",
+            "efficiency",
+            "energy",
+            "friction_loss",
+            "pv_",
+            "wear_",
         )
         assert (value is None) == any(word in key for word in unknown), key
     assert "need masses" in done.stderr

@@ -48,7 +48,7 @@ def test_rows_of_the_shipped_jobs_have_600_bytes_at_most(client: httpx.Client, s
         submit(store, {**preset["job"], "optimiser": quick})
     work(store, drain=True)
     jobs = store.jobs()
-    assert len(jobs) == 4
+    assert len(jobs) == len(client.get("/presets").json()["presets"]) >= 5
     for job in jobs:
         assert job.summary is not None
         if len(job.summary["best"]) > 2:  # of two objectives fewer designs are as good

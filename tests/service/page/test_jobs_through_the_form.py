@@ -12,6 +12,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.catalogue import with_catalogues
 from slidercrank.service.store import Store
 from tests.service.page.conftest import Open
 
@@ -105,7 +106,7 @@ def test_every_job_that_ships_and_those_of_the_tests_stay_word_for_word_with_eve
 ) -> None:
     root = pytestconfig.rootpath
     files = sorted([*(root / "runs").glob("*.toml"), *(root / "tests" / "data").glob("*.toml")])
-    jobs = [tomllib.loads(file.read_text()) for file in files]
+    jobs = [with_catalogues(tomllib.loads(file.read_text()), file.parent) for file in files]
     assert len(jobs) >= 5
     sieve = next(job for job in jobs if job["name"] == "Vibrating sieve")
     parse_job(whole(sieve))

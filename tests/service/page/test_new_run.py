@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.catalogue import with_catalogues
 from slidercrank.optimise.job.units import kind_for, to_si
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
@@ -31,7 +32,9 @@ def form(open_page: Open) -> Open:
 
 @pytest.fixture
 def shipped(pytestconfig: pytest.Config) -> dict[str, dict[str, Any]]:
-    return {file.stem: tomllib.loads(file.read_text()) for file in (pytestconfig.rootpath / "runs").glob("*.toml")}
+    """Return the jobs that ship, with the options of a catalogue in place of its file."""
+    files = (pytestconfig.rootpath / "runs").glob("*.toml")
+    return {file.stem: with_catalogues(tomllib.loads(file.read_text()), file.parent) for file in files}
 
 
 def status(page: Page) -> Locator:
@@ -194,8 +197,10 @@ def test_a_job_file_comes_in_and_goes_out_the_same(
     form: Open, store: Store, pytestconfig: pytest.Config, shipped: dict[str, Any], tmp_path: Path
 ) -> None:
     page = form(store, "#/new", expected=("422",))
-    for name, job in shipped.items():
-        page.get_by_label("Job file to import").set_input_files(pytestconfig.rootpath / "runs" / f"{name}.toml")
+    for name in shipped:
+        file = pytestconfig.rootpath / "runs" / f"{name}.toml"
+        job = tomllib.loads(file.read_text())
+        page.get_by_label("Job file to import").set_input_files(file)
         expect(page.get_by_label("name", exact=True)).to_have_value(job["name"])
         for kind, read in (("TOML", tomllib.loads), ("JSON", json.loads)):
             with page.expect_download() as begun:

@@ -26,8 +26,10 @@ export function keptPanel(explorer) {
 
   async function ask() {
     try {
+      const marked = marks().length;
       designs = (await get(`jobs/${job.id}/kept`, {}, explorer.signal)).designs;
-      show();
+      if (marked || marks().length) show();
+      else drawTable(); // charts stay as they are, and what is typed at their axes
     } catch (problem) {
       if (!isAbort(problem)) sayProblem(problem);
     }
