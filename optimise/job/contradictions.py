@@ -57,7 +57,8 @@ def _require_one_density(problem: Problem) -> None:
         stated = isinstance(bar, Bar) and f"{name}.density" not in free
         if stated and not math.isclose(bar.density, density, rel_tol=_ONE_MATERIAL):
             raise JobError(
-                f"mechanism.{name}.density: a bar is of [sections.material], so its density is that to {100.0 * _ONE_MATERIAL:.0f} %; got "
+                f"mechanism.{name}.density: a bar is of [sections.material], and its density within "
+                f"{100.0 * _ONE_MATERIAL:.0f} % of that; got "
                 f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
             )
 
