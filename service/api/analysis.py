@@ -35,7 +35,8 @@ from .throttle import READING, SIMULATING
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
-_LONGEST = 30.0  # s, for the topics of one design
+LONGEST_TOPICS = 30.0
+"""s, for the topics of one design."""
 _MOST_NUMBERS = 20
 
 Show = Annotated[
@@ -282,10 +283,11 @@ def _with_topics(
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
     with SIMULATING.turn() if topics else nullcontext():
-        analysed = analysis_of(row, mechanism, linkage, topics, cancelled=_over(_LONGEST), lenient=lenient)
+        analysed = analysis_of(row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient)
     return finite(analysed.record()), analysed.notes
 
 
-def _over(seconds: float) -> Callable[[], bool]:
+def over(seconds: float) -> Callable[[], bool]:
+    """Return a function that says whether so many s have passed since now."""
     end = time.monotonic() + seconds
     return lambda: time.monotonic() > end

@@ -30,6 +30,7 @@ from . import (
     rounded,
     schema,
     swing,
+    topics,
     wish,
 )
 from .events import Feed
@@ -55,6 +56,7 @@ _PARTS = (
     measured,
     rounded,
     swing,
+    topics,
     wish,
     kept,
     design_files,

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 Kind = Literal["png", "svg"]
 _MEDIA = {"png": "image/png", "svg": "image/svg+xml"}
+SEALED_FIGURE = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+"""Policy of an SVG: opened by itself it is a document, and runs nothing and fetches nothing."""
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
@@ -105,8 +107,8 @@ def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, u
     if shown:
         file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
         headers = {"Content-Disposition": f'inline; filename="{file}"'}
-    if kind == "svg":  # Opened by itself it is a document: it runs nothing and fetches nothing.
-        headers["Content-Security-Policy"] = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+    if kind == "svg":
+        headers["Content-Security-Policy"] = SEALED_FIGURE
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 

@@ -72,9 +72,14 @@ def draw_sheet(sheet: Sheet) -> Figure:
     return figure
 
 
+def figure_of(made: Sheet | Figure) -> Figure:
+    """Return the figure of a sheet; one drawn before as it is."""
+    return draw_sheet(made) if isinstance(made, Sheet) else made
+
+
 def save_sheet(made: Sheet | Figure, path: Path) -> None:
     """Write a sheet, or a figure drawn before, as PNG."""
-    save(draw_sheet(made) if isinstance(made, Sheet) else made, path)
+    save(figure_of(made), path)
 
 
 def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.console import Console
 
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ..figures.sheets import Sheet
 
 
 @dataclass(frozen=True)
@@ -58,8 +60,7 @@ class TopicOfDesign:
 
     def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
         """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
-        if hasattr(self._analysis, "prepare"):
-            self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
+        self._prepare(cancelled)
         found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
         return found
 
@@ -68,13 +69,28 @@ class TopicOfDesign:
         self._analysis.show(screen, numbers)
 
     def draw(self, folder: Path) -> Path:
-        """Write the topic's figure into a folder; return the file."""
+        """Write the topic's figure into a folder, after its numbers; return the file."""
         from ..figures.panels import save_sheet
 
-        options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
         file = folder / f"{self.name}.png"
-        save_sheet(self._analysis.figure(self.mechanism, self.linkage, **options), file)
+        save_sheet(self._drawn(), file)
         return file
+
+    def figure(self, cancelled: Callable[[], bool]) -> Figure:
+        """Return the topic's figure, its numbers not asked for before. Raises `InputError` where there is none."""
+        from ..figures.panels import figure_of
+
+        self._prepare(cancelled)
+        return figure_of(self._drawn())
+
+    def _prepare(self, cancelled: Callable[[], bool]) -> None:
+        if hasattr(self._analysis, "prepare"):
+            self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
+
+    def _drawn(self) -> Sheet | Figure:
+        options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
+        found: Sheet | Figure = self._analysis.figure(self.mechanism, self.linkage, **options)
+        return found
 
     @property
     def _analysis(self) -> Any:

@@ -34,7 +34,9 @@ def test_what_explains_and_types_a_module_is_not_sent() -> None:
  */
 """
     source = "export function twice(n) {\n  /** @type {number} */\n  const two = 2; /** two */\n  return two * n;\n}\n"
-    plain = source.replace("  /** @type {number} */\n", "")
+    source += "/** @type {number} */ (window.own).kept = 1;\n/** @type {number} */\nwindow.last = 2;\n"
+    plain = source.replace("  /** @type {number} */\n", "").replace("\n/** @type {number} */\n", "\n")
+    assert ".kept = 1" in joined_modules({"app.js": source}, "app.js")
     assert joined_modules({"app.js": explained + source}, "app.js") == joined_modules({"app.js": plain}, "app.js")
 
 

@@ -17,6 +17,8 @@ const TOPICS = [
   { name: "tolerances", title: "What tolerances do to the slider's position", show: (place, found, given) => tolerances(place, /** @type {Api.Tolerances} */ (found), given) },
 ];
 const NEAR = "300px"; // before it is in sight
+/** Names of the topics that are drawn here. */
+export const DRAWN = TOPICS.map(({ name }) => name);
 
 /**
  * Put the topics into `place`; each shows once it comes near, and says so where the design has none.

@@ -1,7 +1,8 @@
 /** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
 
 import { curveCharts } from "../charts/curves.js";
-import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
+import { analyses } from "../design/analyses.js";
+import { besideOf, cycleOf, lengthsOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { panelsOf } from "../design/panels.js";
@@ -9,7 +10,7 @@ import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
 import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
-import { topics } from "../design/topics.js";
+import { DRAWN, topics } from "../design/topics.js";
 import { top } from "../design/top.js";
 import { tradeOffs } from "../design/trade_offs.js";
 import { turning } from "../mechanism/turning.js";
@@ -45,10 +46,10 @@ export async function show(place, { parts, query, signal }) {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
   };
-  const places = Object.fromEntries(["objectives", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics"].map((name) => [name, h("section", { class: name })]));
+  const places = Object.fromEntries(["objectives", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics", "analyses"].map((name) => [name, h("section", { class: name })]));
   const files = takeAway(job, number, { signal });
   fill(place, top(shared), files.node, places.objectives,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics);
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics, places.analyses);
   for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
   const machines = stage(places.stage, angle);
   const charts = curveCharts(places.curves, hold);
@@ -60,6 +61,7 @@ export async function show(place, { parts, query, signal }) {
   let changed = null; // the answer to "what if"
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
+  const further = analyses(places.analyses, { job, number, drawn: DRAWN, signal });
   const draw = () => {
     const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
@@ -68,7 +70,10 @@ export async function show(place, { parts, query, signal }) {
     const series = asked ? [asked, main, ...others] : moving;
     charts.show(series, panelsOf(main.curveColumns, series));
     legend(places.curves, series);
-    return () => showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
+    return () => {
+      further.show(changed && lengthsOf(changed.design));
+      showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
+    };
   };
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,

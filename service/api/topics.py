@@ -1,0 +1,136 @@
+"""Topics of single designs, each by its name: numbers, text and figure, as `analyse --show` has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Response
+from pydantic import BaseModel, Field
+from pydantic_core import to_json
+
+from ...model.errors import NotFound
+from ..runs.result import finite
+from ..topics.discovery import TOPICS
+from ..topics.topic import TopicOfDesign
+from .analysis import LONGEST_TOPICS, over
+from .exports import of_type
+from .figures import SEALED_FIGURE, require_figures
+from .fronts import OfDesign
+from .problems import problem_responses
+from .stored_fronts import ShownDep, ShownDesign
+from .throttle import DRAWING, SIMULATING
+
+if TYPE_CHECKING:
+    from ..topics.topic import Topic
+
+router = APIRouter(tags=["designs"], responses=problem_responses(409))
+
+Name = Annotated[
+    str, Path(pattern=r"^[a-z_]+$", max_length=100, description="of the list of topics", examples=["balance"])
+]
+
+
+class TopicModel(BaseModel):
+    """A topic of a design. name: in its path. title: for a heading. shows: what it is about, in words."""
+
+    name: str = Field(examples=["balance"])
+    title: str = Field(examples=["Balance"])
+    shows: str = Field(examples=["shaking force and moment"])
+
+
+class TopicList(BaseModel):
+    """The topics that a design may have, in their order."""
+
+    topics: list[TopicModel]
+
+
+class BlockModel(BaseModel):
+    """A sentence, or a table where there are rows.
+
+    heading: whether the sentence heads what follows. heads: of the columns, empty where they have none. right: whether
+    a column is aligned to the right. rows: the texts of the cells.
+    """
+
+    sentence: str = Field(examples=["Motor"])
+    heading: bool = Field(examples=[True])
+    heads: list[str] = Field(examples=[[]])
+    right: list[bool] = Field(examples=[[]])
+    rows: list[list[str]] = Field(examples=[[]])
+
+
+class ToldTopic(OfDesign):
+    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text, in metric units."""
+
+    name: str = Field(examples=["balance"])
+    numbers: dict[str, Any] = Field(examples=[{"peak_shaking_force_N": 12.5}])
+    told: list[BlockModel]
+
+
+@router.get("/topics")
+def list_topics() -> TopicList:
+    """List the topics that a design may have."""
+    named = [(topic, topic.name.replace("_", " ").capitalize()) for topic in TOPICS.values()]
+    return TopicList(topics=[TopicModel(name=of.name, title=title, shows=of.shows) for of, title in named])
+
+
+@router.get(
+    "/jobs/{number}/designs/{design}/topics/{topic}.svg",
+    dependencies=[Depends(require_figures)],
+    **of_type("image/svg+xml"),
+)
+def draw_topic_svg(shown: ShownDep, topic: Name) -> Response:
+    """Draw the figure of one topic of a design, as found or with other lengths."""
+    headers = {"Content-Security-Policy": SEALED_FIGURE}
+    return Response(_drawn(shown, topic, "svg"), media_type="image/svg+xml", headers=headers)
+
+
+@router.get(
+    "/jobs/{number}/designs/{design}/topics/{topic}.png",
+    dependencies=[Depends(require_figures)],
+    **of_type("image/png"),
+)
+def draw_topic_png(shown: ShownDep, topic: Name) -> Response:
+    """Draw the figure of one topic of a design, as found or with other lengths."""
+    return Response(_drawn(shown, topic, "png"), media_type="image/png")
+
+
+@router.get("/jobs/{number}/designs/{design}/topics/{topic}", response_model=ToldTopic)
+def tell_topic(shown: ShownDep, topic: Name) -> Response:
+    """Give the numbers of one topic of a design, as found or with other lengths, and its text."""
+    of = _topic(topic)
+
+    def make() -> tuple[tuple[str], bytes]:
+        from ..topics.told import told
+
+        asked = _of(of, shown)
+        numbers = asked.numbers(over(LONGEST_TOPICS))
+        blocks = [BlockModel(**vars(block)) for block in told(asked, numbers)]
+        answer = ToldTopic(
+            job=shown.found.job.id, number=shown.number, name=topic, numbers=finite(numbers), told=blocks
+        )
+        return (shown.key,), to_json(answer)
+
+    content = shown.found.made(shown.key, f"topic {topic}", make, SIMULATING)
+    return Response(content, media_type="application/json")
+
+
+def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"]) -> bytes:
+    topic = _topic(name)
+
+    def make() -> tuple[tuple[str], bytes]:
+        from ..figures.style import image
+
+        return (shown.key,), image(_of(topic, shown).figure(over(LONGEST_TOPICS)), kind)
+
+    return shown.found.made(shown.key, f"topic {name} {kind}", make, DRAWING)
+
+
+def _of(topic: Topic, shown: ShownDesign) -> TopicOfDesign:
+    return topic.of(shown.design.mechanism, shown.design.linkage)
+
+
+def _topic(name: str) -> Topic:
+    """Return a topic by its name. Raises `NotFound` with those that there are."""
+    if name not in TOPICS:
+        raise NotFound(f"there is no topic {name!r}; choose from {', '.join(TOPICS)}")
+    return TOPICS[name]

@@ -1,0 +1,104 @@
+/** Analyses of a design, a tab each: every topic that the service has and the view does not draw itself, with text, tables and figure. */
+
+import { address, get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
+import { fill, h } from "../lib/dom.js";
+import { scrolled } from "./numbers.js";
+
+/** @type {Record<string, number>} */
+const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
+const NEAR = "200px"; // before they are in sight
+
+/**
+ * Put the tabs into `place`. drawn: names of topics that the view draws itself. Returns show(lengths): of a changed design,
+ * null for the design itself.
+ * @param {HTMLElement} place
+ * @param {{ job: string, number: number, drawn: readonly string[], signal: AbortSignal }} given
+ */
+export function analyses(place, { job, number, drawn, signal }) {
+  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown: step });
+  const panel = h("div", { class: "panel analysis", role: "tabpanel", id: "analysis", tabindex: 0 });
+  fill(place, h("h2", {}, "Analyses"), tabs, panel);
+  /** @type {Api.Topic[]} */
+  let topics = [];
+  let chosen = "";
+  /** @type {Page.Lengths | null} */
+  let lengths = null;
+  let turn = 0;
+  let seen = false;
+
+  const watcher = new IntersectionObserver((now) => {
+    if (!now.some((one) => one.isIntersecting)) return;
+    watcher.disconnect();
+    seen = true;
+    begin();
+  }, { rootMargin: NEAR });
+  watcher.observe(place);
+  signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
+
+  async function begin() {
+    try {
+      topics = (await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name));
+      choose(topics[0].name);
+    } catch (error) {
+      if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
+    }
+  }
+
+  /** @param {string} name */
+  function choose(name) {
+    chosen = name;
+    fill(tabs, topics.map((one) => h("button", {
+      type: "button", role: "tab", id: `tab-${one.name}`, "aria-controls": "analysis", "aria-selected": String(one.name === name), tabindex: one.name === name ? 0 : -1, title: one.shows, onclick: () => choose(one.name),
+    }, one.title)));
+    panel.setAttribute("aria-labelledby", `tab-${name}`);
+    ask();
+  }
+
+  /** @param {KeyboardEvent} event */
+  function step({ key }) {
+    const by = KEYS[key];
+    if (!by) return;
+    const at = topics.findIndex(({ name }) => name === chosen);
+    choose(topics[(at + by + topics.length) % topics.length].name);
+    document.getElementById(`tab-${chosen}`)?.focus();
+  }
+
+  async function ask() {
+    const own = (turn += 1);
+    const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
+    const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
+    const head = h("p", { class: "quiet hint" }, `${shows.charAt(0).toUpperCase()}${shows.slice(1)}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
+    fill(panel, head, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
+    try {
+      const found = await get(path, { ...lengths }, signal);
+      if (own !== turn || !found) return;
+      const { told } = found;
+      const file = address(`${path}.svg`, { ...lengths });
+      const picture = h("img", { src: file, alt: `Figure: ${title}`, onerror: ({ currentTarget }) => currentTarget.remove() });
+      fill(panel, head, h("div", { class: "analysis-columns" }, h("div", {}, told.map(block)), picture));
+    } catch (error) {
+      if (own !== turn || isAbort(error)) return;
+      const sentence = sentenceOf(error);
+      fill(panel, head, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`));
+    }
+  }
+
+  return {
+    /** @param {Page.Lengths | null} now */
+    show(now) {
+      if (JSON.stringify(now) === JSON.stringify(lengths)) return;
+      lengths = now;
+      if (seen && chosen) ask();
+    },
+  };
+}
+
+/** @param {Api.Told} block */
+function block({ sentence, heading, heads, right, rows }) {
+  if (!rows.length) return h(heading ? "h3" : "p", {}, sentence);
+  /** @param {number} n */
+  const side = (n) => (right[n] ? "number" : null);
+  const head = heads.some(Boolean) && h("thead", {}, h("tr", {}, heads.map((title, n) => h(title ? "th" : "td", { scope: title ? "col" : null, class: side(n) }, title))));
+  return scrolled("Numbers of the analysis", h("table", {}, h("caption", { class: "hidden" }, "Numbers of the analysis"), head,
+    h("tbody", {}, rows.map((cells) => h("tr", {}, cells.map((cell, n) => (n ? h("td", { class: side(n) }, cell) : h("th", { scope: "row", class: side(n) }, cell))))))));
+}

@@ -1,0 +1,72 @@
+"""Analyses of a design, a tab each: those of the API, by keyboard, and of a changed design."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.service.api.fixed_front import API, Solved, served
+from tests.service.page.accessibility import require_accessible
+from tests.service.page.conftest import watch
+
+OWN = ("extremes", "sensitivity", "tolerances")
+"""Topics that the page draws itself."""
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
+    """Return a page and the address of its service; nothing but refusals may go wrong on the page."""
+    wrong: list[str] = []
+    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
+    with served(solved.store) as address, contextlib.closing(context):
+        page = context.new_page()
+        watch(page, address, wrong, expected=("422",))
+        yield page, address
+    assert wrong == []
+
+
+def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, str], solved: Solved) -> None:
+    page, address = opened
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
+    panel = page.get_by_role("tabpanel")
+    panel.scroll_into_view_if_needed(timeout=30_000)
+    topics = httpx.get(f"{address}{API}/topics", timeout=60.0).json()["topics"]
+    tabs = page.get_by_role("tab")
+    expect(tabs).to_have_text([one["title"] for one in topics if one["name"] not in OWN])
+    page.get_by_role("tab", name="Motor", exact=True).click()
+    path = f"{address}{API}/jobs/{solved.number}/designs/2/topics"
+    told = httpx.get(f"{path}/motor", timeout=60.0).json()["told"]
+    for block in told:
+        for row in block["rows"]:
+            expect(panel.locator("tr", has_text=row[0]).first).to_contain_text(row[1])
+    picture = page.get_by_role("img", name="Figure: Motor")
+    expect(picture).to_have_js_property("complete", True, timeout=30_000)
+    assert picture.evaluate("image => image.naturalWidth") > 100
+    require_accessible(page)
+    page.get_by_role("tab", name="Motor", exact=True).press("ArrowRight")
+    following = page.get_by_role("tab", selected=True)
+    expect(following).to_be_focused()
+    expect(following).to_have_text("Balance")
+    page.get_by_role("tab", name="Start up").click()
+    expect(panel).to_contain_text("[drive]")
+    expect(panel.locator("img")).to_have_count(0)
+
+
+def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved: Solved) -> None:
+    page, address = opened
+    page.goto(f"{address}/#/help")
+    row = solved.result.designs[1]
+    lengths = {key: float(str(row[key])) for key in ("crank_mm", "rod_mm", "offset_mm")} | {"rod_mm": 590.0}
+    query = "&".join(f"{key}={value!r}" for key, value in lengths.items())
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2?{query}")
+    panel = page.get_by_role("tabpanel")
+    panel.scroll_into_view_if_needed(timeout=30_000)
+    page.get_by_role("tab", name="Motor", exact=True).click()
+    expect(panel).to_contain_text("of the changed design")
+    path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/motor"
+    told = httpx.get(path, params=lengths, timeout=60.0).json()["told"]
+    expect(panel.locator("tr", has_text="peak torque").first).to_contain_text(told[1]["rows"][0][1])
