@@ -13,6 +13,7 @@ from ..page import router as page
 from ..store import Store
 from . import (
     analysis,
+    binding,
     design_files,
     events,
     exports,
@@ -51,6 +52,7 @@ _PARTS = (
     events,
     front_points,
     fronts,
+    binding,
     analysis,
     inverse,
     measured,

@@ -23,7 +23,7 @@ from .settings import Settings, SettingsDep, StoreDep
 from .throttle import READING, limit_submissions
 
 router = APIRouter(tags=["jobs"])
-_SUBMITTED: dict[str, Any] = {
+SUBMITTED: dict[str, Any] = {
     "status_code": HTTPStatus.CREATED,
     "response_model": JobShown,
     "dependencies": [Depends(limit_submissions)],
@@ -35,7 +35,7 @@ _FILE: dict[int | str, dict[str, Any]] = {
 FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
 
 
-@router.post("/jobs", **_SUBMITTED)
+@router.post("/jobs", **SUBMITTED)
 def submit_job(
     asked: Annotated[Asked, Depends(asked_for)],
     store: StoreDep,
@@ -44,7 +44,7 @@ def submit_job(
     idempotency_key: IdempotencyKey = None,
 ) -> dict[str, Any]:
     """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
-    return _submitted(asked, store, settings, response, idempotency_key)
+    return submitted(asked, store, settings, response, idempotency_key)
 
 
 @router.get("/jobs", response_model=JobPage)
@@ -87,7 +87,7 @@ def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
         return store.resume(number).record()
 
 
-@router.post("/jobs/{number}/clone", **_SUBMITTED)
+@router.post("/jobs/{number}/clone", **SUBMITTED)
 def clone_job(
     number: JobNumber,
     clone: Clone,
@@ -103,7 +103,7 @@ def clone_job(
         priority=job.priority if clone.priority is None else clone.priority,
         limits=job.limits if clone.limits is None else within(clone.limits, settings.limits),
     )
-    return _submitted(asked, store, settings, response, idempotency_key)
+    return submitted(asked, store, settings, response, idempotency_key, origin=number)
 
 
 @router.get("/jobs/{number}/job")
@@ -133,13 +133,15 @@ def _row(job: Job) -> dict[str, Any]:
     return job.record() if job.state == "running" else {**job.record(), "progress": None}
 
 
-def _submitted(asked: Asked, store: Store, settings: Settings, response: Response, key: str | None) -> dict[str, Any]:
+def submitted(
+    asked: Asked, store: Store, settings: Settings, response: Response, key: str | None, *, origin: int | None = None
+) -> dict[str, Any]:
+    """Queue a job and return its record. key: of the submission. origin: the job that it is a changed copy of."""
     with READING:
         problem = given_problem(asked.tables, settings.allowed_quantities)
     files = [asked.source or job_json(asked.tables)]
-    job = store.submit(
-        asked.tables, name=problem.name, priority=asked.priority, key=key, limits=asked.limits, files=files
-    )
+    more: dict[str, Any] = {"priority": asked.priority, "key": key, "limits": asked.limits, "origin": origin}
+    job = store.submit(asked.tables, name=problem.name, files=files, **more)
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job.record()
 

@@ -125,6 +125,7 @@ class JobShown(JobRow, title="Job"):
     records: Count = Field(description="that it can go on from")
     progress: JobProgress | None
     summary: JobSummary | None
+    origin: int | None = Field(None, description="the job that it is a changed copy of, which may be gone")
 
 
 class JobPage(Shown):

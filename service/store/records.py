@@ -59,7 +59,8 @@ class Job:
     state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
     worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
     progress: fields of the latest `Progress`, or None; `front` with them where the search gave one, see `Claim.tell`.
-    summary: what it found, see `serialisation.summary_of`, or None.
+    summary: what it found, see `serialisation.summary_of`, or None. origin: the number of the job that it is a changed
+    copy of, or None.
     """
 
     id: int
@@ -84,6 +85,7 @@ class Job:
     events: int
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None
+    origin: int | None = None
 
     @classmethod
     def of(cls, row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:

@@ -63,6 +63,7 @@ jobs = sa.Table(
     sa.Column("progress", sa.Text),
     sa.Column("summary", sa.Text),
     sa.Column("result", sa.Text),
+    sa.Column("origin", _number),
     sa.UniqueConstraint("key"),
     sa.UniqueConstraint("run"),
     sa.Index(None, "state", "priority", "id"),
@@ -71,7 +72,7 @@ jobs = sa.Table(
 """key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not
 to be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written.
 records, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
-designs, with the names of their columns."""
+designs, with the names of their columns. origin: the job that it is a changed copy of, which may be gone."""
 
 events = sa.Table(
     "events",

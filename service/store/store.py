@@ -66,17 +66,19 @@ class Store(Database):
         most_attempts: int = MOST_ATTEMPTS,
         limits: Limits = NO_LIMITS,
         files: Sequence[Artefact] = (),
+        origin: int | None = None,
     ) -> Job:
         """Queue a job and return it. The job itself is not read; `submission.submit` checks it first.
 
         tables: of its job file. priority: higher ones are claimed first. key: of this submission; with one that was
         used before, nothing is queued and the job of that time is returned. most_attempts: how often it is tried
         without going forward before it is set aside. files: what belongs to it, such as the job file as it was given.
+        origin: the number of the job that it is a changed copy of.
 
         Raises `QueueFull`, and `InputError` if the key was used for another job.
         """
         queue.require_bounds(priority, key, most_attempts)
-        more = {"key": key, "priority": priority, "most_attempts": most_attempts}
+        more = {"key": key, "priority": priority, "most_attempts": most_attempts, "origin": origin}
         with self.writing() as connection:
             queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
             known = queue.submitted_before(connection, key, tables) if key else None

@@ -53,6 +53,7 @@ declare global {
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];
     type Kept = Schemas["KeptDesign"];
+    type Limit = Schemas["LimitModel"];
     type Objective = Schemas["ObjectiveModel"];
     type Preset = Schemas["PresetModel"];
     type Preview = Schemas["PreviewModel"];
@@ -61,6 +62,8 @@ declare global {
     type Requirement = Schemas["RequirementModel"];
     type Requirements = Schemas["RequirementsModel"];
     type SwingPreview = Schemas["SwingPreview"];
+    type Told = Schemas["BlockModel"];
+    type Topic = Schemas["TopicModel"];
     type Understood = Schemas["Understood"];
     type Units = Schemas["UnitTable"]["inch"];
     type WhatIf = Schemas["WhatIfModel"];

@@ -18,6 +18,7 @@ import { shadesOf } from "./shades.js";
  * @property {() => string} colour
  * @property {() => Page.Mark[]} marks
  * @property {() => Api.Row[]} others designs that are marked and none of the front; the axes reach to them
+ * @property {() => Api.Row[]} behind designs of a run before, drawn behind all of these
  * @property {(row: number | null) => void} point
  * @property {(row: number) => void} open
  * @property {(row: number) => void} select
@@ -71,6 +72,14 @@ export function scatter(chart) {
     // Squares replace what is there, so they come first.
     if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
     drawAxes(context, { x, y, area: AREA, width, height, ink: view.ink });
+    context.strokeStyle = view.ink.quiet;
+    context.lineWidth = 1;
+    for (const cells of chart.behind()) {
+      const [a, b] = placeOf({ cells, colour: "" });
+      context.beginPath();
+      context.arc(a, b, 3, 0, 7);
+      context.stroke();
+    }
     context.fillStyle = view.ink.line;
     if (!many) for (let row = 0; row < data.count; row += 1) dot(context, row);
   }
@@ -90,7 +99,7 @@ export function scatter(chart) {
 
   /** Return the numbers that an axis has to reach. @param {string} key @returns {Iterable<Api.Row[string]>} */
   function withOthers(key) {
-    const others = chart.others();
+    const others = [...chart.others(), ...chart.behind()];
     return others.length ? [...chart.data.numbers(key), ...others.map((row) => row[key])] : chart.data.numbers(key);
   }
 

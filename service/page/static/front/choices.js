@@ -1,6 +1,9 @@
 /** Choices in the explorer of a front, to and from the address. */
 
+import { LENGTHS } from "./linkages.js";
 import { wishesFrom, wishQuery } from "./wishes.js";
+
+/** @import { Limits } from "./limits.js" */
 
 /**
  * @typedef {{ key: string, flipped: boolean }} Axis
@@ -48,6 +51,7 @@ export function choicesFrom(query, front) {
     selected: list("selected").map(Number).filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count).slice(0, MOST),
     weights: weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10) ? weights : null,
     wish: wishesFrom(query, front.objectives),
+    behind: query.get("behind") !== "none", // whether the front of the run before is shown
     standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes, ...strokes].join(",") },
   };
 }
@@ -93,6 +97,7 @@ export function queryOf(chosen, lasso) {
     selected: chosen.selected.join(","),
     weights: chosen.weights?.join(",") ?? "",
     lasso: lasso ? [lasso.x, lasso.y, ...lasso.line.flat().map((number) => Number(number.toPrecision(5)))].join(",") : "",
+    behind: chosen.behind ? "" : "none",
     ...wishQuery(chosen.wish),
   };
   for (const [key, limit] of chosen.limits) {
@@ -110,4 +115,10 @@ export function queryOf(chosen, lasso) {
 export function toggled(selected, number) {
   if (selected.includes(number)) return selected.filter((one) => one !== number);
   return [...selected, number].slice(-MOST);
+}
+
+/** Return the columns that are drawn, shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
+export function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
+  const keys = [...LENGTHS, ...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
+  return keys.filter((key) => key !== "");
 }

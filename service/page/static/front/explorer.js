@@ -4,18 +4,22 @@ import { parallel } from "../charts/parallel.js";
 import { scatter } from "../charts/scatter.js";
 import { colours } from "../charts/scale.js";
 import { keep, link } from "../lib/address.js";
+import { isAbort } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
 import { sayProblem } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
+import { behind } from "./behind.js";
+import { bindingPanel } from "./binding.js";
 import { chooser } from "./chooser.js";
-import { choicesFrom, queryOf, toggled } from "./choices.js";
+import { choicesFrom, queryOf, toggled, wanted } from "./choices.js";
 import { FrontData } from "./data.js";
 import { keptPanel } from "./kept.js";
 import { Limits } from "./limits.js";
 import { keepListed } from "./listed.js";
 import { linkagePanel } from "./linkage_panel.js";
-import { LENGTHS, linkages } from "./linkages.js";
+import { linkages } from "./linkages.js";
+import { marksOf, othersOf } from "./marked.js";
 import { marksPanel } from "./marks.js";
 import { saving } from "./saving.js";
 import { scatterPanel } from "./scatter_panel.js";
@@ -46,12 +50,6 @@ export async function explore(place, { job, front, values, query, signal }) {
   if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, signal });
 }
 
-/** Return the columns that are drawn, shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
-function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
-  const keys = [...LENGTHS, ...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
-  return keys.filter((key) => key !== "");
-}
-
 /** Choices in a front, and the parts that show it; they tell it what the reader does. */
 export class Explorer {
   /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given */
@@ -80,16 +78,19 @@ export class Explorer {
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.tabling = undefined;
     this.linkages = linkages(data);
+    /** @type {Awaited<ReturnType<typeof behind>>} */
+    this.before = null; // the run that this one is a changed copy of
     this.count = h("p", { class: "count", role: "status" });
     this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
     this.saving = saving(this);
     this.fields = axisFields(this);
     this.lines = parallel({
-      data, limits, axes: () => chosen.axes, colour: () => chosen.colour, marks: () => this.marks("lines"), limit: (key, limit) => this.limit(key, limit),
+      data, limits, axes: () => chosen.axes, colour: () => chosen.colour, marks: () => marksOf(this, "lines"), limit: (key, limit) => this.limit(key, limit),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
     });
     this.dots = scatter({
-      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => this.marks("dots"), others: () => this.others().map(({ cells }) => cells),
+      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => marksOf(this, "dots"), others: () => othersOf(this).map(({ cells }) => cells),
+      behind: () => (chosen.behind && this.before ? this.before.rows(chosen.x, chosen.y) : []),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
       box: (x, y) => {
         this.limits.set(chosen.x, x);
@@ -103,6 +104,7 @@ export class Explorer {
     this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
     this.kept = keptPanel(this);
+    this.binding = bindingPanel(this);
     this.wishing = wishingPanel(this);
     const columns = data.columns;
     place.replaceChildren(
@@ -113,6 +115,7 @@ export class Explorer {
         h("p", { class: "quiet hint" }, "Drag along an axis to keep a part of it; double click to let go. The fields below do the same."),
         h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
       this.scatterPanel.place,
+      this.binding.place,
       this.wishing.place,
       this.kept.place,
       h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
@@ -134,6 +137,14 @@ export class Explorer {
     for (const name of ["units", "scheme"]) window.addEventListener(name, again, { signal: this.signal });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again, { signal: this.signal });
     this.draw("all");
+    if (job.origin) this.lookBehind(job.origin).catch((problem) => isAbort(problem) || sayProblem(problem));
+  }
+
+  /** Show the front of the run before, once it is here. @param {number} run */
+  async lookBehind(run) {
+    this.before = await behind(run, this.signal);
+    await this.before?.need([this.chosen.x, this.chosen.y]);
+    this.update("all");
   }
 
   /**
@@ -143,7 +154,7 @@ export class Explorer {
   async change(choices, what) {
     Object.assign(this.chosen, choices);
     try {
-      await this.data.need(wanted(this.chosen, this.limits));
+      await Promise.all([this.data.need(wanted(this.chosen, this.limits)), this.before?.need([this.chosen.x, this.chosen.y])]);
     } catch (problem) {
       sayProblem(problem);
       return;
@@ -216,6 +227,7 @@ export class Explorer {
     else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
     this.linkagePanel.draw(what);
+    this.binding.draw(what);
     this.wishing.draw(what);
     this.kept.draw(what);
     this.selected.draw();
@@ -230,43 +242,6 @@ export class Explorer {
     }
     this.tabled = performance.now();
     this.table.draw();
-  }
-
-  /**
-   * Return what is marked, each with its colour: extremes and knee, the choice by weights, selected and pointed ones.
-   * @param {"lines" | "dots"} kind
-   */
-  marks(kind) {
-    const { ink } = this;
-    /** @type {Page.Mark[]} */
-    const found = [];
-    if (kind === "dots") for (const [row, names] of this.names()) found.push({ row, colour: ink.text, name: names[0] });
-    else if (this.front.knee !== null) found.push({ row: this.front.knee, colour: ink.text, width: 2 });
-    if (this.picked !== null) found.push({ row: this.picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
-    for (const { cells, name } of this.others()) found.push({ cells, colour: ink["series-4"], name, width: 3 });
-    for (const number of this.chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
-    if (this.pointed !== null) found.push({ row: this.pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${this.pointed + 1}` : "", read: true });
-    return found;
-  }
-
-  /** Return the designs that are marked though they are none of the front, each with its name. */
-  others() {
-    const wished = this.wishing?.cells();
-    return [...(this.kept?.marks() ?? []), ...(wished ? [{ cells: wished, name: "wished" }] : [])];
-  }
-
-  /** Return the names of marked designs by their row: knee, best in an objective, by weights. */
-  names() {
-    /** @type {Map<number, string[]>} */
-    const names = new Map();
-    /** @param {number} row @param {string} name */
-    const add = (row, name) => names.set(row, [...(names.get(row) ?? []), name]);
-    if (this.front.knee !== null) add(this.front.knee, "knee");
-    for (const [quantity, row] of Object.entries(this.front.extremes)) {
-      const title = this.data.objectives.find((objective) => objective.quantity === quantity)?.title ?? quantity;
-      add(row, `best ${title}`);
-    }
-    return names;
   }
 
   /** Point at a design; null: at the one that has the focus, if any. @param {number | null} row */

@@ -7,6 +7,7 @@ import { drawing } from "../mechanism/drawing.js";
 import { motionOf } from "../mechanism/motion.js";
 import { turning } from "../mechanism/turning.js";
 import { LENGTHS } from "./linkages.js";
+import { namesOf } from "./marked.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -61,7 +62,7 @@ export function linkagePanel(explorer) {
     if (row !== shown || what === "all") {
       shown = row;
       const linkage = explorer.linkages.of(row);
-      const names = explorer.names().get(row) ?? [];
+      const names = namesOf(explorer).get(row) ?? [];
       fill(title, `Design ${row + 1}`, names.length > 0 && h("span", { class: "quiet" }, ` ${names.join(", ")}`));
       fill(way, "Open", h("span", { class: "hidden" }, " the design of the picture"));
       way.href = explorer.hrefOf(row);

@@ -5,6 +5,7 @@ import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, withUnit } from "../lib/numbers.js";
 import { smallLinkage } from "../mechanism/small.js";
+import { namesOf } from "./marked.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -111,7 +112,7 @@ export function marksPanel(explorer) {
     if (what !== "all") return;
     drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));
     await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
-    fill(list, [...explorer.names()].map(([row, names]) => item(row, names.join(", "))));
+    fill(list, [...namesOf(explorer)].map(([row, names]) => item(row, names.join(", "))));
   }
   return { place, draw };
 }

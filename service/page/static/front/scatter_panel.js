@@ -1,5 +1,6 @@
 /** The scatter with what it shows: which quantities, the legend of its colours. */
 
+import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { ends } from "../lib/numbers.js";
 import { headed } from "./columns.js";
@@ -25,11 +26,12 @@ export function scatterPanel(explorer, dots) {
     h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
+  const before = h("div", { class: "legend before", hidden: true });
   const place = h("section", { class: "panel trade-off", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
     h("div", { class: "row picks" }, picks.map(({ node }) => node), drag),
     h("div", { class: "dots" }, dots.place),
-    key,
+    key, before,
     h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
 
   function draw() {
@@ -38,7 +40,17 @@ export function scatterPanel(explorer, dots) {
     }
   }
 
+  /** Say whose front is behind. */
+  function drawBefore() {
+    const { before: run } = explorer;
+    before.hidden = !run;
+    if (!run || before.firstChild) return;
+    const shown = h("input", { type: "checkbox", checked: chosen.behind, onchange: ({ currentTarget }) => explorer.change({ behind: currentTarget.checked }, "all") });
+    fill(before, h("label", {}, shown, h("span", { class: "ring", "aria-hidden": "true" }), ` Behind it: the front of run ${run.run}`), h("a", { href: link(["compare"], { jobs: `${run.run},${explorer.job.id}` }) }, "Compare them"));
+  }
+
   function legend() {
+    drawBefore();
     if (!chosen.colour) {
       fill(key);
       return;

@@ -3,6 +3,7 @@
 import { fill, first as firstOf, focused, h } from "../lib/dom.js";
 import { grouped, inShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
+import { namesOf } from "./marked.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -44,7 +45,7 @@ export function designTable(explorer) {
     const columns = chosen.columns.filter((key) => data.has(key));
     const held = focused(place)?.dataset.act;
     fill(head, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "hidden" }, "Selected")), h("th", { scope: "col" }, "design"), columns.map(heading)));
-    const names = explorer.names();
+    const names = namesOf(explorer);
     fill(body, [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)));
     if (!found.length) fill(body, h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")));
     /** @param {string} sign @param {string} label @param {number} to @param {boolean} disabled */

@@ -4,7 +4,7 @@ import { outcome } from "../jobs/outcome.js";
 import { badge, ENDED } from "../jobs/states.js";
 import { ago, duration } from "../jobs/times.js";
 import { get, isAbort, Problem, statusOf } from "../lib/api.js";
-import { go, read } from "../lib/address.js";
+import { go, link, read } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
 
@@ -66,7 +66,7 @@ export async function show(place, { parts, signal }) {
     const { summary } = job;
     const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
-      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", ago(job.finished ?? job.started ?? job.submitted))),
+      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", ago(job.finished ?? job.started ?? job.submitted), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
       h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now))), downloads(job, { designs: Boolean(summary?.designs), signal })));
   }
 

@@ -1,0 +1,177 @@
+"""Limits of a job on which designs of its front rest, and the job with wider ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+from ...model.errors import InputError
+from ...objectives.tables.varying_column import varying_column
+from ..runs.result import Result
+from .columns import DIMENSIONS, find_column
+from .requirements import requirements_of
+from .stored_designs import stored_design
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
+
+_REST = 1e-6
+"""Share of a range, or of a bound, within which a design rests on it: searches end there to about 1e-9."""
+_WIDER = 0.25  # of a range
+_FURTHER = 0.1  # of a bound
+_LONGEST_NAME = 80  # of a job
+Side = Literal["lower", "upper"]
+_WORDS: dict[Side, str] = {"lower": "at least", "upper": "at most"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """A limit that a job sets, in its unit. of: its place in the job, such as "variables.rod".
+
+    designs: numbers of those of the front that rest on it, from 1. wider: a wider value to try; None where the job says
+    the limit in a way that another number cannot take the place of. size: what the distance from it is a share of.
+    """
+
+    of: str
+    side: Side
+    column: str
+    title: str
+    unit: str
+    value: float
+    wider: float | None
+    size: float
+    designs: tuple[int, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """The limit in words, such as "rod at most 400 mm"."""
+        return f"{self.title} {_WORDS[self.side]} {_said(self.value, self.unit)}"
+
+
+def binding_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
+    """Return the limits on which designs of a front rest, those with most designs first. tables: of the job.
+
+    Values that the job fixes, or requires exactly, are no limits: every design rests on them.
+    """
+    variants = range(max(1, len(problem.variants)))
+    limits = {variant: _limits(problem.part(variant), tables) for variant in variants}
+    own = (
+        (result.exact.variants if result.exact is not None else ()) if problem.variants else (0,) * len(result.designs)
+    )
+    found: dict[tuple[str, Side], tuple[Limit, list[int]]] = {}
+    for number, row in enumerate(result.designs, 1):
+        variant = own[number - 1] if own else stored_design(problem, result, number).variant
+        for limit in limits[variant]:
+            value = row.get(limit.column)
+            if isinstance(value, float) and abs(value - limit.value) <= _REST * limit.size:
+                found.setdefault((limit.of, limit.side), (limit, []))[1].append(number)
+    resting = [replace(limit, designs=tuple(numbers)) for limit, numbers in found.values()]
+    return sorted(resting, key=lambda limit: -len(limit.designs))
+
+
+def widened(problem: Problem, tables: Mapping[str, Any], wanted: Sequence[tuple[str, Side, float]]) -> dict[str, Any]:
+    """Return the tables of a job with other limits, each given by its place, its side and a value in its unit.
+
+    Raises `InputError` for a limit that the job does not have, or that another number cannot take the place of.
+    """
+    known = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits(part, tables)}
+    job = deepcopy(dict(tables))
+    said = []
+    for of, side, value in wanted:
+        limit = known.get((of, side))
+        if limit is None or limit.wider is None:
+            places = ", ".join(f"{place} ({end})" for (place, end), one in known.items() if one.wider is not None)
+            raise InputError(f"a limit of the job is changed by its place; got {of!r} ({side}); choose from {places}")
+        further = value < limit.value if side == "lower" else value > limit.value
+        if not (further and math.isfinite(value)):
+            way = "below" if side == "lower" else "above"
+            raise InputError(f"a wider limit is {way} {limit.value:g} {limit.unit}; got {value:g}; give another one")
+        text: str | float = f"{value:.12g} {limit.unit}" if limit.unit else value
+        table, _, path = of.partition(".")
+        if table == "variables":
+            holder, key = _place(job[table], path)
+            holder[key] = [text, holder[key][1]] if side == "lower" else [holder[key][0], text]
+        else:
+            job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
+        said.append(f"{limit.title} {_WORDS[side]} {_said(value, limit.unit)}")
+    name = f"{tables['name']}, {', '.join(said)}"
+    job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
+    return job
+
+
+def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
+    """Return every limit of a problem without choices."""
+    found = []
+    for of, column, title, unit, low, high in _ranges(part):
+        if low == high:
+            continue
+        holder, key = _place(tables.get("variables", {}), of)
+        given = holder.get(key)
+        about: dict[str, Any] = {
+            "of": f"variables.{of}",
+            "column": column,
+            "title": title,
+            "unit": unit,
+            "size": high - low,
+        }
+        for side, value in _sides(low, high):
+            step = _WIDER * (high - low)
+            if side == "lower" and value > 0.0:
+                step = min(step, _WIDER * value)  # a length stays one
+            wider = _round(value - step if side == "lower" else value + step, step)
+            changed = wider if isinstance(given, list | tuple) and len(given) == 2 else None
+            found.append(Limit(side=side, value=value, wider=changed, **about))
+    for item in requirements_of(part):
+        if item.lower is not None and item.lower == item.upper:
+            continue
+        stated = isinstance(tables.get("constraints", {}).get(item.quantity, {}), Mapping)
+        named: dict[str, Any] = {"column": item.column, "title": item.title, "unit": item.unit}
+        for side, bound in _sides(item.lower, item.upper):
+            step = _FURTHER * abs(bound)
+            changed = _round(bound - step if side == "lower" else bound + step, step) if stated and step else None
+            found.append(
+                Limit(
+                    of=f"constraints.{item.quantity}",
+                    side=side,
+                    value=bound,
+                    wider=changed,
+                    size=max(abs(bound), 1e-300),
+                    **named,
+                )
+            )
+    return found
+
+
+def _ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
+    """Return what varies: its place in [variables], column, title, unit, and both ends in that unit."""
+    found = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
+    for item in part.mechanism.varying:
+        key, face = varying_column(item)
+        found.append((item.name, key, find_column(key, [key]).title, face.symbol, item, face.factor))
+    return [(of, *words, factor * ends.lower, factor * ends.upper) for of, *words, ends, factor in found]
+
+
+def _sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
+    both: tuple[tuple[Side, float | None], ...] = (("lower", lower), ("upper", upper))
+    return [(side, bound) for side, bound in both if bound is not None]
+
+
+def _place(table: Any, path: str) -> tuple[Any, str]:
+    """Return the table that holds what is at a path, and its key there: a path may be one key in quotes."""
+    while path not in table and "." in path:
+        step, _, rest = path.partition(".")
+        table, path = table.get(step, {}), rest
+    return table, path
+
+
+def _round(value: float, step: float) -> float:
+    """Return a value rounded to half of the first digit of a step."""
+    digit = 0.5 * 10.0 ** math.floor(math.log10(step))
+    return float(f"{digit * round(value / digit):.12g}")
+
+
+def _said(value: float, unit: str) -> str:
+    return f"{value:.6g} {unit}".rstrip()

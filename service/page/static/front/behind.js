@@ -1,0 +1,36 @@
+/** The front of the run that this one is a changed copy of: it stays behind the new one. */
+
+import { get, isAbort } from "../lib/api.js";
+import { FrontData } from "./data.js";
+
+const MOST = 1500; // designs of it that are drawn, evenly spread
+
+/**
+ * Return {run, points(x, y)}, the designs of the run before in two columns, for those of them that have been asked for by
+ * need(keys); null where the run has none of a front, or is gone.
+ * @param {number} run @param {AbortSignal} signal
+ */
+export async function behind(run, signal) {
+  /** @type {FrontData} */
+  let data;
+  try {
+    data = new FrontData(run, await get(`jobs/${run}/front`, {}, signal), signal);
+  } catch (problem) {
+    if (isAbort(problem)) throw problem;
+    return null;
+  }
+  if (!data.count) return null;
+  const step = Math.max(1, Math.ceil(data.count / MOST));
+  return {
+    run,
+    name: data.front.name,
+    count: data.count,
+    /** @param {string[]} keys */
+    need: (keys) => data.need(keys),
+    /** Return the designs as rows of two columns; none where the run does not have both. @param {string} x @param {string} y @returns {Api.Row[]} */
+    rows(x, y) {
+      if (![x, y].every((key) => data.has(key))) return [];
+      return Array.from({ length: Math.floor((data.count - 1) / step) + 1 }, (_, n) => ({ [x]: data.cell(x, n * step), [y]: data.cell(y, n * step) }));
+    },
+  };
+}

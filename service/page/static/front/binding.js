@@ -1,0 +1,105 @@
+/** Limits of the job on which designs of the front rest; a wider one runs again, by one click. */
+
+import { get, isAbort, post, sentenceOf } from "../lib/api.js";
+import { go } from "../lib/address.js";
+import { fill, h } from "../lib/dom.js";
+import { fromShown, inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { read } from "../lib/typed.js";
+
+/** @import { Explorer } from "./explorer.js" */
+
+const FEW = 4; // limits that are shown at once
+const WORDS = { lower: "at least", upper: "at most" };
+const REST = 1e-6; // of a limit: designs rest on it
+
+/** Return {place, draw(what)} for the limits of an explorer. @param {Explorer} explorer */
+export function bindingPanel(explorer) {
+  const { job, data } = explorer;
+  const list = h("div", { class: "limits" });
+  const wrong = h("p", { class: "bad", role: "alert", hidden: true });
+  const place = h("section", { class: "panel binding", "aria-labelledby": "binding-title", hidden: true },
+    h("h2", { id: "binding-title" }, "Your limits bind"),
+    h("p", { class: "quiet hint" }, "Designs that rest on a limit would go on if it let them. A wider one is tried by a run of its own; the front of this one stays behind the new one."), list, wrong);
+  /** @type {Api.Limit[]} */
+  let limits = [];
+
+  async function ask() {
+    try {
+      limits = (await get(`jobs/${job.id}/binding`, {}, explorer.signal)).limits;
+      show();
+    } catch (problem) {
+      if (!isAbort(problem)) refuse(sentenceOf(problem));
+    }
+  }
+
+  /** @param {string} sentence */
+  function refuse(sentence) {
+    place.hidden = false;
+    wrong.hidden = sentence === "";
+    wrong.textContent = sentence && `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`;
+  }
+
+  function show() {
+    place.hidden = limits.length === 0;
+    const [shown, rest] = [limits.slice(0, FEW), limits.slice(FEW)];
+    fill(list, shown.map(line), rest.length > 0 && h("details", {}, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "limit" : "limits"}`), h("div", { class: "limits" }, rest.map(line))));
+  }
+
+  /** @param {Api.Limit} limit */
+  function line(limit) {
+    const { title, side, value, unit, wider, column, designs } = limit;
+    const id = `wider-${limit.of}-${side}`;
+    const count = designs.length;
+    const words = `${count} of ${data.count} designs ${count === 1 ? "rests" : "rest"} on ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
+    const those = data.knows(column) && h("button", { type: "button", class: "linked", "aria-label": `Show the designs that rest on ${title} ${WORDS[side]} ${withUnit(value, unit)}`, onclick: () => {
+      const near = REST * Math.abs(value);
+      explorer.limit(column, side === "upper" ? { low: value - near, high: null } : { low: null, high: value + near });
+    } }, "show them");
+    const bar = h("span", {});
+    bar.style.width = `${(100 * count) / data.count}%`;
+    const share = h("span", { class: "rest-share", "aria-hidden": "true" }, bar);
+    if (wider === null) return h("div", { class: "limit" }, share, h("p", {}, words, ". ", those), h("p", { class: "quiet" }, "Change it in the job."));
+    const input = h("input", { id, type: "text", inputmode: "decimal", class: "number", autocomplete: "off", value: String(Number(inShown(wider, unit).toPrecision(6))), "aria-describedby": `${id}-unit` });
+    const button = h("button", {}, "Widen and run again");
+    return h("form", { class: "limit", novalidate: true, "data-limit": `${limit.of}.${side}`, onsubmit: (event) => { event.preventDefault(); widen(limit, input, button); } },
+      share, h("p", {}, words, ". ", those),
+      h("div", { class: "row" }, h("label", { for: id }, h("span", { class: "hidden" }, `${title} `), WORDS[side]), input, h("span", { class: "quiet", id: `${id}-unit` }, unitOf(unit)), button));
+  }
+
+  /** @param {Api.Limit} limit @param {HTMLInputElement} input @param {HTMLButtonElement} button */
+  async function widen(limit, input, button) {
+    const unit = unitOf(limit.unit);
+    const typed = read(input.value, { unit, factors: limit.unit === "mm" ? { mm: 1, in: 25.4 } : {} });
+    const value = typed.number !== undefined && typed.unit === unit ? fromShown(Number(typed.number), limit.unit) : NaN;
+    if (!Number.isFinite(value)) {
+      input.setAttribute("aria-invalid", "true");
+      refuse(typed.wrong?.replace(/\.$/, "") ?? `${limit.title} ${WORDS[limit.side]} needs a number${unit && ` in ${unit}`}`);
+      input.focus();
+      return;
+    }
+    input.removeAttribute("aria-invalid");
+    refuse("");
+    button.disabled = true;
+    try {
+      const { id } = await post(`jobs/${job.id}/widened`, { limits: [{ of: limit.of, side: limit.side, value }] }, { signal: explorer.signal });
+      go(["jobs", id]);
+    } catch (problem) {
+      if (isAbort(problem)) return;
+      refuse(sentenceOf(problem));
+      input.focus();
+    } finally {
+      button.disabled = false;
+    }
+  }
+
+  let drawn = "";
+  /** @param {string} what */
+  function draw(what) {
+    if (what !== "all" || drawn === unitOf("mm")) return;
+    const early = drawn === "";
+    drawn = unitOf("mm");
+    if (early) ask();
+    else show();
+  }
+  return { place, draw };
+}

@@ -1,0 +1,14 @@
+"""The job that a job is a changed copy of; jobs of earlier releases have none."""
+
+from __future__ import annotations
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0004"
+down_revision = "0003"
+
+
+def upgrade() -> None:
+    """Add the column."""
+    op.add_column("jobs", sa.Column("origin", sa.BigInteger().with_variant(sa.Integer, "sqlite")))
