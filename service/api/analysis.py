@@ -15,7 +15,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ..designs.columns import find_column
+from ..designs.columns import all_columns
 from ..designs.cycle_table import LEAST, MOST, cycle_table
 from ..designs.holding import held
 from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
@@ -25,7 +25,7 @@ from ..runs.result import Row, finite
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
-from .fronts import Cells, ColumnModel, OfDesign, column_model
+from .fronts import Cells, ColumnModel, OfDesign, column_models
 from .job_requests import given_problem
 from .models import UnitsAsked, Whole
 from .problems import problem_responses
@@ -249,11 +249,10 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
     changed = variation_of(stored, found.result, found.minimised)
     cycle = cycle_model(stored.mechanism, stored.linkage, asked.angles) if asked.angles else None
-    keys = list(changed.row)
     return WhatIfModel(
         job=found.job.id,
         number=design,
-        columns=[column_model(find_column(key, keys)) for key in keys],
+        columns=column_models(all_columns(changed.row)),
         design=finite(changed.row),
         broken=changed.broken,
         outside=changed.outside,

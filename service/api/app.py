@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -11,29 +12,7 @@ from starlette.middleware import Middleware
 
 from ..page import router as page
 from ..store import Store
-from . import (
-    analysis,
-    binding,
-    design_files,
-    events,
-    exports,
-    figures,
-    front_points,
-    fronts,
-    health,
-    inverse,
-    job_files,
-    jobs,
-    kept,
-    measured,
-    preview,
-    quantities,
-    rounded,
-    schema,
-    swing,
-    topics,
-    wish,
-)
+from . import exports
 from .events import Feed
 from .health import Metrics, Timed
 from .job_requests import EXAMPLE, JSON, TOML, Submission
@@ -46,28 +25,10 @@ from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (
-    jobs,
-    job_files,
-    preview,
-    events,
-    front_points,
-    fronts,
-    binding,
-    analysis,
-    inverse,
-    measured,
-    rounded,
-    swing,
-    topics,
-    wish,
-    kept,
-    design_files,
-    figures,
-    exports,
-    schema,
-    quantities,
-    health,
+    *("jobs", "job_files", "preview", "events", "fronts", "binding", "analysis", "design_questions", "topics"),
+    *("wish", "kept", "design_files", "figures", "exports", "quantities", "health"),
 )
+"""Modules of the endpoints, in the order of their description."""
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
 _SCHEMAS = "#/components/schemas/"
 _EXAMPLE_TOML = """\
@@ -114,7 +75,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.metrics = Metrics(store)
     answer_problems(app)
     for part in _PARTS:
-        app.include_router(part.router, prefix=PREFIX, responses=_COMMON)
+        app.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
     app.include_router(page.router)
     found = app.openapi
 

@@ -16,7 +16,7 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
-from .exports import of_type
+from .exports import SEALED, download, of_type
 from .figures import require_figures
 from .models import UnitsAsked
 from .problems import problem_responses
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
 
-_SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
-"""Opened by itself a file is a document of this origin: it runs nothing and fetches nothing."""
 _PLAYING = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; sandbox allow-scripts"
 """The motion runs its own script, but as a document of no origin."""
 
@@ -41,11 +39,10 @@ CrankAngle = Annotated[
 
 
 def _file(
-    shown: ShownDesign, ending: str, media_type: str, content: bytes, *, policy: str = _SEALED, label: str = ""
+    shown: ShownDesign, ending: str, media_type: str, content: bytes, *, policy: str = SEALED, label: str = ""
 ) -> Response:
     name = f"{slug(shown.found.result.name)}-{shown.found.job.id}-{shown.stem}{label}.{ending}"
-    headers = {"Content-Disposition": f'attachment; filename="{name}"', "Content-Security-Policy": policy}
-    return Response(content, media_type=media_type, headers=headers)
+    return download(content, media_type, name, policy=policy)
 
 
 def _drawing(shown: ShownDesign, crank_angle_deg: float) -> Drawing:

@@ -20,6 +20,10 @@ from .stored_fronts import FrontDep, StoredFront
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 
+SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
+"""Policy of what is a document of this origin when it is opened by itself: it runs nothing and fetches nothing."""
+
+
 def formats() -> list[str]:
     """Return the endings of the files that a front is given as here: Parquet where pyarrow is installed."""
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
@@ -31,9 +35,16 @@ def of_type(media_type: str, *refusals: int) -> dict[str, Any]:
     return {"response_class": Response, "responses": responses}
 
 
+def download(content: str | bytes, media_type: str, name: str, *, policy: str = "") -> Response:
+    """Return a file that a browser saves under a name. policy: of a browser that opens it nevertheless (CSP)."""
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    if policy:
+        headers["Content-Security-Policy"] = policy
+    return Response(content, media_type=media_type, headers=headers)
+
+
 def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
-    name = f"{slug(found.result.name)}-{found.job.id}.{ending}"
-    return Response(content, media_type=media_type, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+    return download(content, media_type, f"{slug(found.result.name)}-{found.job.id}.{ending}")
 
 
 @router.get("/jobs/{number}/export.csv", **of_type("text/csv"))

@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
-from .exports import of_type
+from .exports import SEALED, of_type
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import SettingsDep
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 Kind = Literal["png", "svg"]
 _MEDIA = {"png": "image/png", "svg": "image/svg+xml"}
-SEALED_FIGURE = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
-"""Policy of an SVG: opened by itself it is a document, and runs nothing and fetches nothing."""
 _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
@@ -108,7 +106,7 @@ def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, u
         file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
         headers = {"Content-Disposition": f'inline; filename="{file}"'}
     if kind == "svg":
-        headers["Content-Security-Policy"] = SEALED_FIGURE
+        headers["Content-Security-Policy"] = SEALED
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gzip
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
@@ -11,12 +11,13 @@ from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import to_json
 
 from ...model.errors import InputError, NotFound
-from ..designs.columns import Column, find_column, find_columns
+from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
+from ..page.router import tagged
 from ..runs.result import finite
 from .models import JobNumber, Whole
-from .problems import problem_responses
+from .problems import problem_responses, tagged_json
 from .settings import StoreDep
 from .stored_fronts import DesignNumber, FrontDep, StoredFront
 
@@ -145,7 +146,7 @@ def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
     record = finite(store.record(number))
     keys = record.pop("columns")
-    return FrontModel(**record, job=number, columns=[column_model(find_column(key, keys)) for key in keys])
+    return FrontModel(**record, job=number, columns=column_models(all_columns(keys)))
 
 
 @router.get("/jobs/{number}/pick")
@@ -206,7 +207,7 @@ def list_designs(
         count=len(result.designs),
         chosen=len(chosen),
         offset=offset,
-        columns=[column_model(column) for column in shown],
+        columns=column_models(shown),
         numbers=[row + 1 for row in page],
         designs=[{column.key: finite(result.designs[row][column.key]) for column in shown} for row in page],
     )
@@ -216,19 +217,11 @@ def list_designs(
 def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
-    return DesignModel(
-        job=found.job.id, number=design, columns=[column_model(column) for column in found.columns], design=finite(row)
-    )
+    columns = column_models(found.columns)
+    return DesignModel(job=found.job.id, number=design, columns=columns, design=finite(row))
 
 
-@router.get(
-    "/jobs/{number}/columns",
-    response_class=Response,
-    responses={
-        200: {"model": ColumnsModel, "description": "The values of every design"},
-        304: {"description": "They are those of the ETag in If-None-Match"},
-    },
-)
+@router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))
 def list_columns(
     request: Request,
     found: FrontDep,
@@ -237,21 +230,17 @@ def list_columns(
 ) -> Response:
     """Give columns of the designs, each as one array of all designs: a front of 10,000 in one small answer."""
     shown = _asked(found, columns)
+
+    def answer() -> Response:
+        compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
+        name, kind = ",".join(column.key for column in shown), "gzip" if compressed else "plain"
+        content = found.made(name, kind, lambda: ([name], _content(found, shown, compressed=compressed)))
+        headers = {"Content-Encoding": "gzip"} if content.startswith(b"\x1f\x8b") else None
+        return Response(content, media_type="application/json", headers=headers)
+
     # What a job found does not change, unless it goes on: then it ends at another time.
-    headers = {
-        "ETag": f'"{found.job.id}-{found.job.finished}"',
-        "Cache-Control": "private, no-cache",
-        "Vary": "Accept-Encoding",
-    }
-    if found.job.finished is not None and request.headers.get("if-none-match") == headers["ETag"]:
-        return Response(status_code=304, headers=headers)
-    compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
-    name = ",".join(column.key for column in shown)
-    kind = "gzip" if compressed else "plain"
-    content = found.made(name, kind, lambda: ([name], _content(found, shown, compressed=compressed)))
-    if content.startswith(b"\x1f\x8b"):
-        headers["Content-Encoding"] = "gzip"
-    return Response(content, media_type="application/json", headers=headers)
+    tag = None if found.job.finished is None else f'"{found.job.id}-{found.job.finished}"'
+    return tagged(request, tag, answer, {"Vary": "Accept-Encoding"})
 
 
 def _asked(found: StoredFront, columns: str | None) -> Sequence[Column]:
@@ -266,19 +255,22 @@ def _content(found: StoredFront, shown: Sequence[Column], *, compressed: bool) -
     answer = {
         "job": found.job.id,
         "count": len(rows),
-        "columns": [column_model(column).model_dump() for column in shown],
+        "columns": [column.model_dump() for column in column_models(shown)],
         "values": {column.key: [row[column.key] for row in rows] for column in shown},
     }
     content = to_json(answer, inf_nan_mode="null")
     return gzip.compress(content, compresslevel=1, mtime=0) if compressed and len(content) > _WORTHWHILE else content
 
 
-def column_model(column: Column) -> ColumnModel:
-    """Return a column as JSON has it."""
-    return ColumnModel(
-        key=column.key,
-        title=column.title,
-        unit=column.unit,
-        group="" if column.group is None else column.group.value,
-        group_place=0 if column.group is None else list(type(column.group)).index(column.group),
-    )
+def column_models(columns: Iterable[Column]) -> list[ColumnModel]:
+    """Return columns as JSON has them."""
+    return [
+        ColumnModel(
+            key=column.key,
+            title=column.title,
+            unit=column.unit,
+            group="" if column.group is None else column.group.value,
+            group_place=0 if column.group is None else list(type(column.group)).index(column.group),
+        )
+        for column in columns
+    ]

@@ -8,17 +8,20 @@ from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi import Path as InPath
+from pydantic import Field
+from pydantic_core import to_json
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
 from ..jobs.submission import job_json
+from ..page.router import tag_of, tagged
 from ..store import Job, State, Store
-from .exports import formats
+from .exports import download, formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
-from .models import LARGEST, JobFiles, JobNumber, JobPage, JobShown, Whole
-from .problems import problem_responses
+from .models import LARGEST, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown, Whole
+from .problems import problem_responses, tagged_json
 from .settings import Settings, SettingsDep, StoreDep
 from .throttle import READING, limit_submissions
 
@@ -32,6 +35,8 @@ SUBMITTED: dict[str, Any] = {
 _FILE: dict[int | str, dict[str, Any]] = {
     200: {"description": "The file", "content": {"*/*": {"schema": {"type": "string", "format": "binary"}}}}
 }
+_MOST_FRONTS = 100
+_Number = Annotated[Whole, Field(ge=1, le=LARGEST)]
 FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
 
 
@@ -59,6 +64,20 @@ def list_jobs(
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
     page = found[:limit]
     return {"jobs": [_row(job) for job in page], "next": page[-1].id if len(found) > limit else None}
+
+
+@router.get("/front-points", **tagged_json(FrontPointsList, "The points"))
+def list_front_points(
+    request: Request,
+    store: StoreDep,
+    job: Annotated[
+        list[_Number], Query(min_length=1, max_length=_MOST_FRONTS, description="the numbers of jobs", examples=[[1]])
+    ],
+) -> Response:
+    """Return some designs of the fronts of jobs, of those that run of their fronts so far."""
+    found = store.jobs(numbers=set(job), limit=_MOST_FRONTS)
+    content = to_json({"fronts": [{"job": one.id, **one.front_points()} for one in reversed(found)]})
+    return tagged(request, f'"{tag_of(content)}"', lambda: Response(content, media_type="application/json"))
 
 
 @router.get("/jobs/{number}", response_model=JobShown)
@@ -123,9 +142,7 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     """Return a file of a job, as it was given or made."""
     file = store.artefact(number, name)
     # Saved, never shown: what a job brought along must not run in a browser that has the token.
-    saved_as = re.sub(r"[^A-Za-z0-9._-]", "_", file.name)
-    headers = {"Content-Disposition": f'attachment; filename="{saved_as}"'}
-    return Response(file.content, media_type=file.media_type, headers=headers)
+    return download(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
 
 
 def _row(job: Job) -> dict[str, Any]:

@@ -10,15 +10,15 @@ from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
 from ...optimise.problem.problem import choice_field
-from ..designs.columns import find_column
+from ..designs.columns import all_columns
 from ..designs.requirements import ranges_of
 from ..designs.shown_units import rows_in
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..designs.variation import Variation, variation_of, with_lengths
 from ..runs.result import csv_text, finite
 from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
-from .exports import of_type
-from .fronts import Cells, ColumnModel, column_model
+from .exports import download, of_type
+from .fronts import Cells, ColumnModel, column_models
 from .models import UnitsAsked, Whole
 from .problems import problem_responses
 from .settings import StoreDep
@@ -91,8 +91,8 @@ class KeptModel(BaseModel):
 def list_kept(found: FrontDep, store: StoreDep) -> KeptModel:
     """Give the kept designs of a job with all their numbers."""
     designs = [_shown(found, one) for one in kept_of(store, found.job.id)]
-    keys = list(designs[0].cells) if designs else []
-    return KeptModel(job=found.job.id, columns=[column_model(find_column(key, keys)) for key in keys], designs=designs)
+    columns = column_models(all_columns(designs[0].cells if designs else ()))
+    return KeptModel(job=found.job.id, columns=columns, designs=designs)
 
 
 @router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
@@ -126,9 +126,7 @@ def export_kept(found: FrontDep, store: StoreDep, units: UnitsAsked = "metric") 
         head = {"number": one.number, "name": one.name, "star": one.star, "decided": one.decided}
         head |= {"note": one.note, "reason": one.reason, "outside_the_job": ", ".join(varied.outside)}
         rows.append(head | rows_in([varied.row], units)[0])
-    headers = {"Content-Disposition": f'attachment; filename="{found.result.run}-kept.csv"'}
-    content = csv_text(rows, spreadsheet=True)
-    return Response(content, media_type="text/csv; charset=utf-8", headers=headers)
+    return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{found.result.run}-kept.csv")
 
 
 def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:

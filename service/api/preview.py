@@ -10,8 +10,8 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...model.linkage.linkage import Linkage
+from .job_files import Understood, understood
 from .job_requests import given_problem
-from .schema import Understood, understood
 from .settings import SettingsDep
 from .throttle import READING
 

@@ -58,6 +58,12 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
 
 
+def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
+    """Return the options of an endpoint that gives JSON with an ETag, or says that it is the same as before."""
+    same = {"description": "They are those of the ETag in If-None-Match"}
+    return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
+
+
 def answer_problems(app: FastAPI) -> None:
     """Have an application answer every exception that is expected with a problem document."""
     app.add_exception_handler(SlidercrankError, _refused)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
@@ -136,27 +138,19 @@ def _quantity(of: Quantity) -> QuantityModel:
     )
 
 
+_LENGTH: dict[str, Any] = {
+    **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
+    **{"better": "", "offered": [], "motion": ""},
+}
+"""Facts that the dimensions have in common."""
+
+
 def _dimension(name: str) -> QuantityModel:
-    title, section, sentence, advice, formula = _DIMENSIONS[name]
-    return QuantityModel(
-        name=name,
-        column=name + LENGTH.metric.suffix,
-        title=title,
-        unit=LENGTH.metric.symbol,
-        kind=LENGTH.plain,
-        group=Group.DIMENSIONS.value,
-        sentence=sentence,
-        advice=advice,
-        formula=formula,
-        section=section,
-        source=MECHANICS,
-        picture=name,
-        better="",
-        offered=[],
-        motion="",
-    )
+    told: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
+    return QuantityModel(name=name, picture=name, column=name + LENGTH.metric.suffix, **told, **_LENGTH)
 
 
+_TOLD = ("title", "section", "sentence", "advice", "formula")
 _DIMENSIONS = {
     "crank": (
         "crank",
@@ -181,4 +175,4 @@ _DIMENSIONS = {
         "e; the slider line is y = e",
     ),
 }
-"""Title, section of the theory, sentence, advice and formula."""
+"""What is told of each dimension: `_TOLD`."""

@@ -18,7 +18,7 @@ from pydantic import Field
 
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
-from ..designs.columns import Column, find_column
+from ..designs.columns import Column, all_columns
 from ..designs.picking_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.variation import Variation, variation_of, with_lengths
@@ -62,8 +62,7 @@ class StoredFront:
     @cached_property
     def columns(self) -> list[Column]:
         """The columns of the designs; none without designs."""
-        keys = list(self.result.designs[0]) if self.result.designs else []
-        return [find_column(key, keys) for key in keys]
+        return all_columns(self.result.designs[0] if self.result.designs else ())
 
     @cached_property
     def front(self) -> ParetoFront:

@@ -13,8 +13,8 @@ from ..runs.result import finite
 from ..topics.discovery import TOPICS
 from ..topics.topic import TopicOfDesign
 from .analysis import LONGEST_TOPICS, over
-from .exports import of_type
-from .figures import SEALED_FIGURE, require_figures
+from .exports import SEALED, of_type
+from .figures import require_figures
 from .fronts import OfDesign
 from .problems import problem_responses
 from .stored_fronts import ShownDep, ShownDesign
@@ -80,7 +80,7 @@ def list_topics() -> TopicList:
 )
 def draw_topic_svg(shown: ShownDep, topic: Name) -> Response:
     """Draw the figure of one topic of a design, as found or with other lengths."""
-    headers = {"Content-Security-Policy": SEALED_FIGURE}
+    headers = {"Content-Security-Policy": SEALED}
     return Response(_drawn(shown, topic, "svg"), media_type="image/svg+xml", headers=headers)
 
 

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from ..designs.columns import find_column
+from ..designs.columns import all_columns
 from ..designs.wishing import wished_record
-from .fronts import Cells, ColumnModel, column_model
+from .fronts import Cells, ColumnModel, column_models
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import FrontDep
@@ -78,6 +78,5 @@ def make_wish(found: FrontDep, given: WishesGiven, units: UnitsAsked = "metric")
     with SIMULATING.turn():
         answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
         record: dict[str, Any] = wished_record(answer, units)
-    keys = list(record["design"] or ())
-    columns = [column_model(find_column(key, keys)) for key in keys]
+    columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=found.job.id, columns=columns, **record)

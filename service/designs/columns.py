@@ -149,6 +149,11 @@ def _face(key: str) -> Face | None:
     return next((face for face in _FACES if key.endswith(face.suffix)), None)
 
 
+def all_columns(keys: Collection[str]) -> list[Column]:
+    """Return the columns of a table by its keys."""
+    return [find_column(key, keys) for key in keys]
+
+
 def find_columns(text: str, keys: Collection[str]) -> list[Column]:
     """Return the columns of a list of names, separated by commas."""
     return [find_column(name, keys) for name in re.split(r"[,\s]+", text.strip(" ,"))]

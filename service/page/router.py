@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from fastapi import APIRouter, Request, Response
 
@@ -62,17 +64,32 @@ def _answer(request: Request, name: str) -> Response:
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
     # Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once.
-    headers = {
-        "Content-Security-Policy": POLICY,
-        "Cache-Control": "no-cache",
-        "ETag": file.tag,
-        "Vary": "Accept-Encoding",
-    }
-    if request.headers.get("if-none-match") == file.tag:
-        return Response(status_code=304, headers=headers)
-    if "gzip" in request.headers.get("accept-encoding", ""):
-        return Response(file.compressed, media_type=file.media_type, headers={**headers, "Content-Encoding": "gzip"})
-    return Response(file.content, media_type=file.media_type, headers=headers)
+    headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+
+    def answer() -> Response:
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            return Response(file.compressed, media_type=file.media_type, headers={"Content-Encoding": "gzip"})
+        return Response(file.content, media_type=file.media_type)
+
+    return tagged(request, file.tag, answer, headers)
+
+
+def tagged(
+    request: Request, tag: str | None, answer: Callable[[], Response], headers: Mapping[str, str] = MappingProxyType({})
+) -> Response:
+    """Return an answer with an ETag, or 304 to who has it already; made only where it is sent.
+
+    tag: another one for another content; None for what no browser shall keep.
+    """
+    same = tag is not None and request.headers.get("if-none-match") == tag
+    response = Response(status_code=304) if same else answer()
+    response.headers.update({"Cache-Control": "private, no-cache", **headers, **({"ETag": tag} if tag else {})})
+    return response
+
+
+def tag_of(content: bytes) -> str:
+    """Return a tag of a content, in letters and digits."""
+    return hashlib.sha256(content).hexdigest()[:16]
 
 
 def files_of(folder: Path) -> dict[str, _File]:
@@ -88,8 +105,7 @@ def files_of(folder: Path) -> dict[str, _File]:
 
 
 def _file(kind: str, content: bytes) -> _File:
-    tag = f'W/"{hashlib.sha256(content).hexdigest()[:16]}"'
-    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), tag)
+    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), f'W/"{tag_of(content)}"')
 
 
 _FILES = files_of(Path(__file__).parent / "static")

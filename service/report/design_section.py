@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from ...model.errors import InputError
 from ...objectives.kinds import unit_text
-from ..designs.columns import Column, find_column, key_in
+from ..designs.columns import Column, all_columns, key_in
 from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.linkage_drawing import linkage_drawing
@@ -37,7 +37,7 @@ def design_section(subject: Subject) -> Section:
 
 def numbers_section(subject: Subject) -> Section:
     """Return every column of the design, rounded and as it is stored."""
-    columns = _columns(subject)
+    columns = all_columns(subject.row)
     lengths = _toleranced(subject)
     rows = tuple(
         (
@@ -86,13 +86,8 @@ def _at_bound(subject: Subject, column: Column) -> bool:
     return column.key.startswith("slack_") and _active(subject, column)
 
 
-def _columns(subject: Subject) -> list[Column]:
-    keys = list(subject.row)
-    return [find_column(key, keys) for key in keys]
-
-
 def _rules(subject: Subject) -> list[Block]:
-    slacks = [column for column in _columns(subject) if column.key.startswith("slack_")]
+    slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
     rows, met = [], True

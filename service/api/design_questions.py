@@ -1,0 +1,254 @@
+"""Questions about a design of a front: its crank angles, a swing, measured curves, rounded neighbours.
+
+Each answer is what the command of the same name prints with --json.
+"""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from ...model.swing.summary import summarise
+from ...model.swing.swing import Swing
+from ...model.swing.words import Driver, Law
+from ...objectives.kinds import ACCELERATION, ANGLE, LENGTH, SPEED, TIME
+from ..designs.inverse import SliderMotion, inverse_record
+from ..designs.measured_file import read_measured
+from ..designs.rounding import rounded_record, rounded_record_in, steps_of
+from ..designs.shown_units import record_in
+from ..runs.result import finite
+from ..swing.record import swing_record
+from ..topics.measured import MEASURED
+from .fronts import OfDesign
+from .models import UnitsAsked
+from .problems import problem_responses
+from .stored_fronts import DesignNumber, FrontDep
+from .throttle import SIMULATING
+
+router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
+
+_FARTHEST = LENGTH.metric.factor * LENGTH.limit
+
+
+def _either_way(limit: float, description: str, example: float) -> Any:
+    """Return a parameter of an address, a number with a sign."""
+    return Query(ge=-limit, le=limit, allow_inf_nan=False, description=description, examples=[example])
+
+
+Position = Annotated[float, _either_way(_FARTHEST, "from the crank pivot, along +x", 240.0)]
+Velocity = Annotated[float | None, _either_way(SPEED.limit, "along +x; gives the crank speed", -1.0)]
+Acceleration = Annotated[
+    float | None,
+    _either_way(ACCELERATION.limit, "along +x; gives the crank acceleration, and needs the velocity", 3.0),
+]
+CrankAngle = Annotated[float, _either_way(ANGLE.metric.factor * ANGLE.limit, "counter-clockwise from +x", 30.0)]
+
+_INVERSE = {
+    "crank_mm": 60.0,
+    "rod_mm": 230.0,
+    "offset_mm": 70.0,
+    "branch": "open",
+    "slider_position_mm": 240.0,
+    "slider_velocity_m_s": -1.0,
+    "slider_acceleration_m_s2": None,
+    "solutions": [
+        {
+            "crank_angle_deg": angle,
+            "stroke": stroke,
+            "crank_speed_rpm": speed,
+            "crank_acceleration_rad_s2": None,
+        }
+        for angle, stroke, speed in ((312.364, "outward", -141.481), (80.156, "inward", 162.872))
+    ],
+    "note": "",
+}
+
+
+class InverseModel(OfDesign):
+    """Crank angles of a design of a front that put the slider at a position.
+
+    inverse: what `slidercrank inverse --json` prints. Crank speed and acceleration are null where they are not asked
+    for, and at a dead centre; the note then gives the reason.
+    """
+
+    inverse: dict[str, Any] = Field(examples=[_INVERSE])
+
+
+@router.get("/inverse")
+def find_crank_angles(
+    found: FrontDep,
+    design: DesignNumber,
+    slider_position_mm: Position,
+    slider_velocity_m_s: Velocity = None,
+    slider_acceleration_m_s2: Acceleration = None,
+    units: UnitsAsked = "metric",
+) -> InverseModel:
+    """Find every crank angle that puts the slider of a design at a position, with crank speed and acceleration."""
+    motion = SliderMotion(slider_position_mm / LENGTH.metric.factor, slider_velocity_m_s, slider_acceleration_m_s2)
+    record = finite(inverse_record(found.design(design).linkage, motion))
+    return InverseModel(job=found.job.id, number=design, inverse=record_in(record, units))
+
+
+_MEASURED = {
+    "rows": 3,
+    "rows_without_crank_angle": 0,
+    "crank_angle_from_time": False,
+    "left_out": [],
+    "curves": {
+        "slider_position": {
+            "title": "slider position",
+            "samples": 3,
+            "rms_mm": 1.58,
+            "mean_mm": 1.5,
+            "largest_mm": 2.1,
+            "largest_at_crank_angle_deg": 120.0,
+            "best_crank_angle_shift_deg": -0.4,
+            "best_shift_mm": -1.5,
+            "left_rms_mm": 0.05,
+        }
+    },
+}
+
+
+class MeasuredCurves(BaseModel, extra="forbid", strict=True):
+    """Measured curves as a CSV file has them. Its first line names the columns, each with its unit."""
+
+    csv: str = Field(
+        description="text of the file: crank_angle_deg, or time_s at the job's speed, and curves such as torque_Nm",
+        examples=["crank_angle_deg,slider_position_mm\n0,190.5\n120,120.2\n240,131\n"],
+    )
+
+
+class MeasuredModel(OfDesign):
+    """Deviation of measured curves from those of a design of a front.
+
+    measured: of `slidercrank analyse --measured --json`; measured minus computed, by curve. What is to be added to the
+    crank angles and values for the best fit is told, not applied.
+    """
+
+    measured: dict[str, Any] = Field(examples=[_MEASURED])
+
+
+@router.post("/measured")
+def compare_measured(
+    found: FrontDep, design: DesignNumber, given: MeasuredCurves, units: UnitsAsked = "metric"
+) -> MeasuredModel:
+    """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
+    stored = found.design(design)
+    with SIMULATING.turn():
+        samples = read_measured(given.csv, stored.mechanism, stored.linkage)
+        topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
+        record = finite(topic.numbers(lambda: False))
+    return MeasuredModel(job=found.job.id, number=design, measured=record_in(record, units))
+
+
+_MOST_STEPS, _MOST_TOLD = 50, 100
+_ROUNDED = {
+    "met": True,
+    "message": "311 of 2016 rounded designs within 16 steps keep every requirement",
+    "steps": {"crank_mm": 0.5},
+    "within_steps": 16,
+    "judged": 2016,
+    "kept": 311,
+    "given": {"crank_mm": 73.33253, "peak_torque_Nm": 12.1},
+    "designs": [
+        {
+            "crank_mm": 73.5,
+            "peak_torque_Nm": 12.12,
+            "change_peak_torque_Nm": 0.02,
+            "change_peak_torque_percent": 0.17,
+            "loss_percent": 0.2,
+            "tightest": "transmission_angle",
+            "missed": [],
+        }
+    ],
+    "notes": ["rod has no step and stays as it is"],
+}
+
+
+class Steps(BaseModel, extra="forbid", strict=True):
+    """Steps that a design is to be rounded to."""
+
+    to: Annotated[list[Annotated[str, Field(max_length=200)]], Field(min_length=1, max_length=_MOST_STEPS)] = Field(
+        description='step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one number: "rod=1 mm"',
+        examples=[["0.5 mm", "rod=1 mm"]],
+    )
+    count: int = Field(5, ge=1, le=_MOST_TOLD, description="designs to tell at most", examples=[5])
+
+
+class RoundedModel(OfDesign):
+    """Rounded neighbours of a design of a front. rounded: what `slidercrank round --json` prints."""
+
+    rounded: dict[str, Any] = Field(examples=[_ROUNDED])
+
+
+@router.post("/rounded")
+def round_design(found: FrontDep, design: DesignNumber, given: Steps, units: UnitsAsked = "metric") -> RoundedModel:
+    """Find the best designs of round numbers near a design that keep every requirement, and what each costs.
+
+    Where none keeps all, the nearest are told with what they miss; `met` is then false.
+    """
+    found.row(design)
+    steps = steps_of(given.to, found.front.part(design - 1), key="to")
+    with SIMULATING.turn():
+        rounded = found.front.rounded(design - 1, steps, count=given.count)
+        record = finite(rounded_record_in(units, rounded_record(rounded), rounded))
+    return RoundedModel(job=found.job.id, number=design, rounded=record)
+
+
+_SWING = {
+    "crank_mm": 60.0,
+    "rod_mm": 230.0,
+    "offset_mm": 70.0,
+    "driver": "slider",
+    "swing_angle_deg": 60.0,
+    "travel_mm": 62.1,
+    "peak_drive_N": 240.5,
+    "peak_drive_at_crank_angle_deg": 90.0,
+    "energy_forth_J": 12.5,
+    "notes": [],
+}
+
+Duration = Annotated[
+    float | None,
+    Query(gt=0.0, le=TIME.limit, allow_inf_nan=False, description="of one way; for a law other than slow"),
+]
+ActuatorTolerance = Annotated[
+    float,
+    Query(ge=0.0, le=_FARTHEST, allow_inf_nan=False, description="of the driven slider"),
+]
+
+
+class SwingModel(OfDesign):
+    """A swing of a design of a front. swing: what `slidercrank swing --json` prints."""
+
+    swing: dict[str, Any] = Field(examples=[_SWING])
+
+
+@router.get("/swing")
+def analyse_swing(
+    found: FrontDep,
+    design: DesignNumber,
+    start_deg: CrankAngle,
+    end_deg: CrankAngle,
+    driver: Driver = "crank",
+    law: Law = "slow",
+    duration_s: Duration = None,
+    actuator_tolerance_mm: ActuatorTolerance = 0.0,
+    units: UnitsAsked = "metric",
+) -> SwingModel:
+    """Analyse a swing of a design between two crank angles, forth and back, driven at either end."""
+    asked = Swing(
+        start=radians(start_deg),
+        end=radians(end_deg),
+        driver=driver,
+        law=law,
+        duration=duration_s,
+        actuator_tolerance=actuator_tolerance_mm / LENGTH.metric.factor,
+    )
+    stored = found.design(design)
+    record = finite(swing_record(stored.mechanism, summarise(stored.mechanism, stored.linkage, asked)))
+    return SwingModel(job=found.job.id, number=design, swing=record_in(record, units))
