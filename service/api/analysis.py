@@ -175,7 +175,7 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
     topics = chosen_topics(show, job=True)
     stored = found.design(design)
-    row = numbers_of(stored.mechanism, stored.values[:3], stored.part.own)
+    row = numbers_of(stored.mechanism, stored.linkage, stored.part.own)
     record, notes = _with_topics(row, stored.mechanism, stored.linkage, topics, lenient=ALL in show)
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
 
@@ -201,9 +201,8 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))
-    lengths = Dimensions(asked.crank, asked.rod, asked.offset).lengths(problem)
-    row = numbers_of(mechanism, lengths, problem.own)
-    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
+    linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem)
+    row = numbers_of(mechanism, linkage, problem.own)
     record, notes = _with_topics(row, mechanism, linkage, topics, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
 

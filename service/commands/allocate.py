@@ -8,10 +8,10 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
+from ..designs.selection import value_of
 from ..designs.turning import require_turning
-from ..runs.result import json_text
-from ..text.options import Dimensions, Figures, JobFile, Json, value_option
-from ..text.screen import console, give, say, write_figure
+from ..text.options import Dimensions, Figures, JobFile, Json
+from ..text.screen import answer, say, write_figure
 
 
 def allocate(
@@ -42,15 +42,12 @@ def allocate(
             'add for example [costs] crank = { cost = 8.0, at = "0.05 mm" }'
         )
     linkage = size.linkage(problem)
-    most = value_option("--limit", limit, LENGTH, sign="positive")
+    most = value_of("--limit", limit, LENGTH, sign="positive")
     mechanism = problem.mechanism
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
     numbers = analysis.numbers(found, linkage, problem.costs, mechanism)
-    if json:
-        give(json_text(numbers))
-    else:
-        analysis.show(console(), numbers)
+    answer(json, numbers, lambda screen: analysis.show(screen, numbers))
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:

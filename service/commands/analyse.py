@@ -12,8 +12,8 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
+from ..designs.selection import value_of
 from ..designs.shown_units import record_in, row_in
-from ..designs.turning import require_turning
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -22,12 +22,13 @@ from ..text.options import (
     Dimensions,
     Figures,
     File,
+    JobOrRun,
     Json,
     Length,
     Runs,
+    Speed,
     Units,
     speed_option,
-    value_option,
 )
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules
@@ -35,7 +36,7 @@ from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
-from .job_or_run import design_of_run, problem_of_job
+from .job_or_run import machine_of
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -47,15 +48,11 @@ _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
 
 def analyse(
     job: Annotated[
-        Path | None,
-        typer.Argument(metavar="JOB"),
-        "A job file: what masses, loads, tolerances and speed come from. A run with --design.",
+        JobOrRun, "A job file: what masses, loads, tolerances and speed come from. A run with --design."
     ] = None,
     *,
     size: Dimensions,
-    speed: Annotated[
-        str | None, typer.Option(metavar="SPEED"), 'Crank speed, such as "300 rpm"; negative is clockwise.'
-    ] = None,
+    speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None,
     put: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE"),
@@ -85,27 +82,14 @@ def analyse(
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
     repeated. With --design, a run stands in place of JOB, and the design has its dimensions.
     """
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
-
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
-    problem: Problem | None
-    if design is None:
-        problem = problem_of_job(job, put or [])
-        require_turning(problem, "analyse")
-        mechanism = Mechanism() if problem is None else problem.mechanism.nominal
-        lengths = size.lengths(problem)
-    else:
-        stored = design_of_run("analyse", job, design, runs, {**vars(size), "set": put or None})
-        require_turning(stored.part, "analyse")
-        problem, mechanism, lengths = stored.part, stored.mechanism, list(stored.values[:3])
+    mechanism, linkage, problem = machine_of("analyse", job, size, design, runs, put=put or (), turning=True)
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
     own = () if problem is None else problem.own
-    row = numbers_of(mechanism, lengths, own)
+    row = numbers_of(mechanism, linkage, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
-    linkage = Linkage(lengths[0], lengths[1], lengths[2], mechanism.branch)
     if cycle is not None:
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     with Interruption() as interruption:
@@ -160,9 +144,9 @@ def _topic_options(
             raise InputError(f"{option} is for --show {topic}, which is not asked for; add it or leave {option} out")
     options: dict[str, dict[str, Any]] = {}
     if at is not None:
-        options["polygons"] = {"crank_angle": value_option("--at", at, ANGLE)}
+        options["polygons"] = {"crank_angle": value_of("--at", at, ANGLE)}
     if limit is not None:
-        options["tolerances"] = {"limit": value_option("--limit", limit, LENGTH, sign="positive")}
+        options["tolerances"] = {"limit": value_of("--limit", limit, LENGTH, sign="positive")}
     if fluctuation is not None:
         options["flywheel"] = {"fluctuation": fluctuation}
     return options

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import LENGTH, MASS, Kind
+from ...objectives.kinds import LENGTH, MASS
 from ..designs.turning import require_turning
-from ..runs.result import json_text
-from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, value_option
-from ..text.screen import console, give, say, write_figure
+from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, given_value
+from ..text.screen import answer, say, write_figure
 
 if TYPE_CHECKING:
     from ...optimise.sizing.counterweight import RodSpace
@@ -43,10 +43,7 @@ def balance(
     problem = load_job(job)
     require_turning(problem, "balance")
     linkage, mechanism = size.linkage(problem), problem.mechanism
-
-    def given(option: str, text: str | None, kind: Kind) -> float | None:
-        return None if text is None else value_option(option, text, kind, sign="positive")
-
+    given = partial(given_value, sign="positive")
     at = given("--radius", radius, LENGTH) or mechanism.counterweight.radius or float(linkage.crank)
     heaviest = given("--mass", mass, MASS)
     words: Any = measure.strip().casefold()
@@ -60,10 +57,7 @@ def balance(
         rod=_space(given("--rod-radius", rod_radius, LENGTH), given("--rod-mass", rod_mass, MASS)),
     )
     numbers = analysis.numbers(found, words)
-    if json:
-        give(json_text(numbers))
-    else:
-        analysis.show(console(), numbers)
+    answer(json, numbers, lambda screen: analysis.show(screen, numbers))
     if not found.converged:
         say(f"not proven to be the best: {found.objective:.6g} N, and no less than {found.bound:.6g} N is possible")
     if figures is not None:

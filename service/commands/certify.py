@@ -14,13 +14,14 @@ from ..runs.result import Result, Row, csv_text, json_text, rows_of
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import job_file
 from ..text.options import Json, Run, Runs
-from ..text.screen import console, give, waiting
+from ..text.screen import answer, waiting
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
 from .run_choice import run_of
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+    from rich.console import Console
 
     from ...optimise.certificate.certificate import Certificate, Step
     from ...optimise.problem.problem import Problem
@@ -69,10 +70,7 @@ def certify(
     record = _record(found, problem, str(folder), rows)
     write_file(folder / "certificate.json", json_text(record))
     write_file(folder / "certificate.csv", csv_text(rows))
-    if json:
-        give(json_text(record))
-    else:
-        _show(found, result, folder)
+    answer(json, record, lambda screen: _show(screen, found, result, folder))
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if found.proven else NOT_PROVEN)
@@ -84,10 +82,8 @@ def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json:
     proven = prove_infeasible(problem, seconds=seconds)
     text = "no design of the ranges meets all requirements"
     message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
-    if json:
-        give(json_text({"run": result.run, "name": result.name, "infeasible": proven, "message": message}))
-    else:
-        console().print(f"{result.name}: {message}", soft_wrap=True)
+    record = {"run": result.run, "name": result.name, "infeasible": proven, "message": message}
+    answer(json, record, lambda screen: screen.print(f"{result.name}: {message}", soft_wrap=True))
     raise typer.Exit(0 if proven else NOT_PROVEN)
 
 
@@ -119,8 +115,7 @@ def _by_size(values: NDArray[np.float64] | None) -> dict[str, Any] | None:
     return None if values is None else dict(zip(_SIZES, (1e3 * values).tolist(), strict=True))
 
 
-def _show(found: Certificate, result: Result, folder: Path) -> None:
-    screen = console()
+def _show(screen: Console, found: Certificate, result: Result, folder: Path) -> None:
     screen.print(f"{result.name}: {found.message}", style="bold", soft_wrap=True)
     lines = [f"Design box: {found.boxes:,} boxes in {found.seconds:.1f} s"]
     if found.open:

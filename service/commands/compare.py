@@ -15,11 +15,11 @@ from ...model.errors import InputError, SlidercrankError
 from ..designs.picking_options import minimised_values
 from ..designs.shown_units import result_in
 from ..jobs.find_run import find_run
-from ..runs.result import Result, json_text, wanted_record
+from ..runs.result import Result, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import job_file, read_run
 from ..text.options import Figures, Json, Runs, Units
-from ..text.screen import console, give, say
+from ..text.screen import answer, say
 from ..text.tables import print_table, table
 
 if TYPE_CHECKING:
@@ -68,10 +68,7 @@ def compare(
     found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)
     compared = [replace(item, result=result_in(item.result, units)) for item in compared]
     pictures = [] if figures is None else [_draw(compared, figures)]
-    if json:
-        give(json_text(_record(compared, found)))
-    else:
-        _show(console(), compared, found)
+    answer(json, _record(compared, found), lambda screen: _show(screen, compared, found))
     for picture in pictures:
         say(f"{picture}")
 

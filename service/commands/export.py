@@ -14,7 +14,7 @@ from ..designs.turning import require_turning
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import Angle, File, Run, Runs, Units, value_option
+from ..text.options import Angle, File, Output, Run, Runs, Units, given_value
 from ..text.screen import give, say, waiting
 from .ending import end_without_design
 from .run_choice import Choice, Where, run_of, shown_result
@@ -27,8 +27,8 @@ _FILES = ("--dxf", "--svg", "--motion", "--gif", "--cycle")
 
 def export(
     run: Run,
-    csv: Annotated[str | None, typer.Option(metavar="FILE"), "Write the designs as CSV; - is standard output."] = None,
-    json: Annotated[str | None, typer.Option(metavar="FILE"), "Write all of it as JSON; - is standard output."] = None,
+    csv: Annotated[Output, "Write the designs as CSV; - is standard output."] = None,
+    json: Annotated[Output, "Write all of it as JSON; - is standard output."] = None,
     *,
     choice: Choice,
     dxf: Annotated[File, "Write the linkage of one design at true scale as DXF."] = None,
@@ -68,7 +68,7 @@ def export(
         raise InputError(
             "--sort and --reverse are for --csv and --json, which are not asked for; add one or leave them out"
         )
-    angle = None if at is None else value_option("--at", at, ANGLE)
+    angle = given_value("--at", at, ANGLE)
     for option, file in files.items():
         if str(file) == "-":
             raise InputError(f"{option} writes a file; got -; name one")

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ...objectives.kinds import ACCELERATION, LENGTH, SPEED, System
 from ..designs.columns import key_in, split_unit
+from ..designs.selection import value_of
 from ..designs.shown_units import record_in
-from ..runs.result import json_text
-from ..text.options import DesignOfRun, Dimensions, Json, Runs, Units, value_option
-from ..text.screen import console, give, say
+from ..text.options import DesignOfRun, Dimensions, JobOrRun, Json, Runs, Units, given_value
+from ..text.screen import answer, say
 from ..text.tables import print_table, table
-from .job_or_run import design_of_run, problem_of_job
+from .job_or_run import machine_of
 
 if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
+    from rich.console import Console
 
 _GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
 
@@ -28,11 +27,7 @@ def inverse(
         typer.Option("--slider-position", metavar="LENGTH"),
         'Slider position from the crank pivot along the slider line, such as "240 mm".',
     ],
-    job: Annotated[
-        Path | None,
-        typer.Argument(metavar="JOB"),
-        "A job file: what the branch and fixed dimensions come from. A run with --design.",
-    ] = None,
+    job: Annotated[JobOrRun, "A job file: what the branch and fixed dimensions come from. A run with --design."] = None,
     *,
     size: Dimensions,
     velocity: Annotated[
@@ -60,33 +55,17 @@ def inverse(
     """
     from ..designs.inverse import SliderMotion, inverse_record
 
-    linkage = _linkage(job, size, design, runs)
+    linkage = machine_of("inverse", job, size, design, runs).linkage
     motion = SliderMotion(
-        value_option("--slider-position", position, LENGTH),
-        None if velocity is None else value_option("--slider-velocity", velocity, SPEED),
-        None if acceleration is None else value_option("--slider-acceleration", acceleration, ACCELERATION),
+        value_of("--slider-position", position, LENGTH),
+        given_value("--slider-velocity", velocity, SPEED),
+        given_value("--slider-acceleration", acceleration, ACCELERATION),
     )
     record = inverse_record(linkage, motion)
-    if json:
-        give(json_text(record_in(record, units)))
-    else:
-        _show(record, units)
+    answer(json, record_in(record, units), lambda screen: _show(screen, record, units))
 
 
-def _linkage(job: Path | None, size: Dimensions, design: int | None, runs: Path | None) -> Linkage:
-    from ...model.linkage.linkage import Linkage
-
-    if design is not None:
-        return design_of_run("inverse", job, design, runs, vars(size)).linkage
-    problem = problem_of_job(job)
-    if problem is not None:
-        return size.linkage(problem)
-    crank, rod, offset = size.lengths(None)
-    return Linkage(crank, rod, offset)
-
-
-def _show(record: dict[str, Any], units: System) -> None:
-    screen = console()
+def _show(screen: Console, record: dict[str, Any], units: System) -> None:
     given = []
     for key in _GIVEN:
         name, factor = key_in(key, units)

@@ -4,15 +4,58 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
 from ..designs.selection import plain_number
+from ..designs.turning import require_turning
 from .run_choice import run_of
 
 if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
     from ...optimise.problem.problem import Problem
     from ..designs.stored_designs import StoredDesign
+    from ..text.options import Dimensions
+
+
+class Machine(NamedTuple):
+    """A machine and a linkage that the command line names, and the problem of the job or run; None without one."""
+
+    mechanism: Mechanism
+    linkage: Linkage
+    problem: Problem | None
+
+
+def machine_of(
+    command: str,
+    job: Path | None,
+    size: Dimensions,
+    design: int | None,
+    runs: Path | None,
+    *,
+    put: Sequence[str] = (),
+    turning: bool = False,
+) -> Machine:
+    """Return what a command is about: dimensions, of a job if there is one, or a design of a run in its place.
+
+    command: that asks, for messages. put: numbers of the job at other values. turning: whether a crank that swings is
+    refused. Without a job nothing has mass.
+    """
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+
+    if design is not None:
+        stored = design_of_run(command, job, design, runs, {**vars(size), "set": put or None})
+        if turning:
+            require_turning(stored.part, command)
+        return Machine(stored.mechanism, stored.linkage, stored.part)
+    problem = problem_of_job(job, put)
+    if turning:
+        require_turning(problem, command)
+    mechanism = Mechanism() if problem is None else problem.mechanism.nominal
+    crank, rod, offset = size.lengths(problem)
+    return Machine(mechanism, Linkage(crank, rod, offset, mechanism.branch), problem)
 
 
 def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:

@@ -15,13 +15,15 @@ from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
 from ..runs.result import Result, Row, json_text, rows_of
 from ..runs.stored_runs import problem_of
-from ..text.options import Json, Run, Runs, Units
-from ..text.screen import console, give, waiting
+from ..text.options import Json, Number, Run, Runs, Units
+from ..text.screen import answer, give, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
 from .run_choice import run_of
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ...optimise.front.front import ParetoFront
     from ...optimise.problem.problem import Problem
     from ...optimise.problem.requirements import Constraint
@@ -32,7 +34,7 @@ Ends = tuple[float | None, float | None]
 
 def like(
     run: Run,
-    number: Annotated[int, typer.Argument(metavar="NO"), "The design: its number in `slidercrank front RUN`."],
+    number: Number,
     where: Annotated[
         list[str],
         typer.Option(metavar="CONDITION"),
@@ -66,10 +68,9 @@ def like(
         end_without_design(found.message)
     apart = float(distance(found.values, given, span)[0])
     after = rows_of(found.columns)[0]
-    if json:
-        give(json_text(record_in(_record(str(folder), number, found, apart, row, after), units)))
-    else:
-        _show(result_in(result, units), number, where, found, apart, row_in(row, units), row_in(after, units))
+    record = record_in(_record(str(folder), number, found, apart, row, after), units)
+    rows = row_in(row, units), row_in(after, units)
+    answer(json, record, lambda screen: _show(screen, result_in(result, units), number, where, apart, *rows))
 
 
 def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
@@ -146,9 +147,8 @@ def _moved(before: Row, after: Row, key: str) -> float | None:
 
 
 def _show(
-    result: Result, number: int, where: list[str], found: ParetoFront, apart: float, before: Row, after: Row
+    screen: Console, result: Result, number: int, where: list[str], apart: float, before: Row, after: Row
 ) -> None:
-    screen = console()
     screen.print(
         f"{result.name}: like design {number}, with {' and '.join(text.strip() for text in where)}",
         style="bold",

@@ -13,7 +13,7 @@ from ..designs.picking_options import require_alone
 from ..designs.rounding import rounded_record, rounded_record_in, steps_of
 from ..runs.result import json_text
 from ..runs.stored_runs import problem_of
-from ..text.options import Json, Run, Runs, Units
+from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import console, give, say, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 def round(
     run: Run,
-    number: Annotated[int, typer.Argument(metavar="NO"), "The design: its number in `slidercrank front RUN`."],
+    number: Number,
     to: Annotated[
         list[str],
         typer.Option(metavar="STEP"),

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ..designs.turning import require_turning
-from ..runs.result import json_text
 from ..text.options import Dimensions, JobFile, Json
-from ..text.screen import console, give, waiting
+from ..text.screen import answer, waiting
 from ..text.tables import table
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ...model.linkage.linkage import Linkage
     from ...optimise.sizing.sections import Sections
 
@@ -38,10 +39,7 @@ def sections(
     linkage = size.linkage(problem)
     with waiting("sizing the sections"):
         found = size_sections(problem.mechanism.nominal, linkage, material, limits)
-    if json:
-        give(json_text(_numbers(found, linkage)))
-    else:
-        _show(found)
+    answer(json, _numbers(found, linkage), lambda screen: _show(screen, found))
 
 
 def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
@@ -58,8 +56,7 @@ def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
     }
 
 
-def _show(found: Sections) -> None:
-    screen = console()
+def _show(screen: Console, found: Sections) -> None:
     for name, bar in (("crank", found.crank), ("rod", found.rod)):
         screen.print(f"{name}: width {1e3 * bar.width:.4g} mm, depth {1e3 * bar.depth:.4g} mm", soft_wrap=True)
     settled = "" if found.settled else "; sections and dynamics have not settled"

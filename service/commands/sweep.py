@@ -11,16 +11,16 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, System, shown_in
 from ..designs.columns import key_in
+from ..designs.selection import value_of
 from ..designs.shown_units import rows_in
 from ..designs.turning import require_turning
-from ..runs.result import json_text, rows_of
-from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option, value_option
-from ..text.screen import console, give, say, write_figure
-from ..text.tables import print_table
-from ..text.tables import table as empty_table
+from ..runs.result import Row, rows_of
+from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option
+from ..text.screen import answer, say, write_figure
+from ..text.tables import print_table, table
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from rich.console import Console
 
     from ...objectives.quantity import Quantity
     from ...objectives.tables.sweep import Axis
@@ -64,35 +64,32 @@ def sweep(
     lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in vars(size).items()]
     names = [name.strip() for text in of for name in text.split(",") if name.strip()]
     quantities = [problem.quantity(name) for name in names]
-    table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
-    if json:
-        give(json_text(rows_in(rows_of(table.to_dict("list")), units)))
-    else:
-        _show(table, axes, quantities, units)
+    swept_table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
+    rows = rows_in(rows_of(swept_table.to_dict("list")), units)
+    answer(json, rows, lambda screen: _show(screen, rows, axes, quantities, units))
     if figures is not None:
         from ..topics.sweep.figure import sweep_figure
 
         file = figures / "sweep.png"
-        write_figure(file, lambda: sweep_figure(table, axes, quantities, title=problem.name, system=units))
+        write_figure(file, lambda: sweep_figure(swept_table, axes, quantities, title=problem.name, system=units))
 
 
-def _show(table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], units: System) -> None:
+def _show(
+    screen: Console, rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity], units: System
+) -> None:
     """Write one row for each point; then how many have no value, and why the first has none."""
     units_of = ["rpm" if axis.parameter == "speed" else "mm" for axis in axes]
     heads = [f">{axis.parameter}, {shown_in(unit, units)[0]}" for axis, unit in zip(axes, units_of, strict=True)]
     heads += [f">{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", ") for item in quantities]
-    shown = empty_table(*heads)
-    stuck = 0
+    shown = table(*heads)
     keys = [f"{axis.parameter}_{unit}" for axis, unit in zip(axes, units_of, strict=True)]
-    for row in rows_in(rows_of(table.to_dict("list")), units):
+    for row in rows:
         at = [row[key_in(key, units)[0]] for key in keys]
         values = [row[key_in(item.field, units)[0]] for item in quantities]
-        stuck += bool(row["reason"])
         shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
-    print_table(console(), shown)
-    if stuck:
-        first = next(reason for reason in table["reason"] if reason)
-        say(f"{stuck} of {len(table)} without a value; the first: {first}")
+    print_table(screen, shown)
+    if stuck := [row["reason"] for row in rows if row["reason"]]:
+        say(f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}")
 
 
 def parse_axis(text: str) -> Axis:
@@ -121,9 +118,9 @@ def parse_axis(text: str) -> Axis:
     option = f"--over {name}"
     if match is None:
         assert several is not None
-        values = [value_option(option, part, kind, sign=sign) for part in several[2].split(",")]
+        values = [value_of(option, part, kind, sign=sign) for part in several[2].split(",")]
         return Axis(name, tuple(values))  # type: ignore[arg-type]
-    first, last = (value_option(option, part, kind, sign=sign) for part in match.group(2, 3))
+    first, last = (value_of(option, part, kind, sign=sign) for part in match.group(2, 3))
     count = int(match[4])
     if not 2 <= count <= MOST_VALUES or first == last:
         raise InputError(

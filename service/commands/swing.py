@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -12,22 +11,19 @@ from ...model.errors import InputError
 from ...model.swing.words import Driver, Law
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ..designs.shown_units import record_in, rows_in
-from ..runs.result import csv_text, json_text
+from ..runs.result import csv_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import DesignOfRun, Dimensions, File, Json, Length, Runs, Units, drawable, value_option
-from ..text.screen import console, give, say, waiting
-from .job_or_run import design_of_run, problem_of_job
+from ..text.options import DesignOfRun, Dimensions, File, JobOrRun, Json, Length, Runs, Units, drawable, given_value
+from ..text.screen import answer, say, waiting
+from .job_or_run import machine_of
 
 if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
     from ...model.swing.swing import Swing
 
 
 def swing(
     job: Annotated[
-        Path | None,
-        typer.Argument(metavar="JOB"),
+        JobOrRun,
         "A job file: what masses, loads, friction and tolerances come from, and the swing of its [motion]. A run with "
         "--design.",
     ] = None,
@@ -71,23 +67,19 @@ def swing(
     for option, file, ending in (("--curves", curves, ".csv"), ("--figure", figure, ".png")):
         if file is not None and (file.is_dir() or file.suffix.lower() != ending):
             raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
-    mechanism, linkage, motion = _machine(job, size, design, runs)
+    mechanism, linkage, problem = machine_of("swing", job, size, design, runs)
+    motion = None if problem is None else problem.motion
     given: dict[str, Any] = {
-        "start": None if start is None else value_option("--from", start, ANGLE),
-        "end": None if end is None else value_option("--to", end, ANGLE),
+        "start": given_value("--from", start, ANGLE),
+        "end": given_value("--to", end, ANGLE),
         "driver": driver,
         "law": law,
-        "duration": None if duration is None else value_option("--duration", duration, TIME, sign="positive"),
-        "actuator_tolerance": None
-        if actuator_tolerance is None
-        else value_option("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
+        "duration": given_value("--duration", duration, TIME, sign="positive"),
+        "actuator_tolerance": given_value("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
     }
     asked = _swing({name: value for name, value in given.items() if value is not None}, motion)
     record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
-    if json:
-        give(json_text(record))
-    else:
-        show_swing(console(), record)
+    answer(json, record, lambda screen: show_swing(screen, record))
     if curves is not None:
         write_file(curves, csv_text(rows_in(swing_rows(mechanism, linkage, asked), units)))
         say(f"{curves}: the curves of both ways")
@@ -117,20 +109,3 @@ def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
                 f"a swing runs from one crank angle to another; got no {option}; give one, or a JOB with [motion]"
             )
     return Swing(**given)
-
-
-def _machine(
-    job: Path | None, size: Dimensions, design: int | None, runs: Path | None
-) -> tuple[Mechanism, Linkage, Swing | None]:
-    """Return the machine, the linkage, and the swing of its job, None without one."""
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
-
-    if design is not None:
-        stored = design_of_run("swing", job, design, runs, vars(size))
-        return stored.mechanism, stored.linkage, stored.part.motion
-    problem = problem_of_job(job)
-    if problem is not None:
-        return problem.mechanism.nominal, size.linkage(problem), problem.motion
-    crank, rod, offset = size.lengths(None)
-    return Mechanism(), Linkage(crank, rod, offset), None

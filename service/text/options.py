@@ -32,9 +32,14 @@ def drawable(folder: Path | None) -> Path | None:
 JobFile = Annotated[Path, typer.Argument(metavar="JOB")]
 File = Annotated[Path | None, typer.Option(metavar="FILE")]
 Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=drawable)]
+Output = Annotated[str | None, typer.Option(metavar="FILE")]
+"""A file, or - for standard output."""
 Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]
 Length = Annotated[str | None, typer.Option(metavar="LENGTH")]
 Mass = Annotated[str | None, typer.Option(metavar="MASS")]
+Speed = Annotated[str | None, typer.Option(metavar="SPEED")]
+Number = Annotated[int, typer.Argument(metavar="NO", help="The design: its number in `slidercrank front RUN`.")]
+JobOrRun = Annotated[Path | None, typer.Argument(metavar="JOB")]
 Units = Annotated[
     System,
     typer.Option(
@@ -123,7 +128,7 @@ class Dimensions:
 def length_option(name: str, text: str | None, problem: Problem | None) -> float:
     """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
     if text is not None:
-        return value_option(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
+        return value_of(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
     bounds = getattr(problem, name, None)
     if bounds is not None and bounds.fixed:
         return float(bounds.lower)
@@ -134,9 +139,9 @@ def length_option(name: str, text: str | None, problem: Problem | None) -> float
 
 def speed_option(text: str) -> float:
     """Return the crank speed, rad/s."""
-    return value_option("--speed", text, ANGULAR_SPEED)
+    return value_of("--speed", text, ANGULAR_SPEED)
 
 
-def value_option(option: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
-    """Return an option's value in SI. Raises `InputError` that names the option; a unit is always needed."""
-    return value_of(option, text, kind, sign=sign)
+def given_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
+    """Return an option's value as `value_of` does, None without one."""
+    return None if text is None else value_of(option, text, kind, sign=sign)

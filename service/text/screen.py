@@ -7,8 +7,9 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
+from ..runs.result import json_text
 from ..runs.run_folder import disk
 
 if TYPE_CHECKING:
@@ -47,6 +48,14 @@ def give(text: str) -> None:
     """Write a result to standard output as it is."""
     sys.stdout.write(text)
     sys.stdout.flush()
+
+
+def answer(json: bool, record: Any, show: Callable[[Console], None]) -> None:
+    """Write a result as JSON, or for people."""
+    if json:
+        give(json_text(record))
+    else:
+        show(console())
 
 
 def waiting(text: str) -> contextlib.AbstractContextManager[Status | None]:

@@ -31,14 +31,12 @@ class Analysis:
         return self.row | self.found
 
 
-def numbers_of(mechanism: Mechanism, values: Sequence[float], own: Sequence[Quantity] = ()) -> Row:
-    """Return every quantity of one design. values: crank, rod, offset, m. own: quantities of its job."""
-    import numpy as np
-
+def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> Row:
+    """Return every quantity of one design. own: quantities of its job."""
     from ...objectives.tables.analysis import columns_of
+    from .peaks import row_of
 
-    columns = columns_of(mechanism, np.array([values]), own=own)
-    return rows_of(columns)[0]
+    return rows_of(columns_of(mechanism, row_of(linkage), own=own))[0]
 
 
 def analysis_of(
