@@ -9,15 +9,13 @@ import typer
 
 from ...objectives.kinds import System
 from ..designs.columns import find_column, key_in, split_unit
-from ..designs.picking_options import require_alone
 from ..designs.rounding import rounded_record, rounded_record_in, steps_of
 from ..runs.result import json_text
-from ..runs.stored_runs import problem_of
 from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import console, give, say, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
-from .run_choice import run_of
+from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from ...optimise.front.rounded import Rounded
@@ -43,12 +41,7 @@ def round(
     requirement, least loss first: the greatest over the objectives, each by its range over the front. Where none keeps
     all, the nearest are told, with what they miss; the exit code is then 3.
     """
-    from ..designs.stored_designs import front_of
-
-    folder, result = run_of(run, runs)
-    require_alone(number, result, run, others=False)
-    problem = problem_of(folder, result)
-    front = front_of(problem, result)
+    folder, result, front = front_of_run(run, runs, number)
     steps = steps_of(to, front.part(number - 1), key="--to")
     with waiting("rounding"):
         found = front.rounded(number - 1, steps, count=count)

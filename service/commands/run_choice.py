@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,13 +19,29 @@ from ..jobs.find_run import find_run
 from ..runs.result import Result
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
+from ..text.options import DesignOfRun
 from .ending import end_without_design
+
+if TYPE_CHECKING:
+    from ...optimise.front.front import ParetoFront
 
 
 def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
     """Return the folder and the result of a run. runs: the place of runs as it is given."""
     folder = find_run(name, runs_place(runs))
     return folder, read_run(folder)
+
+
+def front_of_run(name: str, runs: Path | None, number: int | None) -> tuple[Path, Result, ParetoFront]:
+    """Return the folder, the result and the front of a run. Raises `InputError` if it has no design of the number."""
+    from ..designs.stored_designs import front_of
+
+    folder, result = run_of(name, runs)
+    if number is not None:
+        require_alone(number, result, name, others=False)
+    if not result.designs:
+        end_without_design(result.message)
+    return folder, result, front_of(problem_of(folder, result), result)
 
 
 def shown_result(result: Result, units: System, folder: Path | None) -> Result:
@@ -50,21 +66,28 @@ Where = Annotated[
 class Choice:
     """Options that name one design of a run."""
 
-    design: Annotated[int | None, typer.Option(metavar="NO"), "The design: its number in `slidercrank front RUN`."] = (
-        None
-    )
-    knee: Annotated[bool, "The design nearest to the ideal, objectives by their range."] = False
+    design: DesignOfRun = None
+    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False
     topsis: Annotated[
-        str | None, typer.Option(metavar="WEIGHTS"), "The design that weights of the objectives choose, as in `front`."
+        str | None,
+        typer.Option(metavar="WEIGHTS"),
+        'Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
     ] = None
     lexicographic: Annotated[
-        str | None, typer.Option(metavar="RANKING"), "The design that ranked objectives choose, as in `front`."
+        str | None,
+        typer.Option(metavar="RANKING"),
+        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
+        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
     ] = None
 
     @property
     def picking(self) -> bool:
         """Whether a design is chosen by its values."""
         return self.knee or self.topsis is not None or self.lexicographic is not None
+
+    def row(self, result: Result, rows: Sequence[int]) -> int | None:
+        """Return which of the rows is chosen by its values, None without such an option, and of no rows."""
+        return picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
 
     def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
         """Return the number of the design that the options name, counted from 1.
@@ -81,8 +104,7 @@ class Choice:
             raise InputError(
                 "a design is named by --design NO, --knee, --topsis or --lexicographic; got none; give one"
             )
-        rows = chosen_rows(result, where or [])
-        row = picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
+        row = self.row(result, chosen_rows(result, where or []))
         if row is None:
             end_without_design(none_meets(result, where or []))
         return row + 1

@@ -12,7 +12,7 @@ from ..text.screen import console, give
 from ..text.tables import ROWS, show_design, show_front
 from .ending import end_without_design
 from .optimise import show_files, show_result
-from .run_choice import run_of, shown_result
+from .run_choice import Choice, run_of, shown_result
 
 
 def front(
@@ -32,19 +32,8 @@ def front(
         str | None, typer.Option(metavar="NAMES"), "Quantities or columns to show, separated by commas."
     ] = None,
     rows: Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."] = ROWS,
-    design: Annotated[int | None, typer.Option(metavar="NO"), "Show one design by its number in the front."] = None,
-    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False,
-    topsis: Annotated[
-        str | None,
-        typer.Option(metavar="WEIGHTS"),
-        'Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
-    ] = None,
-    lexicographic: Annotated[
-        str | None,
-        typer.Option(metavar="RANKING"),
-        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
-        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
-    ] = None,
+    *,
+    choice: Choice,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
@@ -54,7 +43,6 @@ def front(
     --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
     """
     from ..designs.columns import find_columns, key_in
-    from ..designs.picking_options import picked_row, require_alone
     from ..designs.selection import chosen_rows, none_meets, part_of
 
     folder, result = run_of(run, runs)
@@ -64,11 +52,7 @@ def front(
         end_without_design(result.message)
     wanted = find_columns(columns, list(result.designs[0])) if columns else None
     chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
-    if design is None:
-        one = picked_row(result, chosen, knee=knee, topsis=topsis, lexicographic=lexicographic)
-    else:
-        require_alone(design, result, run, others=bool(knee or topsis or lexicographic or where))
-        one = design - 1
+    one = choice.row(result, chosen) if choice.design is None else choice.number(result, run, where) - 1
     if one is not None:
         chosen = [one]
     told = not where and (json or not (sort or reverse or columns or one is not None or rows != ROWS))

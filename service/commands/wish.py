@@ -10,16 +10,14 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import System
 from ..designs.columns import find_column
-from ..designs.picking_options import require_alone
 from ..designs.shown_units import row_in
 from ..designs.wishing import wished_record
 from ..runs.result import json_text, rows_of
-from ..runs.stored_runs import problem_of
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
-from .run_choice import run_of
+from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from ...optimise.questions.wished import Wished
@@ -51,15 +49,9 @@ def wish(
     what may worsen. Nothing is saved.
     """
     from ...optimise.questions.wish import wish as nearest
-    from ..designs.stored_designs import front_of
 
-    folder, result = run_of(run, runs)
+    folder, result, front = front_of_run(run, runs, number)
     wishes = _wishes(at)
-    if number is not None:
-        require_alone(number, result, run, others=False)
-    if not result.designs:
-        end_without_design(result.message)
-    front = front_of(problem_of(folder, result), result)
     with waiting("wishing"):
         answer = nearest(front, wishes, row=None if number is None else number - 1)
     if json:

@@ -13,43 +13,27 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
+from . import style
 from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet
-from .style import (
-    BLUE,
-    FRAME,
-    INK,
-    MUTED,
-    SHADE,
-    SMALL,
-    TEXT,
-    VERMILION,
-    dress,
-    heading,
-    limits,
-    new_figure,
-    place,
-    save,
-    title_panel,
-)
 
 Array = NDArray[np.float64]
 
 GREEN = "#009e73"  # of the same palette
 # Told apart by their dashes where colour is lost.
 _STYLES: dict[int, dict[str, Any]] = {
-    0: {"color": BLUE, "linewidth": 1.6, "zorder": 3},
-    1: {"color": VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2)), "zorder": 3},
+    0: {"color": style.BLUE, "linewidth": 1.6, "zorder": 3},
+    1: {"color": style.VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2)), "zorder": 3},
     2: {"color": GREEN, "linewidth": 1.5, "linestyle": (0, (7, 2, 1.5, 2)), "zorder": 3},
-    3: {"color": INK, "linewidth": 1.4, "linestyle": (0, (1.2, 1.5)), "zorder": 3},
-    4: {"color": MUTED, "linewidth": 1.3, "linestyle": (0, (10, 3)), "zorder": 3},
-    THIN: {"color": BLUE, "linewidth": 1.0, "zorder": 3},
-    DASHED: {"color": INK, "linewidth": 1.1, "linestyle": (0, (4, 2)), "zorder": 3},
-    FAINT: {"color": MUTED, "linewidth": 0.8, "linestyle": "--", "zorder": 2},
-    DOTS: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
-    SAMPLES: {"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.8, "zorder": 2},
+    3: {"color": style.INK, "linewidth": 1.4, "linestyle": (0, (1.2, 1.5)), "zorder": 3},
+    4: {"color": style.MUTED, "linewidth": 1.3, "linestyle": (0, (10, 3)), "zorder": 3},
+    THIN: {"color": style.BLUE, "linewidth": 1.0, "zorder": 3},
+    DASHED: {"color": style.INK, "linewidth": 1.1, "linestyle": (0, (4, 2)), "zorder": 3},
+    FAINT: {"color": style.MUTED, "linewidth": 0.8, "linestyle": "--", "zorder": 2},
+    DOTS: {"color": style.VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
+    SAMPLES: {"color": style.VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.8, "zorder": 2},
 }
 _POINTS: dict[str, Any] = {
-    **{"color": VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4, "clip_on": False},
+    **{"color": style.VERMILION, "linestyle": "none", "marker": "o", "markersize": 5.0, "zorder": 4, "clip_on": False},
     **{"markerfacecolor": "white", "markeredgewidth": 1.4},
 }
 _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
@@ -62,12 +46,12 @@ def draw_sheet(sheet: Sheet) -> Figure:
     rows = math.ceil(len(sheet.panels) / sheet.columns)
     tall = sheet.height - (_GAP if sheet.stacked else _ROOM)
     head = _HEAD + (_GAP - 0.3 if sheet.stacked and sheet.subtitle else 0.0)
-    figure = new_figure(sum(widths), rows * sheet.height + head)
-    heading(figure, sheet.title, sheet.subtitle)
+    figure = style.new_figure(sum(widths), rows * sheet.height + head)
+    style.heading(figure, sheet.title, sheet.subtitle)
     for index, panel in enumerate(sheet.panels):
         row, column = divmod(index, sheet.columns)
         left, foot = sum(widths[:column]) + _LEFT, (rows - 1 - row) * sheet.height + _FOOT
-        axes = place(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
+        axes = style.place(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
         draw_panel(axes, panel, across=not sheet.stacked or row == rows - 1)
     return figure
 
@@ -79,31 +63,32 @@ def figure_of(made: Sheet | Figure) -> Figure:
 
 def save_sheet(made: Sheet | Figure, path: Path) -> None:
     """Write a sheet, or a figure drawn before, as PNG."""
-    save(figure_of(made), path)
+    style.save(figure_of(made), path)
 
 
 def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
     """Draw a panel on axes. across: whether the axis below is told."""
-    dress(axes, across=8)
+    style.dress(axes, across=8)
     for start, end in panel.shaded:
         for shift in (-360.0, 0.0, 360.0) if panel.turns else (0.0,):
-            axes.axvspan(start + shift, end + shift, color=SHADE, linewidth=0, zorder=0)
+            axes.axvspan(start + shift, end + shift, color=style.SHADE, linewidth=0, zorder=0)
     for line in panel.lines:
         axes.plot(line.x, line.y, label=line.label, **(_POINTS if line.points else _STYLES[line.style]))
     if panel.level is not None:
         name, level = panel.level
-        axes.axhline(level, color=MUTED, linewidth=1.1, linestyle=(0, (6, 2, 1, 2)), label=name)
+        axes.axhline(level, color=style.MUTED, linewidth=1.1, linestyle=(0, (6, 2, 1, 2)), label=name)
     _scale(axes, panel)
     _name(axes, panel)
-    title_panel(axes, panel.title, panel.note, VERMILION if any(line.points for line in panel.lines) else MUTED)
+    ink = style.VERMILION if any(line.points for line in panel.lines) else style.MUTED
+    style.title_panel(axes, panel.title, panel.note, ink)
     axes.tick_params(labelbottom=across)
     if across:
-        axes.set_xlabel(panel.across, fontsize=TEXT)
+        axes.set_xlabel(panel.across, fontsize=style.TEXT)
     named = [line.label for line in panel.lines if line.label]
     if len(named) + (panel.level is not None) > 1:
         axes.legend(
             **{"loc": "lower right", "bbox_to_anchor": (1.01, 0.99), "ncols": len(named) + 1, "frameon": False},
-            **{"fontsize": SMALL, "handlelength": 2.6, "columnspacing": 1.2, "borderaxespad": 0.2},
+            **{"fontsize": style.SMALL, "handlelength": 2.6, "columnspacing": 1.2, "borderaxespad": 0.2},
         )
 
 
@@ -123,7 +108,7 @@ def _name(axes: Axes, panel: Panel) -> None:
     drawn = np.concatenate([axes.transData.transform(_dense(line)) for line in panel.lines])
     taken: list[Bbox] = []
     for text, x, y in panel.names:
-        axes.plot(x, y, marker="o", markersize=2.6, color=INK, zorder=5)
+        axes.plot(x, y, marker="o", markersize=2.6, color=style.INK, zorder=5)
         best: tuple[float, Annotation] | None = None
         for place_x, place_y in _PLACES:
             label = axes.annotate(
@@ -133,8 +118,8 @@ def _name(axes: Axes, panel: Panel) -> None:
                 textcoords="offset points",
                 ha="left" if place_x > 0.0 else "right" if place_x < 0.0 else "center",
                 va="bottom" if place_y > 0.0 else "top" if place_y < 0.0 else "center",
-                fontsize=SMALL,
-                color=INK,
+                fontsize=style.SMALL,
+                color=style.INK,
                 zorder=6,
             )
             box = label.get_window_extent()
@@ -167,12 +152,12 @@ def _scale(axes: Axes, panel: Panel) -> None:
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     if low < 0.0 < high:
-        axes.axhline(0.0, color=FRAME, linewidth=0.8, zorder=1)
-    axes.set_ylim(limits(low, high))
+        axes.axhline(0.0, color=style.FRAME, linewidth=0.8, zorder=1)
+    axes.set_ylim(style.limits(low, high))
     ends = np.concatenate([line.x for line in panel.lines])
     left, right = float(ends.min()), float(ends.max())
     if any(line.points for line in panel.lines) and not panel.turns:
-        axes.set_xlim(limits(left, right, 0.03))
+        axes.set_xlim(style.limits(left, right, 0.03))
     elif right > left:
         axes.set_xlim(left, right)
     if panel.turns:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ...model.errors import InputError
 from ...model.extras import required
+from ..text.options import File
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -24,26 +24,17 @@ class EngineOptions:
 
     cores: Annotated[
         int | None,
-        typer.Option(
-            min=1,
-            max=1024,
-            metavar="N",
-            help="Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
-        ),
+        typer.Option(min=1, max=1024, metavar="N"),
+        "Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
     ] = None
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Evaluate what is heavy on a Dask cluster, such as tcp://host:8786."),
+        typer.Option(metavar="ADDRESS"),
+        "Evaluate what is heavy on a Dask cluster, such as tcp://host:8786.",
     ] = None
-    tls_ca: Annotated[
-        Path | None, typer.Option("--tls-ca", metavar="FILE", help="Certificate of the authority, for tls://.")
-    ] = None
-    tls_cert: Annotated[
-        Path | None, typer.Option("--tls-cert", metavar="FILE", help="Certificate of this side, for tls://.")
-    ] = None
-    tls_key: Annotated[
-        Path | None, typer.Option("--tls-key", metavar="FILE", help="Key of that certificate, for tls://.")
-    ] = None
+    tls_ca: Annotated[File, "Certificate of the authority, for tls://."] = None
+    tls_cert: Annotated[File, "Certificate of this side, for tls://."] = None
+    tls_key: Annotated[File, "Key of that certificate, for tls://."] = None
 
     def checked(self) -> EngineOptions:
         """Return the options. Raises `InputError` for those that do not go together."""
@@ -68,8 +59,7 @@ class EngineOptions:
 
     def shared_by(self, workers: int) -> EngineOptions:
         """Return the options of each of several workers on this machine: they share the processors."""
-        cores = self.cores or max(1, (os.cpu_count() or 1) // workers)
-        return EngineOptions(cores, self.scheduler, self.tls_ca, self.tls_cert, self.tls_key)
+        return replace(self, cores=self.cores or max(1, (os.cpu_count() or 1) // workers))
 
 
 @contextlib.contextmanager

@@ -15,23 +15,8 @@ from ....model.tolerance.first_order import FirstOrder, first_order
 from ....model.tolerance.sources import SOURCES, counted_angles
 from ....optimise.problem.costs import Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
+from ...figures import style
 from ...figures.numerals import shown
-from ...figures.style import (
-    BLUE,
-    GREYS,
-    INK,
-    SHADE,
-    SMALL,
-    TEXT,
-    VERMILION,
-    draw_stack,
-    dress,
-    heading,
-    legend_beside,
-    new_figure,
-    over_turn,
-    place,
-)
 from .analysis import costs_before
 
 Array = NDArray[np.float64]
@@ -96,47 +81,47 @@ def allocation_figure(data: AllocationCurves) -> Figure:
     """Return the figure: above the error over the cycle, below the costs."""
     count = len(data.names)
     foot = 0.55 + 0.42 * count
-    figure = new_figure(9.2, foot + 4.25)
+    figure = style.new_figure(9.2, foot + 4.25)
     gaps = _gaps(data.counted)
     note = f"{data.kind} within {shown(data.limit)} mm" + ("; pale: not counted" if gaps else "")
-    heading(figure, "Tolerances of least cost", note)
-    error = place(figure, 0.8, foot + 0.85, 5.9, 2.7)
-    dress(error, up=6)
-    over_turn(error)
-    draw_stack(error, data.angles, data.parts, data.sources)
+    style.heading(figure, "Tolerances of least cost", note)
+    error = style.place(figure, 0.8, foot + 0.85, 5.9, 2.7)
+    style.dress(error, up=6)
+    style.over_turn(error)
+    style.draw_stack(error, data.angles, data.parts, data.sources)
     if data.before is not None:
-        error.plot(data.angles, data.before, color=BLUE, linewidth=1.3, linestyle=":", label="as in the job")
-    error.axhline(data.limit, color=VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
+        error.plot(data.angles, data.before, color=style.BLUE, linewidth=1.3, linestyle=":", label="as in the job")
+    error.axhline(data.limit, color=style.VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
     error.plot(
         data.active, np.full(len(data.active), data.limit), linestyle="none", marker="o", markersize=6,
-        markerfacecolor="white", markeredgecolor=VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
+        markerfacecolor="white", markeredgecolor=style.VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
     )  # fmt: skip
     for start, end in gaps:
-        error.axvspan(start, end, color=SHADE, alpha=0.8, linewidth=0, zorder=4)
+        error.axvspan(start, end, color=style.SHADE, alpha=0.8, linewidth=0, zorder=4)
     tops = [float(data.parts.sum(axis=0).max()), data.limit, *([] if data.before is None else [data.before.max()])]
     error.set_ylim(0.0, 1.06 * max(tops))
-    error.set_ylabel("position error, mm", fontsize=TEXT)
-    error.set_xlabel("crank angle, deg", fontsize=TEXT)
-    legend_beside(error, stacked=len(data.sources))
+    error.set_ylabel("position error, mm", fontsize=style.TEXT)
+    error.set_xlabel("crank angle, deg", fontsize=style.TEXT)
+    style.legend_beside(error, stacked=len(data.sources))
 
-    cost = place(figure, 1.3, 0.5, 5.4, foot - 0.35)
-    dress(cost, across=8)
+    cost = style.place(figure, 1.3, 0.5, 5.4, foot - 0.35)
+    style.dress(cost, across=8)
     cost.grid(False, axis="y")
     rows = np.arange(count)[::-1]
     before = data.costs_before
     thick, shift = (0.55, 0.0) if before is None else (0.36, 0.2)
-    bars: list[tuple[str, Array, float, dict[str, Any]]] = [("now", data.costs, shift, {"color": GREYS[0]})]
+    bars: list[tuple[str, Array, float, dict[str, Any]]] = [("now", data.costs, shift, {"color": style.GREYS[0]})]
     if before is not None:
-        bars.append(("as in the job", before, -shift, {"color": "white", "edgecolor": BLUE, "hatch": "///"}))
-    for name, costs, at, style in bars:
-        drawn = cost.barh(rows + at, costs, height=thick, label=f"{name}, {shown(costs.sum())}", **style)
-        cost.bar_label(drawn, [shown(value) for value in costs], padding=3, fontsize=SMALL, color=INK)
-    cost.set_yticks(rows, data.names, fontsize=TEXT)
+        bars.append(("as in the job", before, -shift, {"color": "white", "edgecolor": style.BLUE, "hatch": "///"}))
+    for name, costs, at, look in bars:
+        drawn = cost.barh(rows + at, costs, height=thick, label=f"{name}, {shown(costs.sum())}", **look)
+        cost.bar_label(drawn, [shown(value) for value in costs], padding=3, fontsize=style.SMALL, color=style.INK)
+    cost.set_yticks(rows, data.names, fontsize=style.TEXT)
     cost.set_ylim(-0.6, count - 0.4)
     cost.margins(x=0.12)
     cost.set_xlim(left=0.0)
-    cost.set_xlabel("cost", fontsize=TEXT)
-    legend_beside(cost)
+    cost.set_xlabel("cost", fontsize=style.TEXT)
+    style.legend_beside(cost)
     return figure
 
 

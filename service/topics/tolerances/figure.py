@@ -17,20 +17,7 @@ from ....model.tolerance.exact import extremes
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, variances
 from ....model.tolerance.sources import SOURCES, limits
-from ...figures.style import (
-    BLUE,
-    FRAME,
-    INK,
-    TEXT,
-    VERMILION,
-    draw_stack,
-    dress,
-    heading,
-    legend_beside,
-    new_figure,
-    over_turn,
-    place,
-)
+from ...figures import style
 
 Array = NDArray[np.float64]
 SAMPLES, ANGLES = 10_000, 181
@@ -79,30 +66,32 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
 
 def tolerances_figure(bands: Bands) -> Figure:
     """Return the figure: above the bands, below where they come from."""
-    figure = new_figure(9.2, 7.2)
+    figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
-    heading(figure, "Position error of the slider from tolerances", note)
-    upper, lower = place(figure, 0.8, 3.35, 5.9, 3.25), place(figure, 0.8, 0.65, 5.9, 2.2)
+    style.heading(figure, "Position error of the slider from tolerances", note)
+    upper, lower = style.place(figure, 0.8, 3.35, 5.9, 3.25), style.place(figure, 0.8, 0.65, 5.9, 2.2)
     for panel in (upper, lower):
-        dress(panel, up=6)
-        over_turn(panel)
+        style.dress(panel, up=6)
+        style.over_turn(panel)
     low, inner_low, inner_high, high = bands.percentiles
     upper.fill_between(bands.angles, low, high, color="#e4e4e4", linewidth=0, label="Monte Carlo, 99.73 %")
     upper.fill_between(bands.angles, inner_low, inner_high, color="#bdbdbd", linewidth=0, label="Monte Carlo, 90 %")
     for sign, label in ((1.0, "worst case, first order"), (-1.0, None)):
-        upper.plot(bands.angles, sign * bands.worst_case, color=BLUE, linewidth=1.6, label=label)
+        upper.plot(bands.angles, sign * bands.worst_case, color=style.BLUE, linewidth=1.6, label=label)
     if bands.least is not None and bands.greatest is not None:
-        exact = {"color": VERMILION, "linewidth": 1.2, "linestyle": (0, (5, 3))}
+        exact = {"color": style.VERMILION, "linewidth": 1.2, "linestyle": (0, (5, 3))}
         upper.plot(bands.angles, bands.greatest, **exact, label="worst case, exact")  # type: ignore[arg-type]
         upper.plot(bands.angles, bands.least, **exact)  # type: ignore[arg-type]
     for sign, label in ((1.0, "root-sum-square"), (-1.0, None)):
-        upper.plot(bands.angles, sign * bands.root_sum_square, color=INK, linewidth=1.2, linestyle=":", label=label)
-    upper.axhline(0.0, color=FRAME, linewidth=0.8)
-    upper.set_ylabel("deviation along the line, mm", fontsize=TEXT)
-    lower.set_ylabel("share of the variance, %", fontsize=TEXT)
-    lower.set_xlabel("crank angle, deg", fontsize=TEXT)
+        upper.plot(
+            bands.angles, sign * bands.root_sum_square, color=style.INK, linewidth=1.2, linestyle=":", label=label
+        )
+    upper.axhline(0.0, color=style.FRAME, linewidth=0.8)
+    upper.set_ylabel("deviation along the line, mm", fontsize=style.TEXT)
+    lower.set_ylabel("share of the variance, %", fontsize=style.TEXT)
+    lower.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     lower.set_ylim(0, 100)
-    draw_stack(lower, bands.angles, bands.shares, bands.sources)
-    legend_beside(upper)
-    legend_beside(lower, stacked=len(bands.sources))
+    style.draw_stack(lower, bands.angles, bands.shares, bands.sources)
+    style.legend_beside(upper)
+    style.legend_beside(lower, stacked=len(bands.sources))
     return figure
