@@ -17,25 +17,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, JobError, ServiceError
-from ...objectives.kinds import System
 from ..runs.result import Result, Row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
-from .connection import Connection, followed
+from .connection import Connection, Record, followed, given
+from .designs import Designs
 
 if TYPE_CHECKING:
     import pandas as pd
 
 JobSource = str | PathLike[str] | Mapping[str, Any]
 """A job: the path of its file, the text of one in TOML, or its tables. A text has more than one line."""
-Record = dict[str, Any]
 
 _PAGE = 1000
 _ENDED = ("done", "infeasible", "cancelled", "failed")
 _PAUSES = (0.1, 1.0)  # s between two looks at a job that is waited for: at first, at most
 
 
-class Client:
+class Client(Designs):
     """A service. Threads may share it. Also a context manager, which closes it.
 
     Every method raises `NotFound` for a job, design or figure that is not there, `InputError` for what is wrong in what
@@ -49,7 +48,7 @@ class Client:
 
         url: where the service is, also as it prints it, with the token. patience: for how long, s, to try again.
         """
-        self._connection = Connection(url, token, patience)
+        super().__init__(Connection(url, token, patience))
 
     def close(self) -> None:
         """Close the connection."""
@@ -76,7 +75,7 @@ class Client:
         make a second job. Raises `InputError` for a job that is not valid.
         """
         body = {"job": tables_of(job), "priority": priority, "limits": dict(limits or {})}
-        return self._post("jobs", body, key=key or uuid.uuid4().hex)
+        return self._connection.post("jobs", body, key=key or uuid.uuid4().hex)
 
     def clone(
         self,
@@ -88,9 +87,9 @@ class Client:
         key: str | None = None,
     ) -> Record:
         """Queue a copy of a job and return it. changes: to its tables, as a merge patch; None takes a key away."""
-        body = _given(priority=priority, limits=None if limits is None else dict(limits))
+        body = given(priority=priority, limits=None if limits is None else dict(limits))
         body["changes"] = dict(changes or {})
-        return self._post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
+        return self._connection.post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
 
     def jobs(
         self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
@@ -99,13 +98,13 @@ class Client:
 
         Each has what a list shows; `job` gives all of one, `front_points` some designs of several.
         """
-        query = {"state": list(states), "name": name, "limit": limit, **_given(before=before)}
-        found: list[Record] = self._get("jobs", query)["jobs"]
+        query = {"state": list(states), "name": name, "limit": limit, **given(before=before)}
+        found: list[Record] = self._connection.ask("jobs", query)["jobs"]
         return found
 
     def job(self, number: int) -> Record:
         """Return where a job stands."""
-        return self._get(f"jobs/{number}")
+        return self._connection.ask(f"jobs/{number}")
 
     def front_points(self, numbers: Collection[int]) -> list[Record]:
         """Return some designs of the fronts of at most 100 jobs, or of their fronts so far: job, columns, points.
@@ -113,24 +112,24 @@ class Client:
         At most 64 designs of each, in the first two objectives; in the order of their numbers, without jobs that are
         gone.
         """
-        found: list[Record] = self._get("front-points", {"job": list(numbers)})["fronts"]
+        found: list[Record] = self._connection.ask("front-points", {"job": list(numbers)})["fronts"]
         return found
 
     def tables(self, number: int) -> Record:
         """Return the tables of a job's file."""
-        return self._get(f"jobs/{number}/job")
+        return self._connection.ask(f"jobs/{number}/job")
 
     def cancel(self, number: int) -> Record:
         """Cancel a job and return it; it keeps what it found, and can go on."""
-        return self._post(f"jobs/{number}/cancel")
+        return self._connection.post(f"jobs/{number}/cancel")
 
     def resume(self, number: int) -> Record:
         """Queue a cancelled or failed job again, to go on from where it was, and return it."""
-        return self._post(f"jobs/{number}/resume", again=False)
+        return self._connection.post(f"jobs/{number}/resume", again=False)
 
     def delete(self, number: int) -> None:
         """Delete a job that has ended, and everything of it."""
-        self._connection.request("DELETE", f"jobs/{number}", again=True)
+        self._connection.delete(f"jobs/{number}")
 
     def events(self, number: int, *, after: int = 0) -> Iterator[Record]:
         """Yield what happens to a job, as it happens, until it has ended: number, at, kind, data of each event.
@@ -154,7 +153,7 @@ class Client:
 
     def front(self, number: int) -> Result:
         """Return the result of a job with all designs; infinite and undefined values are None."""
-        record = self._get(f"jobs/{number}/export.json")
+        record = self._connection.ask(f"jobs/{number}/export.json")
         rows: list[Row] = record["designs"]
         return result_from(record, rows, str(record["run"]))
 
@@ -174,11 +173,11 @@ class Client:
         """
         import pandas as pd
 
-        query = {"where": list(where), "reverse": reverse, "limit": _PAGE, **_given(sort=sort, columns=columns)}
+        query = {"where": list(where), "reverse": reverse, "limit": _PAGE, **given(sort=sort, columns=columns)}
         rows: list[Row] = []
         numbers: list[int] = []
         while True:
-            page = self._get(f"jobs/{number}/designs", {**query, "offset": len(rows)})
+            page = self._connection.ask(f"jobs/{number}/designs", {**query, "offset": len(rows)})
             rows += page["designs"]
             numbers += page["numbers"]
             if not page["designs"] or len(rows) >= page["chosen"]:
@@ -190,7 +189,7 @@ class Client:
 
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number in the front, counted from 1; the number comes first."""
-        row: Row = self._get(f"jobs/{number}/designs/{design}")["design"]
+        row: Row = self._connection.ask(f"jobs/{number}/designs/{design}")["design"]
         return {"number": design, **row}
 
     def pick(
@@ -206,126 +205,12 @@ class Client:
 
         topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
         """
-        ways = _given(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
-        return self._get(f"jobs/{number}/pick", {"where": list(where), **ways})
-
-    def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
-        """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
-        found: Record = self._get(f"jobs/{number}/designs/{design}/analysis", {"show": list(show)})["analysis"]
-        return found
-
-    def inverse(
-        self,
-        number: int,
-        design: int,
-        *,
-        position_mm: float,
-        velocity_m_s: float | None = None,
-        acceleration_m_s2: float | None = None,
-    ) -> Record:
-        """Return every crank angle of a design for a slider position, as `slidercrank inverse --json` prints it."""
-        motion = _given(
-            slider_position_mm=position_mm,
-            slider_velocity_m_s=velocity_m_s,
-            slider_acceleration_m_s2=acceleration_m_s2,
-        )
-        found: Record = self._get(f"jobs/{number}/designs/{design}/inverse", motion)["inverse"]
-        return found
-
-    def swing(
-        self,
-        number: int,
-        design: int,
-        *,
-        start_deg: float,
-        end_deg: float,
-        driver: str = "crank",
-        law: str = "slow",
-        duration_s: float | None = None,
-        actuator_tolerance_mm: float = 0.0,
-    ) -> Record:
-        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them."""
-        asked = _given(
-            start_deg=start_deg,
-            end_deg=end_deg,
-            driver=driver,
-            law=law,
-            duration_s=duration_s,
-            actuator_tolerance_mm=actuator_tolerance_mm,
-        )
-        found: Record = self._get(f"jobs/{number}/designs/{design}/swing", asked)["swing"]
-        return found
-
-    def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
-        """Return the optimal design that comes nearest to wishes, as `slidercrank wish --json` prints it.
-
-        at: by objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design: that these
-        speak of, by its number.
-        """
-        return self._post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
-
-    def kept(self, number: int) -> list[Record]:
-        """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
-        found: list[Record] = self._get(f"jobs/{number}/kept")["designs"]
-        return found
-
-    def keep(
-        self,
-        number: int,
-        design: int | None = None,
-        *,
-        dimensions: Mapping[str, float | str] | None = None,
-        name: str = "",
-        note: str = "",
-        star: bool = False,
-    ) -> Record:
-        """Keep a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
-        body = {"design": design, "dimensions": dict(dimensions or {}), "name": name, "note": note, "star": star}
-        return self._post(f"jobs/{number}/kept", body, again=False)
-
-    def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
-        """Change name, note, star, decided or reason of a kept design and return it."""
-        path = f"jobs/{number}/kept/{kept}"
-        found: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
-        return found
-
-    def drop_kept(self, number: int, kept: int) -> None:
-        """Delete a kept design."""
-        self._connection.request("DELETE", f"jobs/{number}/kept/{kept}", again=True)
-
-    def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
-        """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
-
-        csv: the path of a CSV file, or its text, which has more than one line.
-        """
-        from ..designs.measured_file import text_of
-
-        text = csv if isinstance(csv, str) and "\n" in csv else text_of(Path(csv))
-        found: Record = self._post(f"jobs/{number}/designs/{design}/measured", {"csv": text})["measured"]
-        return found
-
-    def rounded(
-        self, number: int, design: int, to: str | Collection[str], *, count: int = 5, units: System = "metric"
-    ) -> Record:
-        """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
-
-        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"].
-        """
-        body = {"to": [to] if isinstance(to, str) else list(to), "count": count}
-        path = f"jobs/{number}/designs/{design}/rounded?units={units}"
-        found: Record = self._post(path, body)["rounded"]
-        return found
-
-    def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
-        """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
-        import pandas as pd
-
-        found = self._get(f"jobs/{number}/designs/{design}/curves", {"angles": angles})["curves"]
-        return pd.DataFrame(found).set_index("crank_angle_deg")
+        ways = given(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
+        return self._connection.ask(f"jobs/{number}/pick", {"where": list(where), **ways})
 
     def figures(self, number: int) -> list[str]:
         """Return the names of the figures of a front; each design has one too, called design_1 and so on."""
-        return [figure["name"] for figure in self._get(f"jobs/{number}/figures")["figures"]]
+        return [figure["name"] for figure in self._connection.ask(f"jobs/{number}/figures")["figures"]]
 
     def figure(self, number: int, name: str, path: str | PathLike[str]) -> Path:
         """Write a figure into a file, PNG or SVG by its ending, and return the file."""
@@ -335,13 +220,22 @@ class Client:
         """Write all designs of a front into a file, CSV, JSON or Parquet by its ending, and return the file."""
         return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
 
+    def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
+        kind = file.suffix.lower().removeprefix(".")
+        if kind not in kinds:
+            raise InputError(
+                f"the file ends in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
+            )
+        write_file(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
+        return file
+
     def schema(self) -> Record:
         """Return the JSON Schema of jobs."""
-        return self._get("schema")
+        return self._connection.ask("schema")
 
     def check(self, job: JobSource) -> Record:
         """Return a job in words, as it is understood; nothing is queued. Raises `InputError` for a wrong one."""
-        return self._post("check", {"job": tables_of(job)})
+        return self._connection.post("check", {"job": tables_of(job)})
 
     def analyse(
         self,
@@ -354,30 +248,8 @@ class Client:
     ) -> Record:
         """Return all numbers of any design for a job. Lengths as "40 mm"; those that the job fixes may be left out."""
         body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
-        found: Record = self._post("analyse", body)["analysis"]
+        found: Record = self._connection.post("analyse", body)["analysis"]
         return found
-
-    def _get(self, path: str, query: Record | None = None) -> Record:
-        found: Record = self._connection.request("GET", path, again=True, params=query).json()
-        return found
-
-    def _post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
-        headers = None if key is None else {"Idempotency-Key": key}
-        found: Record = self._connection.request("POST", path, again=again, json=body, headers=headers).json()
-        return found
-
-    def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
-        kind = file.suffix.lower().removeprefix(".")
-        if kind not in kinds:
-            raise InputError(
-                f"the file ends in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
-            )
-        write_file(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
-        return file
-
-
-def _given(**options: Any) -> Record:
-    return {name: value for name, value in options.items() if value is not None}
 
 
 def tables_of(job: JobSource) -> Record:

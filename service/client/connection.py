@@ -21,7 +21,8 @@ _FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
 _ENDED, _AWAY = 204, 503
-Event = dict[str, Any]
+Record = dict[str, Any]
+Event = Record
 
 
 class Away(ServiceError):
@@ -77,6 +78,22 @@ class Connection:
                 return answer
             else:
                 raise refusal(answer)
+
+    def post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
+        """Return the JSON that answers a body. key: of a submission."""
+        headers = None if key is None else {"Idempotency-Key": key}
+        found: Record = self.request("POST", path, again=again, json=body, headers=headers).json()
+        return found
+
+    def ask(self, path: str, query: Record | None = None, body: Record | None = None) -> Record:
+        """Return the JSON at a path, or what answers a body there."""
+        method = "GET" if body is None else "POST"
+        found: Record = self.request(method, path, again=True, params=query, json=body).json()
+        return found
+
+    def delete(self, path: str) -> None:
+        """Delete what is at a path."""
+        self.request("DELETE", path, again=True)
 
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
@@ -174,3 +191,8 @@ def _events(lines: Iterator[str]) -> Iterator[Event | None]:
         elif not line and data:
             yield json.loads("\n".join(data))
             data = []
+
+
+def given(**options: Any) -> Record:
+    """Return the options that are not None."""
+    return {name: value for name, value in options.items() if value is not None}

@@ -15,7 +15,7 @@ from ..jobs.stores import Address, open_store, store_address
 from ..text.screen import give
 from ..workers.engines import EngineOptions
 from .ending import Interruption
-from .worker import AllowQuantity, Grace, Lease, Logs, Most
+from .worker import WorkOptions
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
@@ -39,17 +39,13 @@ def serve(
     allow_host: Annotated[
         list[str] | None, typer.Option(metavar="NAME"), "By which the service may be called, too. Repeatable."
     ] = None,
-    allow_quantity: AllowQuantity = None,
     submissions: Annotated[
         int, typer.Option("--submissions-per-minute", min=0), "Sum over all clients; 0 is no limit."
     ] = 600,
     most_queued: Annotated[int, typer.Option(min=1), "Most jobs that may wait."] = 10_000,
     *,
-    most: Most,
-    lease: Lease = 30.0,
-    grace: Grace = 10.0,
+    options: WorkOptions,
     engine: EngineOptions,
-    log_format: Logs = "text",
 ) -> None:
     """Serve the API, and solve its jobs, until stopped.
 
@@ -61,33 +57,22 @@ def serve(
     from ..api.settings import Settings
     from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
-    from ..workers.worker import Terms
-    from ..workers.worker_process import WorkerSettings
 
     secret, made = _token(token, no_token, host)
-    allowed = tuple(sorted(set(allow_quantity or ())))
-    limits = most.limits()
+    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
+    work = options.settings(store_address(store), engine, processes)
     settings = Settings(
         token=secret,
         hosts=(*names_of(host), *(allow_host or ())),
         submissions_per_minute=submissions,
-        allowed_quantities=frozenset(allowed),
-        limits=limits,
-    )
-    processes = min(os.cpu_count() or 1, 4) if workers is None else workers
-    shared = engine.checked().shared_by(max(1, processes))
-    work = WorkerSettings(
-        address=store_address(store),
-        lease=lease,
-        most_running=most.most_running,
-        terms=Terms(limits=limits, grace=grace, engine=shared, allowed_quantities=allowed),
-        log_format=log_format,
+        allowed_quantities=frozenset(work.terms.allowed_quantities),
+        limits=work.terms.limits,
     )
     with Interruption(service=True), listen(host, port) as socket, open_store(store) as opened:
         opened.most_queued = most_queued
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
-        set_up_logs(log_format)
+        set_up_logs(work.log_format)
         with Supervisor(work, processes) as supervisor:
             run_server(app, socket, stopping=supervisor.leave)
     _leave_requests()

@@ -16,28 +16,24 @@ from ..workers.logs import Format
 from .ending import Interruption
 
 if TYPE_CHECKING:
-    from ..store import Limits
-
-
-Logs = Annotated[
-    Format, typer.Option("--log-format", help="Log format on standard error: for people, or one JSON object a line.")
-]
-Lease = Annotated[
-    float, typer.Option(min=1.0, max=3600.0, help="Seconds until a job whose worker is gone goes to another one.")
-]
-Grace = Annotated[
-    float, typer.Option(min=0.0, max=600.0, help="Seconds that a round has to end once the worker is to stop.")
-]
-AllowQuantity = Annotated[
-    list[str] | None,
-    typer.Option(metavar="MODULE:FUNCTION", help="Function that jobs may name as a quantity of their own. Repeatable."),
-]
+    from ..workers.worker_process import WorkerSettings
 
 
 @dataclass(frozen=True)
-class Most:
-    """Options that limit what jobs take."""
+class WorkOptions:
+    """Options of workers, and of what their jobs may do and take."""
 
+    lease: Annotated[
+        float, typer.Option(min=1.0, max=3600.0), "Seconds until a job whose worker is gone goes to another one."
+    ] = 30.0
+    grace: Annotated[
+        float, typer.Option(min=0.0, max=600.0), "Seconds that a round has to end once the worker is to stop."
+    ] = 10.0
+    allow_quantity: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MODULE:FUNCTION"),
+        "Function that jobs may name as a quantity of their own. Repeatable.",
+    ] = None
     most_running: Annotated[
         int | None, typer.Option(min=1), "Let at most so many jobs of the store be solved at a time."
     ] = None
@@ -49,25 +45,37 @@ class Most:
         str | None, typer.Option(metavar="SIZE"), 'Let a job fail if its worker takes more memory, such as "2 GB".'
     ] = None
 
-    def limits(self) -> Limits:
-        """Return the limits of each job."""
+    log_format: Annotated[Format, "Log format on standard error: for people, or one JSON object a line."] = "text"
+
+    def settings(self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False) -> WorkerSettings:
+        """Return the settings of each of some workers of a store. drain: end as soon as no job waits."""
         from ..store import Limits
+        from ..workers.worker import Terms
+        from ..workers.worker_process import WorkerSettings
 
         memory = None if self.most_memory is None else size_of(self.most_memory, "--most-memory")
-        return Limits(seconds=self.most_seconds, evaluations=self.most_evaluations, memory=memory)
+        return WorkerSettings(
+            address=address,
+            lease=self.lease,
+            drain=drain,
+            most_running=self.most_running,
+            terms=Terms(
+                limits=Limits(seconds=self.most_seconds, evaluations=self.most_evaluations, memory=memory),
+                grace=self.grace,
+                engine=engine.checked().shared_by(max(1, processes)),
+                allowed_quantities=tuple(sorted(set(self.allow_quantity or ()))),
+            ),
+            log_format=self.log_format,
+        )
 
 
 def worker(
     store: Address = None,
     processes: Annotated[int, typer.Option(min=1, max=256), "Workers; each solves one job at a time."] = 1,
-    lease: Lease = 30.0,
-    allow_quantity: AllowQuantity = None,
     drain: Annotated[bool, "End as soon as no job waits."] = False,
     *,
-    most: Most,
-    grace: Grace = 10.0,
+    options: WorkOptions,
     engine: EngineOptions,
-    log_format: Logs = "text",
 ) -> None:
     """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
 
@@ -77,26 +85,11 @@ def worker(
     required("psutil", "workers need")  # they end what a job leaves behind with it
     from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
-    from ..workers.worker import Terms
-    from ..workers.worker_process import WorkerSettings
 
-    limits = most.limits()
-    settings = WorkerSettings(
-        address=store_address(store),
-        lease=lease,
-        drain=drain,
-        most_running=most.most_running,
-        terms=Terms(
-            limits=limits,
-            grace=grace,
-            engine=engine.checked().shared_by(processes),
-            allowed_quantities=tuple(sorted(set(allow_quantity or ()))),
-        ),
-        log_format=log_format,
-    )
+    settings = options.settings(store_address(store), engine, processes, drain=drain)
     with Interruption(service=True) as termination:
         open_store(store).close()  # what is wrong with it is told at once, and by nobody but this process
-        set_up_logs(log_format)
+        set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
             while not (termination.asked() or supervisor.finished()):
                 time.sleep(0.1)

@@ -81,12 +81,6 @@ def possible(problem: Problem) -> Possible:
     made = within(PATIENCE, lambda: screened(problem)) if costly else None
     found, violation = screened(light) if made is None else made
     feasible = violation <= FEASIBLE
-    example, nearest = None, np.flatnonzero(np.isfinite(violation))
-    if len(nearest):
-        best = np.flatnonzero(feasible) if feasible.any() else nearest[[int(np.argmin(violation[nearest]))]]
-        example = middle_of(found[best])
-    elif turning.any():
-        example = middle_of(box[turning])
     return Possible(
         turning=float(turning.mean()),
         stroke=_reach(problem, "stroke"),
@@ -95,7 +89,7 @@ def possible(problem: Problem) -> Possible:
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
         hardest=_hardest(problem, box[turning]),
-        example=example,
+        example=example_of(found, violation, box[turning]),
         example_feasible=bool(feasible.any()),
         unchecked=costly if made is None else (),
     )
@@ -250,7 +244,16 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
     return min(shares.items(), key=lambda item: item[1]) if shares else None
 
 
-def middle_of(designs: Array) -> tuple[float, float, float]:
+def example_of(designs: Array, violation: Array, others: Array) -> tuple[float, float, float] | None:
+    """Return the design in the middle of those that meet everything, else the nearest to that, else of others."""
+    if (feasible := violation <= FEASIBLE).any():
+        return _middle_of(designs[feasible])
+    if np.isfinite(violation).any():
+        return _middle_of(designs[[int(np.nanargmin(violation))]])
+    return _middle_of(others) if len(others) else None
+
+
+def _middle_of(designs: Array) -> tuple[float, float, float]:
     """Return the design nearest to the middle of some, in each dimension on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size

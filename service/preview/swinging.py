@@ -21,7 +21,7 @@ from ...optimise.job.motion import MotionPart, with_margin
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from ...optimise.problem.violation import FEASIBLE
-from .feasibility import PATIENCE, Ends, designs_of, middle_of, screened, within
+from .feasibility import PATIENCE, Ends, designs_of, example_of, screened, within
 from .partial_job import ranges_of
 
 Array = NDArray[np.float64]
@@ -92,13 +92,6 @@ def _possible(
     turning = passes(swing, sign, box)
     made = np.isfinite(violation)
     good = violation <= FEASIBLE
-    example = None
-    if good.any():
-        example = middle_of(designs[good])
-    elif made.any():
-        example = middle_of(designs[[int(np.argmin(violation))]])
-    elif turning.any():
-        example = middle_of(box[turning])
     kept = designs[good] if good.any() else designs[made] if made.any() else box[turning]
     travel = np.abs(positions(swing.end, sign, kept) - positions(swing.start, sign, kept))
     return PossibleSwing(
@@ -108,7 +101,7 @@ def _possible(
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
         feasible=float(good.mean()) if len(good) else 0.0,
         sampled=len(good),
-        example=example,
+        example=example_of(designs, violation, box[turning]),
         example_feasible=bool(good.any()),
         unchecked=unchecked,
     )

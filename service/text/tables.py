@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
-from ..designs.columns import DIMENSIONS, Column, find_column, metric_key
+from ...objectives.kinds import unit_text
+from ..designs.columns import DIMENSIONS, Column, find_column, metric_key, split_unit
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -105,6 +106,15 @@ def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
         text = "undefined" if value is None else value if isinstance(value, str) else f"{value:.6g}"
         rows.add_row(f"  {name}", text, "" if value is None else unit, remark)
     console.print(rows)
+
+
+def told(numbers: Mapping[str, Any], key: str, remark: str = "") -> Line:
+    """Return the line of one of an analysis' numbers: name and unit as its key says, and the crank angle of a peak."""
+    name, unit, _ = split_unit(key)
+    at = numbers.get(f"{name}_angle_deg")
+    remarks = [*([] if at is None else [f"at {at:.2f} deg"]), *([remark] if remark else [])]
+    words = name.replace("_", " ").replace("rms ", "RMS ")
+    return words, numbers[key], unit_text(unit), ", ".join(remarks)
 
 
 def plain(value: Any) -> float | None:

@@ -52,14 +52,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
     lines: list[text.Line] = []
     for name, unit, _ in _CURVES:
-        for which, word in (("peak", "peak"), ("rms", "RMS")):
-            remarks = [f"at {numbers[f'peak_{name}_angle_deg']:.2f} deg"] if which == "peak" else []
+        for which in ("peak", "rms"):
             without = numbers[f"{which}_{name}_without_counterweight_{unit}"]
-            if without is not None:
-                remarks.append(f"{without:.6g} without counterweight")
-            value = numbers[f"{which}_{name}_{unit}"]
-            title = f"{word} {name.replace('_', ' ')}"
-            lines.append((title, value, "N m" if unit == "Nm" else unit, ", ".join(remarks)))
+            remark = "" if without is None else f"{without:.6g} without counterweight"
+            lines.append(text.told(numbers, f"{which}_{name}_{unit}", remark))
     title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
     text.show_lines(console, title, lines)
 

@@ -64,37 +64,21 @@ def _with_angle(name: str, unit: str, extreme: Extreme) -> dict[str, Any]:
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
     one = numbers["cylinders"][0]["peak_torque_Nm"]
-    lines: list[text.Line] = []
-    for key, unit, remark in (
-        ("peak_torque", "N m", f"{one:.6g} of the first alone"),
-        ("least_torque", "N m", ""),
-        ("greatest_torque", "N m", ""),
-        ("mean_torque", "N m", ""),
-        ("rms_torque", "N m", ""),
-        ("torque_fluctuation", "N m", "RMS deviation from the mean"),
-        ("energy_change", "J", "range of the integral of torque minus mean, for a flywheel"),
-        ("peak_shaking_force", "N", f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone"),
-        ("rms_shaking_force", "N", ""),
-        ("peak_shaking_moment", "N m", f"{numbers['peak_shaking_moment_of_one_Nm']:.6g} of one alone"),
-        ("rms_shaking_moment", "N m", ""),
-        ("peak_rocking_couple", "N m", "about the shaft's zero, from the places of the cylinders"),
-    ):
-        at = numbers.get(f"{key}_angle_deg")
-        remarks = [f"at {at:.2f} deg"] if at is not None else []
-        words = key.replace("_", " ").replace("rms", "RMS")
-        said = ", ".join([*remarks, remark] if remark else remarks)
-        lines.append((words, numbers[f"{key}_{unit.replace(' ', '')}"], unit, said))
+    remarks = {
+        "peak_torque_Nm": f"{one:.6g} of the first alone",
+        **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm", "mean_torque_Nm", "rms_torque_Nm"), ""),
+        "torque_fluctuation_Nm": "RMS deviation from the mean",
+        "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
+        "peak_shaking_force_N": f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone",
+        "rms_shaking_force_N": "",
+        "peak_shaking_moment_Nm": f"{numbers['peak_shaking_moment_of_one_Nm']:.6g} of one alone",
+        "rms_shaking_moment_Nm": "",
+        "peak_rocking_couple_Nm": "about the shaft's zero, from the places of the cylinders",
+    }
+    lines = [text.told(numbers, key, remark) for key, remark in remarks.items()]
     text.show_lines(console, f"{len(numbers['cylinders'])} cylinders on one crankshaft, together", lines)
-    heads = (
-        ">phase, deg",
-        ">bank, deg",
-        ">place, mm",
-        ">peak torque, N m",
-        ">crank pin, N",
-        ">slider pin, N",
-        ">guide, N",
-    )
-    rows = text.table(*heads)
+    heads = (">phase, deg", ">bank, deg", ">place, mm", ">peak torque, N m")
+    rows = text.table(*heads, ">crank pin, N", ">slider pin, N", ">guide, N")
     for own in numbers["cylinders"]:
         rows.add_row(*(f"{value:.6g}" for value in own.values()))
     text.print_table(console, rows)

@@ -74,21 +74,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
-
-    def at(key: str) -> str:
-        return "" if numbers[key] is None else f"at {numbers[key]:.2f} deg"
-
-    lines: list[text.Line] = [
-        ("peak torque", numbers["peak_torque_Nm"], "N m", at("peak_torque_angle_deg")),
-        ("RMS torque", numbers["rms_torque_Nm"], "N m", "what heats the motor"),
-        ("mean torque", numbers["mean_torque_Nm"], "N m", ""),
-        ("peak power", numbers["peak_power_W"], "W", at("peak_power_angle_deg")),
-        ("mean power", numbers["mean_power_W"], "W", ""),
-    ]
-    for which in ("greatest", "least"):
-        key = f"{which}_reflected_inertia"
-        lines.append((f"{which} reflected inertia", numbers[f"{key}_kg_m2"], "kg m²", at(f"{key}_angle_deg")))
-    lines.append(("mean reflected inertia", numbers["mean_reflected_inertia_kg_m2"], "kg m²", ""))
+    heats = {"rms_torque_Nm": "what heats the motor"}
+    lines = [text.told(numbers, key, heats.get(key, "")) for key in numbers if not key.endswith("_angle_deg")]
     known = numbers["peak_torque_Nm"] is not None
     locks = "Motor: friction locks or jams the linkage, no torque is determined"
     text.show_lines(console, "Motor" if known else locks, lines)

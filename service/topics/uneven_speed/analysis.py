@@ -16,6 +16,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.transient.uneven import uneven_curves, uneven_cycle
+from ....objectives.kinds import face
 from ...figures.sheets import DASHED, Line, Sheet, over_turn, turn
 from ...text import tables as text
 
@@ -61,36 +62,31 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "mean_power_W": found.mean_power,
     }
     for name, unit in _UNITS.items():
-        suffix = unit.replace(" ", "").replace("/", "_").replace("^", "")
-        record[f"peak_{name}_{suffix}"] = found.peaks[name].value
+        suffix = face(unit).suffix
+        record[f"peak_{name}{suffix}"] = found.peaks[name].value
         record[f"peak_{name}_angle_deg"] = math.degrees(found.peaks[name].angle)
-        record[f"peak_{name}_at_constant_speed_{suffix}"] = even.peaks[name].value
+        record[f"peak_{name}_at_constant_speed{suffix}"] = even.peaks[name].value
     return record
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
-    lines: list[text.Line] = []
-    for name in ("least_speed", "greatest_speed"):
-        at = f"at {numbers[f'{name}_angle_deg']:.2f} deg"
-        lines.append((name.replace("_", " "), numbers[f"{name}_rpm"], "rpm", at))
-    for key, unit, remark in (
-        ("mean_speed_over_time_rpm", "rpm", ""),
-        ("speed_fluctuation", "", "(greatest - least) / mean over time"),
-        ("period_s", "s", "of a turn"),
-        ("peak_crank_acceleration_rad_s2", "rad/s²", ""),
-        ("mean_torque_Nm", "N m", ""),
-        ("rms_torque_Nm", "N m", f"{numbers['rms_torque_at_constant_speed_Nm']:.6g} at constant speed"),
-        ("mean_power_W", "W", "over time"),
-    ):
-        words = key.rsplit("_", 2 if key.endswith("_s2") else 1)[0] if unit else key
-        lines.append((words.replace("_", " ").replace("rms", "RMS"), numbers[key], unit, remark))
+
+    def told(key: str, remark: str = "") -> text.Line:
+        return text.told(numbers, key, remark)
+
+    lines = [
+        *(told(key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
+        told("speed_fluctuation", "(greatest - least) / mean over time"),
+        ("period", numbers["period_s"], "s", "of a turn"),
+        *(told(key) for key in ("peak_crank_acceleration_rad_s2", "mean_torque_Nm")),
+        told("rms_torque_Nm", f"{numbers['rms_torque_at_constant_speed_Nm']:.6g} at constant speed"),
+        told("mean_power_W", "over time"),
+    ]
     for name, unit in _UNITS.items():
-        suffix = unit.replace(" ", "").replace("/", "_").replace("^", "")
-        even = numbers[f"peak_{name}_at_constant_speed_{suffix}"]
-        remark = f"at {numbers[f'peak_{name}_angle_deg']:.2f} deg, {even:.6g} at constant speed"
-        words = f"peak {name.replace('_', ' ')}"
-        lines.append((words, numbers[f"peak_{name}_{suffix}"], unit.replace("^2", "²"), remark))
+        suffix = face(unit).suffix
+        even = numbers[f"peak_{name}_at_constant_speed{suffix}"]
+        lines.append(told(f"peak_{name}{suffix}", f"{even:.6g} at constant speed"))
     text.show_lines(console, "At the speed profile (constant speed: the mean over the crank angle)", lines)
 
 

@@ -1,0 +1,129 @@
+"""What a client asks of single designs: their numbers, questions about them, and those that people keep."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Required, TypedDict, Unpack
+
+from ...model.swing.words import Driver, Law
+from ...objectives.kinds import System
+from .connection import Connection, Record, given
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class SwingAsked(TypedDict, total=False):
+    """A swing, as the API asks for it: start_deg and end_deg are needed; law is slow and driver crank if left out.
+
+    duration_s: of one way, for a law other than slow. actuator_tolerance_mm: how far the driven slider may be off.
+    """
+
+    start_deg: Required[float]
+    end_deg: Required[float]
+    driver: Driver
+    law: Law
+    duration_s: float | None
+    actuator_tolerance_mm: float
+
+
+class Designs:
+    """Questions about the designs of a job."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+
+    def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
+        """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
+        return self._asked(number, design, "analysis", {"show": list(show)})
+
+    def inverse(
+        self,
+        number: int,
+        design: int,
+        *,
+        position_mm: float,
+        velocity_m_s: float | None = None,
+        acceleration_m_s2: float | None = None,
+    ) -> Record:
+        """Return every crank angle of a design for a slider position, as `slidercrank inverse --json` prints it."""
+        rates = given(slider_velocity_m_s=velocity_m_s, slider_acceleration_m_s2=acceleration_m_s2)
+        return self._asked(number, design, "inverse", {"slider_position_mm": position_mm, **rates})
+
+    def swing(self, number: int, design: int, **asked: Unpack[SwingAsked]) -> Record:
+        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them; see `SwingAsked`."""
+        return self._asked(number, design, "swing", given(**asked))
+
+    def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
+        """Return the optimal design that comes nearest to wishes, as `slidercrank wish --json` prints it.
+
+        at: by objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design: that these
+        speak of, by its number.
+        """
+        return self._connection.post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
+
+    def kept(self, number: int) -> list[Record]:
+        """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
+        found: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
+        return found
+
+    def keep(
+        self,
+        number: int,
+        design: int | None = None,
+        *,
+        dimensions: Mapping[str, float | str] | None = None,
+        name: str = "",
+        note: str = "",
+        star: bool = False,
+    ) -> Record:
+        """Keep a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
+        body = {"design": design, "dimensions": dict(dimensions or {}), "name": name, "note": note, "star": star}
+        return self._connection.post(f"jobs/{number}/kept", body, again=False)
+
+    def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
+        """Change name, note, star, decided or reason of a kept design and return it."""
+        path = f"jobs/{number}/kept/{kept}"
+        found: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
+        return found
+
+    def drop_kept(self, number: int, kept: int) -> None:
+        """Delete a kept design."""
+        self._connection.delete(f"jobs/{number}/kept/{kept}")
+
+    def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
+        """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
+
+        csv: the path of a CSV file, or its text, which has more than one line.
+        """
+        from ..designs.measured_file import text_of
+
+        text = csv if isinstance(csv, str) and "\n" in csv else text_of(Path(csv))
+        return self._asked(number, design, "measured", body={"csv": text})
+
+    def rounded(
+        self, number: int, design: int, to: str | Collection[str], *, count: int = 5, units: System = "metric"
+    ) -> Record:
+        """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
+
+        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"].
+        """
+        body = {"to": [to] if isinstance(to, str) else list(to), "count": count}
+        return self._asked(number, design, "rounded", {"units": units}, body)
+
+    def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
+        """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
+        import pandas as pd
+
+        found = self._asked(number, design, "curves", {"angles": angles})
+        return pd.DataFrame(found).set_index("crank_angle_deg")
+
+    def _asked(
+        self, number: int, design: int, what: str, query: Record | None = None, body: Record | None = None
+    ) -> Record:
+        """Return the answer to a question about a design, posted where it has a body."""
+        path = f"jobs/{number}/designs/{design}/{what}"
+        found: Record = self._connection.ask(path, query, body)[what]
+        return found
