@@ -46,7 +46,7 @@ Acceleration = Annotated[
 ]
 CrankAngle = Annotated[float, _either_way(ANGLE.metric.factor * ANGLE.limit, "counter-clockwise from +x", 30.0)]
 
-_INVERSE = {
+_INVERSE_EXAMPLE = {
     "crank_mm": 60.0,
     "rod_mm": 230.0,
     "offset_mm": 70.0,
@@ -74,7 +74,7 @@ class InverseModel(OfDesign):
     for, and at a dead centre; the note then gives the reason.
     """
 
-    inverse: dict[str, Any] = Field(examples=[_INVERSE])
+    inverse: dict[str, Any] = Field(examples=[_INVERSE_EXAMPLE])
 
 
 @router.get("/inverse")
@@ -92,7 +92,7 @@ def find_crank_angles(
     return InverseModel(job=found.job.id, number=design, inverse=record_in(record, units))
 
 
-_MEASURED = {
+_MEASURED_EXAMPLE = {
     "rows": 3,
     "rows_without_crank_angle": 0,
     "crank_angle_from_time": False,
@@ -129,7 +129,7 @@ class MeasuredModel(OfDesign):
     crank angles and values for the best fit is told, not applied.
     """
 
-    measured: dict[str, Any] = Field(examples=[_MEASURED])
+    measured: dict[str, Any] = Field(examples=[_MEASURED_EXAMPLE])
 
 
 @router.post("/measured")
@@ -146,7 +146,7 @@ def compare_measured(
 
 
 _MOST_STEPS, _MOST_TOLD = 50, 100
-_ROUNDED = {
+_ROUNDED_EXAMPLE = {
     "met": True,
     "message": "311 of 2016 rounded designs within 16 steps keep every requirement",
     "steps": {"crank_mm": 0.5},
@@ -182,7 +182,7 @@ class Steps(BaseModel, extra="forbid", strict=True):
 class RoundedModel(OfDesign):
     """Rounded neighbours of a design of a front. rounded: what `slidercrank round --json` prints."""
 
-    rounded: dict[str, Any] = Field(examples=[_ROUNDED])
+    rounded: dict[str, Any] = Field(examples=[_ROUNDED_EXAMPLE])
 
 
 @router.post("/rounded")
@@ -199,7 +199,7 @@ def round_design(found: FrontDep, design: DesignNumber, given: Steps, units: Uni
     return RoundedModel(job=found.job.id, number=design, rounded=record)
 
 
-_SWING = {
+_SWING_EXAMPLE = {
     "crank_mm": 60.0,
     "rod_mm": 230.0,
     "offset_mm": 70.0,
@@ -225,7 +225,7 @@ ActuatorTolerance = Annotated[
 class SwingModel(OfDesign):
     """A swing of a design of a front. swing: what `slidercrank swing --json` prints."""
 
-    swing: dict[str, Any] = Field(examples=[_SWING])
+    swing: dict[str, Any] = Field(examples=[_SWING_EXAMPLE])
 
 
 @router.get("/swing")

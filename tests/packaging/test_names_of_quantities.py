@@ -1,8 +1,8 @@
 """A quantity is named in its own file: nowhere else is its name a string.
 
 Counted are string literals of Python that are the name, and strings of the page and keys of its objects. Not counted
-are examples, in `examples=` and `EXAMPLE =`; attributes, arguments and prose, where the names are terms of the field;
-and data: shipped job files and published cases.
+are examples, in `examples=` and `..._EXAMPLE =`; attributes, arguments and prose, where the names are terms of the
+field; and data: shipped job files and published cases.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def words(path: Path) -> Iterator[str]:
         examples += [
             node.value
             for node in ast.walk(tree)
-            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").strip("_") == "EXAMPLE"
+            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "").endswith("EXAMPLE")
         ]
         told = {id(inner) for node in examples for inner in ast.walk(node)}
         for node in ast.walk(tree):
