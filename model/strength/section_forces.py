@@ -96,9 +96,3 @@ def stress_along(
 def at_share(c: Stress, face: Any, xi: Any) -> Any:
     """Return the stress at a share of the length. face: 1 or -1, or 0 for the axial stress alone."""
     return c.n0 + xi * (c.n1 + xi * c.n2) + face * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))
-
-
-@analytic
-def slope_at_share(c: Stress, face: Any, xi: Any) -> Any:
-    """Return the derivative of `at_share` by the share."""
-    return c.n1 + 2.0 * xi * c.n2 + face * (c.b1 + xi * (2.0 * c.b2 + 3.0 * xi * c.b3))

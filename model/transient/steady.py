@@ -82,7 +82,11 @@ class Runner:
         return found
 
     def constant(self, inertia: float) -> SteadyRunning:
-        """Return the steady running under a constant torque: see `constant_torque_running`."""
+        """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
+
+        inertia: of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result. Raises
+        `InputError` if the mechanism has no speed, or the crank all but stops (see `speeds`).
+        """
         if not self.speed:
             raise InputError("a constant torque needs the mean speed that it shall keep; got none; give the speed")
         self.equation.require_inertia(inertia)
@@ -248,12 +252,3 @@ def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None =
     too soon.
     """
     return Runner(mechanism, linkage).under(drive_of(mechanism, drive))
-
-
-def constant_torque_running(mechanism: Mechanism, linkage: Linkage, *, inertia: float = 0.0) -> SteadyRunning:
-    """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
-
-    inertia: of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result. Raises
-    `InputError` if the mechanism has no speed, or the crank all but stops (see `Runner.speeds`).
-    """
-    return Runner(mechanism, linkage).constant(inertia)

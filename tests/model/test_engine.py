@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.engine import Engine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient.forward import State, simulate
-from slidercrank.model.transient.steady import constant_torque_running
+from slidercrank.model.transient.steady import Runner
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 
@@ -107,7 +107,7 @@ def test_without_a_motor_the_flywheel_gains_what_the_gas_gives_at_every_angle(di
 
 def test_a_constant_torque_keeps_the_mean_speed_of_an_engine_by_taking_its_work() -> None:
     machine, linkage = Mechanism(speed=200.0, loads=(engine(),)), Linkage(0.027, 0.1, 0.004)
-    running = constant_torque_running(machine, linkage, inertia=0.05)
+    running = Runner(machine, linkage).constant(0.05)
     whole = QUANTITIES["indicated_work"].evaluate(machine, np.array([[0.027, 0.1, 0.004]])).values[0]
     assert -running.motor_torque[0] * 2.0 * math.pi == pytest.approx(whole, rel=1e-9)
     energy = 0.5 * 0.05 * running.speed**2

@@ -16,10 +16,10 @@ from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, nominal, robust, robust_quantities
 from slidercrank.optimise.questions.price_of_robustness import robust_cost
-from slidercrank.optimise.questions.realised import realised, sampling_error
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
+from tests.optimise.fresh_machines import realised, sampling_error
 from tests.optimise.problems import MACHINE, degrees, polish_few, problem
 
 TOLERANT = replace(

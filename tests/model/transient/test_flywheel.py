@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
-from slidercrank.model.transient.steady import constant_torque_running
+from slidercrank.model.transient.steady import Runner
 from tests.model.bodies import bodies
 from tests.model.cases import Array
 
@@ -174,7 +174,7 @@ def test_a_crank_that_nearly_stops_has_a_fluctuation_without_bound() -> None:
     energies = Energies(machine, design)
     greatest = 0.0
     for flywheel in (0.02, 0.008, 0.005):
-        running = constant_torque_running(machine, Linkage(*design), inertia=flywheel)
+        running = Runner(machine, Linkage(*design)).constant(flywheel)
         assert running.fluctuation == pytest.approx(energies.fluctuation(flywheel), rel=1e-8)
         assert np.isfinite(running.speed).all()
         greatest = max(greatest, running.fluctuation)

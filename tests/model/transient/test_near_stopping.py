@@ -17,7 +17,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.transient.steady import Runner, SteadyRunning, constant_torque_running
+from slidercrank.model.transient.steady import Runner, SteadyRunning
 from tests.model.cases import Array
 from tests.model.transient.test_flywheel import Energies, random_machine
 from tests.model.virtual_work import drive_torque
@@ -78,7 +78,7 @@ def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above
         machine, design = random_machine(rng)
         least, greatest = Runner(machine, Linkage(*design)).speeds(0.0)
         if least > 1e-3 * greatest:  # slower, a simulation turns back on its own errors
-            running = constant_torque_running(machine, Linkage(*design))
+            running = Runner(machine, Linkage(*design)).constant(0.0)
             matches(machine, design, running)
             found.append(running.fluctuation)
     assert sum(each > 2.0 for each in found) >= 3
@@ -86,7 +86,7 @@ def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above
 
 
 def test_a_load_that_always_pushes_inward_leaves_a_running_of_three_turns_a_minute_at_least() -> None:
-    running = constant_torque_running(INWARD, Linkage(*DESIGN))
+    running = Runner(INWARD, Linkage(*DESIGN)).constant(0.0)
     assert running.fluctuation == pytest.approx(6.3286, abs=5e-5)
     assert running.speed.min() * 30.0 / math.pi == pytest.approx(3.0164, abs=5e-5)
     matches(INWARD, DESIGN, running)
@@ -94,7 +94,7 @@ def test_a_load_that_always_pushes_inward_leaves_a_running_of_three_turns_a_minu
 
 def test_with_viscous_loads_the_running_near_stopping_is_that_of_the_simulation() -> None:
     machine = replace(INWARD, loads=(*INWARD.loads, Viscous(coefficient=60.0)))
-    running = constant_torque_running(machine, Linkage(*DESIGN))
+    running = Runner(machine, Linkage(*DESIGN)).constant(0.0)
     assert running.fluctuation > 2.0
     assert running.memory < 1.0
     matches(machine, DESIGN, running)
@@ -108,7 +108,7 @@ def test_ever_slower_the_crank_all_but_stops_and_its_greatest_speed_is_that_of_t
         machine = replace(machine, speed=0.5 * machine.speed)
         least, greatest = Runner(machine, Linkage(*design)).speeds(0.0)
         if least > 0.0:
-            running = constant_torque_running(machine, Linkage(*design))
+            running = Runner(machine, Linkage(*design)).constant(0.0)
             assert (least, greatest) == (np.abs(running.speed).min(), np.abs(running.speed).max())
             continue
         stopping += 1
@@ -119,5 +119,5 @@ def test_ever_slower_the_crank_all_but_stops_and_its_greatest_speed_is_that_of_t
         ]
         assert greatest == pytest.approx(math.sqrt(max(float(square.max()) for square in squares)), rel=1e-6)
         with pytest.raises(InputError, match="no constant torque was found"):
-            constant_torque_running(machine, Linkage(*design))
+            Runner(machine, Linkage(*design)).constant(0.0)
     assert 10 < stopping < 30

@@ -24,7 +24,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import simulate
-from slidercrank.model.transient.steady import SteadyRunning, constant_torque_running, steady_running
+from slidercrank.model.transient.steady import Runner, SteadyRunning, steady_running
 
 LINKAGE = Linkage(0.043, 0.15, 0.005)
 ENGINE = FourStroke(
@@ -69,7 +69,7 @@ def needed(machine: Mechanism, running: SteadyRunning) -> np.ndarray:
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism) -> None:
     linkage = replace(LINKAGE, branch=machine.branch)
-    running = constant_torque_running(machine, linkage, inertia=0.4)
+    running = Runner(machine, linkage).constant(0.4)
     assert running.mean_speed == pytest.approx(machine.speed, rel=1e-11)
     span = np.ptp(running.crank_angle)
     assert span == pytest.approx(running.turns * 2.0 * math.pi, rel=1e-14)
@@ -85,7 +85,7 @@ def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism
 def test_two_cylinders_at_one_phase_are_one_with_half_the_flywheel() -> None:
     pair = replace(BARE, loads=(ENGINE,), arrangement=Arrangement(phases=(0.0, 0.0), places=(0.0, 0.1)))
     one, two = (
-        constant_torque_running(machine, LINKAGE, inertia=inertia)
+        Runner(machine, LINKAGE).constant(inertia)
         for machine, inertia in ((replace(pair, arrangement=None), 0.3), (pair, 0.6))
     )
     assert two.fluctuation == pytest.approx(one.fluctuation, rel=1e-10)
@@ -115,7 +115,7 @@ def test_a_flywheel_of_four_cylinders_keeps_what_is_wanted_and_is_smaller_than_t
 def test_what_is_not_covered_is_refused_in_a_sentence() -> None:
     rubbing = replace(MACHINES["four in line"], friction=Friction(guide=0.1))
     with pytest.raises(InputError, match="friction"):
-        constant_torque_running(rubbing, LINKAGE, inertia=0.4)
+        Runner(rubbing, LINKAGE).constant(0.4)
     motor = Drive(motor=LinearMotor(stall_torque=80.0, no_load_speed=220.0), flywheel=0.2)
     with pytest.raises(InputError, match="one cylinder"):
         simulate(MACHINES["four in line"], LINKAGE, motor, duration=0.1)

@@ -19,7 +19,6 @@ from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust
-from slidercrank.optimise.questions.realised import realised
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.judging import exactly, joined, quickly
@@ -70,10 +69,6 @@ def test_a_robust_job_gives_the_same_bits_on_every_engine(engine: Engine, serial
     assert found.values.tobytes() == serial.values.tobytes()
     assert found.designs.equals(serial.designs)
     assert (found.evaluations, found.hypervolume) == (serial.evaluations, serial.hypervolume)
-
-
-def test_fresh_machines_keep_the_same_share_wherever_they_are_made(processes: Processes, serial: ParetoFront) -> None:
-    assert realised(serial, samples=2000, engine=processes).equals(realised(serial, samples=2000))
 
 
 def test_a_function_of_your_own_gives_the_same_bits_in_processes(processes: Processes, tmp_path: Path) -> None:
