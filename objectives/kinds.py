@@ -32,6 +32,12 @@ def face(symbol: str, factor: float = 1.0) -> Face:
     return Face(symbol, f"_{name}" if name else "", factor)
 
 
+def per(symbol: str, factor: float = 1.0) -> Face:
+    """Return the face of a quotient whose columns say so: N s/m in _Ns_per_m."""
+    above, _, below = symbol.replace("^", "").partition("/")
+    return Face(symbol, f"_{above.replace('N ', 'N').replace(' ', '_')}_per_{below}", factor)
+
+
 @dataclass(frozen=True)
 class Kind:
     """A kind of physical value.
@@ -62,185 +68,67 @@ _INCH = 0.0254
 _PER_INCH = 1.0 / _INCH
 _POUND = 0.45359237
 _LBF = 4.4482216152605
-# Name, SI unit, example, limit, metric face, inch face, units of a form.
-LENGTH = Kind(
-    "a length", "m", "80 mm", 1e4, face("mm", 1e3), face("in", _PER_INCH), ("m", "mm", "cm", "µm", "in", "foot")
+
+
+def _kind(
+    name: str,
+    typed: str,
+    example: str,
+    limit: float,
+    inch: Face | None = None,
+    metric: Face | None = None,
+    usual: str = "",
+) -> Kind:
+    """Return a kind of its units in a form, with commas between; shown in the SI unit, the first, if not said."""
+    units = tuple(typed.split(", ")) if typed else ()
+    unit = units[0] if units else ""
+    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual)
+
+
+LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, face("in", _PER_INCH), face("mm", 1e3))
+AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1.0 / _INCH**2))
+ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=face("deg", 57.29577951308232))
+ANGULAR_SPEED = _kind("an angular speed", "rad/s, rpm, rev/s", "300 rpm", 1e6, metric=face("rpm", 9.549296585513721))
+ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
+MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, face("lb", 1.0 / _POUND))
+_INERTIA = face("lb in^2", 1.0 / (_POUND * _INCH**2))
+INERTIA = _kind("a moment of inertia", "kg m^2, kg mm^2, lb in^2", "0.015 kg m^2", 1e12, _INERTIA)
+DENSITY = _kind("a density", "kg/m^3, g/cm^3, lb/in^3", "7800 kg/m^3", 1e6, face("lb/in^3", _INCH**3 / _POUND))
+SPEED = _kind("a speed", "m/s, mm/s, in/s", "2.5 m/s", 1e6, face("in/s", _PER_INCH))
+ACCELERATION = _kind("an acceleration", "m/s^2, mm/s^2, in/s^2", "9.81 m/s^2", 1e9, face("in/s^2", _PER_INCH))
+FORCE = _kind("a force", "N, kN, lbf", "200 N", 1e12, face("lbf", 1.0 / _LBF))
+TORQUE = _kind("a torque", "N m, kN m, N mm, lbf in, lbf ft", "25 N m", 1e15, face("lbf in", 1.0 / (_LBF * _INCH)))
+POWER = _kind("a power", "W, kW, hp", "250 W", 1e15, face("hp", 1.0 / (6600.0 * _LBF * _INCH)))
+_STIFFNESS = per("lbf/in", _INCH / _LBF), per("N/m")
+STIFFNESS = _kind("a stiffness", "N/m, N/mm, lbf/in", "20 N/mm", 1e15, *_STIFFNESS, "N/mm")
+_ANGULAR = per("lbf in/rad", 1.0 / (_LBF * _INCH)), per("N m/rad")
+ANGULAR_STIFFNESS = _kind("an angular stiffness", "N m/rad, N m/deg, lbf in/rad", "40 N m/rad", 1e15, *_ANGULAR)
+_DAMPING = per("lbf s/in", _INCH / _LBF), per("N s/m")
+DAMPING = _kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 1e15, *_DAMPING)
+_DRAG = per("lbf s^2/in^2", _INCH**2 / _LBF), per("N s^2/m^2")
+QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
+_PRESSURE = face("psi", _INCH**2 / _LBF), face("MPa", 1e-6)
+PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "207 GPa", 1e15, *_PRESSURE)
+_RUBBED = face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), face("MPa m/s", 1e-6)
+PRESSURE_SPEED = _kind(
+    "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_RUBBED, "MPa m/s"
 )
-AREA = Kind(
-    "an area", "m^2", "0.25 m^2", 1e8, face("m^2"), face("in^2", 1.0 / _INCH**2), ("m^2", "cm^2", "mm^2", "in^2")
-)
-ANGLE = Kind("an angle", "rad", "0.1 deg", 1e4, face("deg", 57.29577951308232), None, ("rad", "deg"))
-ANGULAR_SPEED = Kind(
-    "an angular speed", "rad/s", "300 rpm", 1e6, face("rpm", 9.549296585513721), None, ("rad/s", "rpm", "rev/s")
-)
-ANGULAR_ACCELERATION = Kind(
-    "an angular acceleration", "rad/s^2", "20 rad/s^2", 1e9, face("rad/s^2"), None, ("rad/s^2", "deg/s^2")
-)
-MASS = Kind("a mass", "kg", "0.8 kg", 1e8, face("kg"), face("lb", 1.0 / _POUND), ("kg", "g", "t", "lb"))
-INERTIA = Kind(
-    name="a moment of inertia",
-    unit="kg m^2",
-    example="0.015 kg m^2",
-    limit=1e12,
-    metric=face("kg m^2"),
-    inch=face("lb in^2", 1.0 / (_POUND * _INCH**2)),
-    typed=("kg m^2", "kg mm^2", "lb in^2"),
-)
-DENSITY = Kind(
-    name="a density",
-    unit="kg/m^3",
-    example="7800 kg/m^3",
-    limit=1e6,
-    metric=face("kg/m^3"),
-    inch=face("lb/in^3", _INCH**3 / _POUND),
-    typed=("kg/m^3", "g/cm^3", "lb/in^3"),
-)
-SPEED = Kind("a speed", "m/s", "2.5 m/s", 1e6, face("m/s"), face("in/s", _PER_INCH), ("m/s", "mm/s", "in/s"))
-ACCELERATION = Kind(
-    "an acceleration",
-    "m/s^2",
-    "9.81 m/s^2",
-    1e9,
-    face("m/s^2"),
-    face("in/s^2", _PER_INCH),
-    ("m/s^2", "mm/s^2", "in/s^2"),
-)
-FORCE = Kind("a force", "N", "200 N", 1e12, face("N"), face("lbf", 1.0 / _LBF), ("N", "kN", "lbf"))
-TORQUE = Kind(
-    name="a torque",
-    unit="N m",
-    example="25 N m",
-    limit=1e15,
-    metric=face("N m"),
-    inch=face("lbf in", 1.0 / (_LBF * _INCH)),
-    typed=("N m", "kN m", "N mm", "lbf in", "lbf ft"),
-)
-POWER = Kind("a power", "W", "250 W", 1e15, face("W"), face("hp", 1.0 / (6600.0 * _LBF * _INCH)), ("W", "kW", "hp"))
-STIFFNESS = Kind(
-    name="a stiffness",
-    unit="N/m",
-    example="20 N/mm",
-    limit=1e15,
-    metric=Face("N/m", "_N_per_m"),
-    inch=Face("lbf/in", "_lbf_per_in", _INCH / _LBF),
-    typed=("N/m", "N/mm", "lbf/in"),
-    usual="N/mm",
-)
-ANGULAR_STIFFNESS = Kind(
-    name="an angular stiffness",
-    unit="N m/rad",
-    example="40 N m/rad",
-    limit=1e15,
-    metric=Face("N m/rad", "_Nm_per_rad"),
-    inch=Face("lbf in/rad", "_lbf_in_per_rad", 1.0 / (_LBF * _INCH)),
-    typed=("N m/rad", "N m/deg", "lbf in/rad"),
-)
-DAMPING = Kind(
-    name="a viscous coefficient",
-    unit="N s/m",
-    example="50 N s/m",
-    limit=1e15,
-    metric=Face("N s/m", "_Ns_per_m"),
-    inch=Face("lbf s/in", "_lbf_s_per_in", _INCH / _LBF),
-    typed=("N s/m", "N s/mm", "lbf s/in"),
-)
-QUADRATIC_DAMPING = Kind(
-    name="a coefficient of drag",
-    unit="N s^2/m^2",
-    example="20 N s^2/m^2",
-    limit=1e15,
-    metric=Face("N s^2/m^2", "_Ns2_per_m2"),
-    inch=Face("lbf s^2/in^2", "_lbf_s2_per_in2", _INCH**2 / _LBF),
-    typed=("N s^2/m^2", "N s^2/mm^2", "lbf s^2/in^2"),
-)
-PRESSURE = Kind(
-    name="a pressure",
-    unit="Pa",
-    example="207 GPa",
-    limit=1e15,
-    metric=face("MPa", 1e-6),
-    inch=face("psi", _INCH**2 / _LBF),
-    typed=("Pa", "kPa", "bar", "MPa", "GPa", "psi"),
-)
-PRESSURE_SPEED = Kind(
-    name="a pressure times a speed",
-    unit="Pa m/s",
-    example="1 MPa m/s",
-    limit=1e15,
-    metric=face("MPa m/s", 1e-6),
-    inch=face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)),
-    typed=("Pa m/s", "MPa m/s", "psi ft/min"),
-    usual="MPa m/s",
-)
-WEAR = Kind(
-    name="a wear coefficient",
-    unit="m^2/N",
-    example="1e-9 mm^2/N",
-    limit=1.0,
-    metric=face("mm^2/N", 1e6),
-    inch=face("in^2/lbf", _LBF / _INCH**2),
-    typed=("m^2/N", "mm^2/N", "in^2/lbf"),
-    usual="mm^2/N",
-)
-VOLUME = Kind(
-    name="a volume",
-    unit="m^3",
-    example="250 cm^3",
-    limit=1e12,
-    metric=face("cm^3", 1e6),
-    inch=face("in^3", 1.0 / _INCH**3),
-    typed=("m^3", "cm^3", "mm^3", "in^3"),
-)
-ENERGY = Kind(
-    name="an energy",
-    unit="J",
-    example="60 J",
-    limit=1e15,
-    metric=face("J"),
-    inch=face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)),
-    typed=("J", "kJ", "ft lbf"),
-)
-RATIO = Kind("a ratio", "", "3.2", 1e9, face(""))
-JERK = Kind("a jerk", "m/s^3", "2000 m/s^3", 1e12, face("m/s^3"), face("in/s^3", _PER_INCH), ("m/s^3", "in/s^3"))
-TIME = Kind("a time", "s", "30 s", 1e9, face("s"), None, ("s", "min"))
-_PER_ANGLE = Kind(
-    name="a length per angle",
-    unit="m/rad",
-    example="",
-    limit=0.0,
-    metric=Face("mm/rad", "_mm_per_rad", 1e3),
-    inch=Face("in/rad", "_in_per_rad", _PER_INCH),
-)
+_WEAR = face("in^2/lbf", _LBF / _INCH**2), face("mm^2/N", 1e6)
+WEAR = _kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0, *_WEAR, "mm^2/N")
+RATIO = _kind("a ratio", "", "3.2", 1e9)
+JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, face("in/s^3", _PER_INCH))
+_VOLUME = face("in^3", 1.0 / _INCH**3), face("cm^3", 1e6)
+VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME)
+ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
+
+KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
+"""The kinds above, in their order: those of numbers of a job and of quantities."""
+TIME = _kind("a time", "s, min", "30 s", 1e9)
+_PER_ANGLE = Kind("a length per angle", "m/rad", "", 0.0, per("mm/rad", 1e3), per("in/rad", _PER_INCH))
 _PER_SQUARED_ANGLE = Kind(
-    name="a length per squared angle",
-    unit="m/rad^2",
-    example="",
-    limit=0.0,
-    metric=Face("mm/rad^2", "_mm_per_rad2", 1e3),
-    inch=Face("in/rad^2", "_in_per_rad2", _PER_INCH),
+    "a length per squared angle", "m/rad^2", "", 0.0, per("mm/rad^2", 1e3), per("in/rad^2", _PER_INCH)
 )
 
-KINDS = (
-    *(LENGTH, AREA, ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION, MASS, INERTIA, DENSITY),
-    *(
-        SPEED,
-        ACCELERATION,
-        FORCE,
-        TORQUE,
-        POWER,
-        STIFFNESS,
-        ANGULAR_STIFFNESS,
-        DAMPING,
-        QUADRATIC_DAMPING,
-        PRESSURE,
-        PRESSURE_SPEED,
-        WEAR,
-        RATIO,
-        JERK,
-        VOLUME,
-        ENERGY,
-    ),
-)
 SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
 

@@ -14,21 +14,17 @@ from ...model.kinematics.position import motion, third_derivative
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import numbers
 from ...model.machine.mechanism import Mechanism
-from ..kinds import Face
+from ..kinds import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, POWER, SPEED, TORQUE, Face, face, per
 from ..quantity import Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
 LEAST, MOST = 4, 100_000
-_ANGLE = Face("rad", "_rad"), Face("deg", "_deg", 57.29577951308232)
-_LENGTH = Face("m", "_m"), Face("mm", "_mm", 1e3)
-_FORCE, _TORQUE, _POWER = ((face, face) for face in (Face("N", "_N"), Face("N m", "_Nm"), Face("W", "_W")))
-_RATES = tuple((face, face) for face in (Face("m/s", "_m_s"), Face("m/s^2", "_m_s2"), Face("m/s^3", "_m_s3")))
-_PER_ANGLE = tuple(
-    (Face(f"m/rad{power}", f"_m_per_rad{digit}"), Face(f"mm/rad{power}", f"_mm_per_rad{digit}", 1e3))
-    for power, digit in (("", ""), ("^2", "2"), ("^3", "3"))
+_ANGLE, _LENGTH, _FORCE, _TORQUE, _POWER, *_RATES = (
+    (face(kind.unit), kind.metric) for kind in (ANGLE, LENGTH, FORCE, TORQUE, POWER, SPEED, ACCELERATION, JERK)
 )
+_PER_ANGLE = [(per(f"m/rad{power}"), per(f"mm/rad{power}", 1e3)) for power in ("", "^2", "^3")]
 _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
 
 
@@ -66,16 +62,16 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     if not mechanism.tolerances.given:
         acting = replace(acting, position_error=nothing, position_error_rss=nothing)
     speed = mechanism.speed
-    rates, per = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
+    rates, pace = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
     theta = acting.crank_angle
     jerk = _jerk(replace(mechanism, speed=speed or 1.0), linkage, theta)
     velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
     return [
         Curve("crank_angle", "crank angle", theta, *_ANGLE),
         Curve("slider_position", "slider position", moving.slider_position, *_LENGTH),
-        Curve("slider_velocity", f"slider velocity{per}", velocity, *rates[0]),
-        Curve("slider_acceleration", f"slider acceleration{per}", acceleration, *rates[1]),
-        Curve("slider_jerk", f"slider jerk{per}", jerk, *rates[2]),
+        Curve("slider_velocity", f"slider velocity{pace}", velocity, *rates[0]),
+        Curve("slider_acceleration", f"slider acceleration{pace}", acceleration, *rates[1]),
+        Curve("slider_jerk", f"slider jerk{pace}", jerk, *rates[2]),
         Curve("rod_angle", "rod angle", linkage.at(theta).rod_angle, *_ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, *_ANGLE),
         Curve("torque", "drive torque", acting.torque, *_TORQUE),
