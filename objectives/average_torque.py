@@ -30,7 +30,6 @@ RMS_TORQUE = _average(
 )
 MEAN_TORQUE = _average(
     name="mean_torque",
-    title="mean torque",
     which="mean",
     place=80,
     sentence="The average of the drive torque over a turn: what the load takes, and friction.",

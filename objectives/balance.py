@@ -14,7 +14,6 @@ _SECTION = "10. Motor and balance"
 
 PEAK_SHAKING_FORCE = CyclePeak(
     name="peak_shaking_force",
-    title="peak shaking force",
     kind=FORCE,
     signal=Signal.SHAKING_FORCE,
     place=240,
@@ -42,7 +41,6 @@ RMS_SHAKING_FORCE = CycleAverage(
 )
 PEAK_SHAKING_MOMENT = CyclePeak(
     name="peak_shaking_moment",
-    title="peak shaking moment",
     kind=TORQUE,
     signal=Signal.SHAKING_MOMENT,
     place=260,

@@ -19,7 +19,7 @@ from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
-from .quantity import Array, Pieces, Quantity, Values
+from .quantity import Array, Pieces, Quantity, Values, undefined
 
 Formula = Callable[[Callable[[int], Any]], Any]
 
@@ -102,8 +102,7 @@ class OfBars(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); NaN without what it is of; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
-            none = np.full(np.shape(dimensions), np.nan)
-            return Values(none[:, 0], none if gradients else None)
+            return undefined(dimensions, gradients)
         found = self._joined(mechanism, dimensions, 1, gradients)
         first = (np.argmin if self.least else np.argmax)(found.values, axis=1)
         rows = np.arange(len(first))

@@ -28,6 +28,7 @@ class CycleAverage(Quantity):
     times_speed: bool = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_word("which", self.which, Which)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

@@ -27,7 +27,6 @@ class DeliveredWork(Quantity):
 
 DELIVERED_WORK = DeliveredWork(
     name="delivered_work",
-    title="delivered work",
     kind=ENERGY,
     place=435,
     group=Group.DRIVE,

@@ -17,7 +17,7 @@ from .average_torque import MEAN_TORQUE
 from .bars import Formula
 from .kinds import ENERGY, RATIO
 from .needs import DRIVEN, LOAD_WORK, LOSSES, RUBS, WORK
-from .quantity import Array, Domain, Group, Quantity, Values
+from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
 
@@ -85,8 +85,7 @@ class Efficiency(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
-            none = np.full(np.shape(dimensions), np.nan)
-            return Values(none[:, 0], none if gradients else None)
+            return undefined(dimensions, gradients)
         work = turn_work(mechanism, dimensions, gradients=gradients)
         heat, by_heat = _heat(mechanism, dimensions, work)
         useful, locks = _TURN * work.mean[:, LOAD], np.isinf(heat)
@@ -104,7 +103,6 @@ class Efficiency(Quantity):
 _SECTION = "23. Energy of a cycle"
 EFFICIENCY = Efficiency(
     name="efficiency",
-    title="efficiency",
     kind=RATIO,
     place=436,
     group=Group.DRIVE,
@@ -115,18 +113,11 @@ EFFICIENCY = Efficiency(
     picture="torque",
     example=0.9,
     better="high",
-    domain=Domain(
-        lower=0.0,
-        upper=1.0,
-        open=False,
-        rule="an efficiency lies between 0 and 1",
-        remedy="0.7 to 0.95 are usual",
-    ),
+    domain=Domain.share("an efficiency", "0.7 to 0.95"),
     needs=(LOAD_WORK, LOSSES),
 )
 ENERGY_PER_CYCLE = EnergyPerCycle(
     name="energy_per_cycle",
-    title="energy per cycle",
     kind=ENERGY,
     place=437,
     group=Group.DRIVE,
@@ -145,7 +136,6 @@ ENERGY_PER_CYCLE = EnergyPerCycle(
 )
 FRICTION_LOSS = FrictionLoss(
     name="friction_loss",
-    title="friction loss",
     kind=ENERGY,
     place=438,
     group=Group.DRIVE,

@@ -75,7 +75,6 @@ _envelope = partial(
 )
 ENVELOPE_LENGTH = _envelope(
     name="envelope_length",
-    title="envelope length",
     place=132,
     sentence="How long the room is, along the slider line, that crank and rod sweep over a turn with their widths.",
     formula="(r + h) + max(x_out + h_r, r + h_c): half widths h_c and h_r, the greater one h",
@@ -88,7 +87,6 @@ ENVELOPE_LENGTH = _envelope(
 )
 ENVELOPE_HEIGHT = _envelope(
     name="envelope_height",
-    title="envelope height",
     place=134,
     sentence="How high the room is, across the slider line, that crank and rod sweep over a turn with their widths.",
     formula="(r + h) + max(r + h, |e| + h_r): half widths h_c and h_r, the greater one h",

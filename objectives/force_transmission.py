@@ -61,7 +61,6 @@ def _pulled(machine: Mechanism) -> bool:
 
 FORCE_TRANSMISSION = ForceTransmission(
     name="force_transmission",
-    title="force transmission",
     kind=RATIO,
     place=300,
     group=Group.PROPORTIONS,
@@ -72,13 +71,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     picture="slider pin force",
     example=0.5,
     better="high",
-    domain=Domain(
-        lower=0.0,
-        upper=1.0,
-        open=False,
-        rule="force transmission lies between 0 and 1",
-        remedy="0.5 to 0.9 are usual",
-    ),
+    domain=Domain.share("force transmission", "0.5 to 0.9"),
     needs=(
         Need(
             _pulled,

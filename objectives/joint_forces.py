@@ -11,7 +11,6 @@ from .quantity import Group
 _force = partial(CyclePeak, kind=FORCE, group=Group.FORCES, section="8. Dynamics", on_sheet=True)
 PEAK_PIVOT_FORCE = _force(
     name="peak_pivot_force",
-    title="peak pivot force",
     signal=Signal.PIVOT_FORCE,
     place=140,
     sentence="The greatest force in the bearing of the crank in the frame within a turn.",
@@ -22,7 +21,6 @@ PEAK_PIVOT_FORCE = _force(
 )
 PEAK_CRANK_PIN_FORCE = _force(
     name="peak_crank_pin_force",
-    title="peak crank pin force",
     signal=Signal.CRANK_PIN_FORCE,
     place=150,
     sentence="The greatest force in the joint of crank and rod within a turn.",
@@ -32,7 +30,6 @@ PEAK_CRANK_PIN_FORCE = _force(
 )
 PEAK_SLIDER_PIN_FORCE = _force(
     name="peak_slider_pin_force",
-    title="peak slider pin force",
     signal=Signal.SLIDER_PIN_FORCE,
     place=160,
     sentence="The greatest force in the joint of rod and slider within a turn.",
@@ -42,7 +39,6 @@ PEAK_SLIDER_PIN_FORCE = _force(
 )
 PEAK_GUIDE_FORCE = _force(
     name="peak_guide_force",
-    title="peak guide force",
     signal=Signal.GUIDE_FORCE,
     place=170,
     sentence="The greatest force of the guide on the slider, normal to the slider line: what wears the guide.",

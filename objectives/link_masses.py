@@ -50,7 +50,6 @@ def _moving(number: Numbers) -> Any:
 _mass = partial(Mass, kind=MASS, group=Group.STRENGTH, section="22. Strength of crank and rod", plain=True)
 CRANK_MASS = _mass(
     name="crank_mass",
-    title="crank mass",
     of=_crank,
     place=430,
     sentence="The mass of the crank without its counterweight. That of a crank given by its section follows its size.",
@@ -60,7 +59,6 @@ CRANK_MASS = _mass(
 )
 ROD_MASS = _mass(
     name="rod_mass",
-    title="rod mass",
     of=_rod,
     place=432,
     sentence="The mass of the connecting rod. That of a rod given by its section follows its size.",
@@ -70,7 +68,6 @@ ROD_MASS = _mass(
 )
 MOVING_MASS = _mass(
     name="moving_mass",
-    title="moving mass",
     of=_moving,
     place=434,
     sentence="The mass of all that moves: crank, counterweight, rod and slider.",

@@ -69,7 +69,6 @@ def critical_stress(length: int, side: int, held: float, elasticity: float, stre
 
 FATIGUE_SAFETY = FatigueSafety(
     name="fatigue_safety",
-    title="fatigue safety",
     kind=RATIO,
     least=True,
     group=Group.STRENGTH,
@@ -89,7 +88,6 @@ FATIGUE_SAFETY = FatigueSafety(
 )
 BUCKLING_SAFETY = BucklingSafety(
     name="buckling_safety",
-    title="buckling safety",
     kind=RATIO,
     least=True,
     group=Group.STRENGTH,

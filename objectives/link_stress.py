@@ -57,7 +57,6 @@ _stress = partial(
 )
 ROD_STRESS = _stress(
     name="rod_stress",
-    title="rod stress",
     links=("rod",),
     place=440,
     sentence=(
@@ -85,7 +84,6 @@ CRANK_STRESS = replace(
 )
 STATIC_SAFETY = LinkStress(
     name="static_safety",
-    title="static safety",
     kind=RATIO,
     least=True,
     group=Group.STRENGTH,

@@ -31,6 +31,7 @@ class MotionDeviation(Quantity):
     table: ClassVar[str] = "target_motion"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_word("measure", self.measure, Measure)
 
     @property

@@ -11,7 +11,6 @@ _SECTION = "10. Motor and balance"
 
 PEAK_POWER = CyclePeak(
     name="peak_power",
-    title="peak power",
     kind=POWER,
     signal=Signal.POWER,
     place=210,
@@ -24,7 +23,6 @@ PEAK_POWER = CyclePeak(
 )
 MEAN_POWER = CycleAverage(
     name="mean_power",
-    title="mean power",
     kind=POWER,
     signal=Signal.TORQUE,
     which="mean",

@@ -20,7 +20,6 @@ _peak = partial(
 )
 PEAK_TORQUE = _peak(
     name="peak_torque",
-    title="peak torque",
     place=20,
     sentence=(
         "The greatest torque that the drive must give within a turn, whichever way it acts, with all masses, "

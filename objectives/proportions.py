@@ -36,7 +36,6 @@ def _to_crank(box: Ranges) -> tuple[float, float]:
 
 STROKE = ClosedFormQuantity(
     name="stroke",
-    title="stroke",
     kind=LENGTH,
     forms=(ClosedForm.STROKE,),
     rises=(True, False, True),
@@ -58,7 +57,6 @@ STROKE = ClosedFormQuantity(
 )
 ROD_TO_OFFSET = ClosedFormQuantity(
     name="rod_to_offset",
-    title="rod to offset",
     kind=RATIO,
     forms=(ClosedForm.ROD_TO_OFFSET,),
     rises=(True, True, False),
@@ -83,7 +81,6 @@ ROD_TO_OFFSET = ClosedFormQuantity(
 )
 ROD_TO_CRANK = ClosedFormQuantity(
     name="rod_to_crank",
-    title="rod to crank",
     kind=RATIO,
     forms=(ClosedForm.ROD_TO_CRANK,),
     rises=(False, True, True),
@@ -108,7 +105,6 @@ ROD_TO_CRANK = ClosedFormQuantity(
 )
 FOOTPRINT = ClosedFormQuantity(
     name="footprint",
-    title="footprint",
     kind=AREA,
     forms=(ClosedForm.FOOTPRINT_OF_CRANK, ClosedForm.FOOTPRINT_OF_OFFSET),
     place=130,

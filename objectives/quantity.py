@@ -54,6 +54,17 @@ class Domain:
     rule: str
     remedy: str
 
+    @classmethod
+    def share(cls, what: str, usual: str) -> Domain:
+        """Return the domain of a share, 0 to 1."""
+        return cls(upper=1.0, lower=0.0, open=False, rule=f"{what} lies between 0 and 1", remedy=f"{usual} are usual")
+
+    @classmethod
+    def acute(cls, within: str, usual: str) -> Domain:
+        """Return the domain of an acute angle; within: what lies between 0 and 90 deg, in words."""
+        remedy = f"{usual} are usual (a plain number is in rad)"
+        return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{within}, ends excluded", remedy=remedy)
+
     def refuses(self, value: float, *, least: bool) -> bool:
         """Return whether no linkage has a value. least: whether it is asked as a least value."""
         if least and self.idle:
@@ -71,6 +82,12 @@ class Values:
 
     values: Array
     gradients: Array | None
+
+
+def undefined(designs: Array, gradients: bool) -> Values:
+    """Return no numbers for designs (n, 3 + k), NaN throughout."""
+    none = np.full(np.shape(designs), np.nan)
+    return Values(none[:, 0], none if gradients else None)
 
 
 @dataclass(frozen=True)
@@ -110,8 +127,9 @@ def _fact(default: Any) -> Any:
 class Quantity(ABC):
     """A number that judges a design: its facts, and its values and gradients for a batch of designs.
 
-    name: in job files. title: for people. kind: of value, with its units. key: how its column begins, the name if left
-    out. short: title where room is scarce, the title if left out. place: in tables, lower first.
+    name: in job files. title: for people, the name in words if left out. kind: of value, with its units. key: how its
+    column begins, the name if left out. short: title where room is scarce, the title if left out. place: in tables,
+    lower first.
 
     group: that it is shown in. sentence: of the help, for an engineer who meets it first. advice: what is usual, or
     what it trades against. formula: in plain text, its symbols those of docs/theory.md. section: of docs/theory.md.
@@ -127,7 +145,7 @@ class Quantity(ABC):
     """
 
     name: str
-    title: str = _field(compare=False)
+    title: str = _fact("")
     kind: Kind
     key: str = _fact("")
     short: str = _fact("")
@@ -155,6 +173,9 @@ class Quantity(ABC):
     turning: bool = _fact(True)
     table: ClassVar[str] = ""
     """Table of a job without which there is no such quantity; none for one that every problem has."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "title", self.title or self.name.replace("_", " "))
 
     @property
     def stem(self) -> str:

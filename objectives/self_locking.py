@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,12 +40,7 @@ SELF_LOCKING_MARGIN = ClosedFormMargin(
     picture="self-locking",
     example="10 deg",
     better="high",
-    domain=Domain(
-        lower=0.0,
-        upper=0.5 * math.pi,
-        rule="the self-locking margin lies between 0, where friction locks, and 90 deg, ends excluded",
-        remedy="10 deg and more are usual (a plain number is in rad)",
-    ),
+    domain=Domain.acute("the self-locking margin lies between 0, where friction locks, and 90 deg", "10 deg and more"),
     floor=float(np.radians(5.0)),  # forces grow as 1 / sin(margin)
     needs=(FRICTION,),
     instead=TRANSMISSION_ANGLE.name,

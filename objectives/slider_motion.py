@@ -12,7 +12,6 @@ from .quantity import Group
 _peak = partial(CyclePeak, group=Group.MOTION, section="3. Kinematics")
 PEAK_SLIDER_SPEED = _peak(
     name="peak_slider_speed",
-    title="peak slider speed",
     kind=VELOCITY,
     signal=Signal.SLIDER_SPEED,
     place=180,
@@ -25,7 +24,6 @@ PEAK_SLIDER_SPEED = _peak(
 )
 PEAK_SLIDER_ACCELERATION = _peak(
     name="peak_slider_acceleration",
-    title="peak slider acceleration",
     kind=ACCELERATION,
     signal=Signal.SLIDER_ACCELERATION,
     place=190,
@@ -38,7 +36,6 @@ PEAK_SLIDER_ACCELERATION = _peak(
 )
 PEAK_SLIDER_JERK = _peak(
     name="peak_slider_jerk",
-    title="peak slider jerk",
     kind=JERK,
     signal=Signal.SLIDER_JERK,
     place=195,

@@ -12,7 +12,6 @@ _peak = partial(SwingPeak, group=Group.DRIVE, picture="torque")
 
 PEAK_ACTUATOR_FORCE = _peak(
     name="peak_actuator_force",
-    title="peak actuator force",
     kind=FORCE,
     state=DRIVE,
     driver="slider",
@@ -25,7 +24,6 @@ PEAK_ACTUATOR_FORCE = _peak(
 )
 PEAK_ACTUATOR_TORQUE = _peak(
     name="peak_actuator_torque",
-    title="peak actuator torque",
     kind=TORQUE,
     state=DRIVE,
     driver="crank",
@@ -36,7 +34,6 @@ PEAK_ACTUATOR_TORQUE = _peak(
 )
 HOLDING_FORCE = _peak(
     name="holding_force",
-    title="holding force",
     kind=FORCE,
     state=None,
     driver="slider",
@@ -49,7 +46,6 @@ HOLDING_FORCE = _peak(
 )
 HOLDING_TORQUE = _peak(
     name="holding_torque",
-    title="holding torque",
     kind=TORQUE,
     state=None,
     driver="crank",
@@ -61,7 +57,6 @@ HOLDING_TORQUE = _peak(
 )
 PEAK_ACTUATOR_POWER = _peak(
     name="peak_actuator_power",
-    title="peak actuator power",
     kind=POWER_KIND,
     state=POWER,
     timed=True,

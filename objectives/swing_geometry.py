@@ -1,7 +1,5 @@
 """Geometry of a limited swing: transmission angle of the driven side, way of the slider."""
 
-import math
-
 import numpy as np
 
 from .kinds import ANGLE, LENGTH
@@ -25,12 +23,7 @@ SWING_TRANSMISSION_ANGLE = SwingForm(
     picture="transmission angle",
     example="30 deg",
     better="high",
-    domain=Domain(
-        lower=0.0,
-        upper=0.5 * math.pi,
-        rule="the transmission angle of a swing lies between 0 and 90 deg, ends excluded",
-        remedy="20 to 50 deg are usual (a plain number is in rad)",
-    ),
+    domain=Domain.acute("the transmission angle of a swing lies between 0 and 90 deg", "20 to 50 deg"),
     floor=float(np.radians(10.0)),
 )
 ACTUATOR_TRAVEL = SwingForm(

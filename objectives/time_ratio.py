@@ -29,7 +29,6 @@ def _within(box: Ranges) -> tuple[float, float]:
 
 TIME_RATIO = ClosedFormQuantity(
     name="time_ratio",
-    title="time ratio",
     kind=RATIO,
     forms=(ClosedForm.TIME_RATIO,),
     rises=(True, False, True),

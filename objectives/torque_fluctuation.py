@@ -33,7 +33,6 @@ class TorqueFluctuation(Quantity):
 
 TORQUE_FLUCTUATION = TorqueFluctuation(
     name="torque_fluctuation",
-    title="torque fluctuation",
     kind=TORQUE,
     place=85,
     group=Group.DRIVE,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..model.kinematics import geometry
@@ -38,12 +36,7 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     picture="transmission angle",
     example="40 deg",
     better="high",
-    domain=Domain(
-        lower=0.0,
-        upper=0.5 * math.pi,
-        rule="the least transmission angle lies between 0 and 90 deg, ends excluded",
-        remedy="30 to 50 deg are usual (a plain number is in rad)",
-    ),
+    domain=Domain.acute("the least transmission angle lies between 0 and 90 deg", "30 to 50 deg"),
     # Torque and error grow without bound towards locking.
     floor=float(np.radians(10.0)),
     reach=Reach(

@@ -78,6 +78,7 @@ class OwnQuantity(Quantity):
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_name(self.name)
         if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
             raise InputError(f'a function is named "module:function"; got {self.function!r}; write it so')

@@ -180,7 +180,7 @@ class Formulas:
         stated = self._stated[name]
         try:
             node = parse(stated.formula, self._units)
-            self.made[name] = self._quantity(node, name, title=stated.title or name.replace("_", " "), key=name)
+            self.made[name] = self._quantity(node, name, title=stated.title or "", key=name)
             if stated.unit is not None:
                 self.made[name] = self._shown_in(self.made[name], node, stated)
         except JobError:

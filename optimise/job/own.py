@@ -85,7 +85,7 @@ class FunctionPart(Part):
         return OwnQuantity(
             name=name,
             function=self.function,
-            title=self.title or name.replace("_", " "),
+            title=self.title or "",
             kind=kind_in(self.unit, per_si(self.unit), kind_for(self.unit)),
             gradient=self.gradient,
             folders=tuple(folders),

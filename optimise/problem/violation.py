@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.cycle.gas_cycle import may_deliver_nothing
+from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.quantity import Array, Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ...objectives.volumetric_efficiency import VOLUMETRIC_EFFICIENCY
 from .problem import Problem
 from .requirements import Constraint, Objective
 

@@ -1,0 +1,94 @@
+"""Gas cycle of a machine's cylinders: volumes, work, mean pressure, what a compressor delivers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from ..model.cycle.gas_cycle import GasCycle, gas_cycle
+from ..model.machine.mechanism import Mechanism
+from .kinds import ENERGY, PRESSURE, RATIO, VOLUME
+from .needs import COMPRESSOR, CYLINDER
+from .quantity import Array, Domain, Group, Quantity, Values, undefined
+
+
+@dataclass(frozen=True, kw_only=True)
+class GasQuantity(Quantity):
+    """A number of the `GasCycle`, in closed form. of: gives it."""
+
+    of: Callable[[GasCycle], Any] = field(repr=False)
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); NaN without a cylinder that it is of; see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return undefined(dimensions, gradients)
+        return Values(*gas_cycle(mechanism, dimensions, self.of, gradients=gradients))
+
+
+_gas = partial(GasQuantity, group=Group.DRIVE, section="7. Loads", picture="cylinder", needs=(CYLINDER,))
+DISPLACEMENT_VOLUME = _gas(
+    name="displacement_volume",
+    kind=VOLUME,
+    of=lambda gas: gas.swept,
+    place=410,
+    sentence="The volume that the piston sweeps in a stroke; several cylinders add up.",
+    advice="It sets how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore.",
+    formula="sum of A S: piston area A, stroke S",
+    better="high",
+    domain=Domain(lower=0.0, rule="the displacement volume is positive", remedy="5 cm^3 to 5000 cm^3 are usual"),
+)
+CLEARANCE_RATIO = _gas(
+    name="clearance_ratio",
+    kind=RATIO,
+    of=lambda gas: gas.clearance / gas.swept,
+    place=420,
+    sentence="The volume that is left with the piston at its top, over the volume that it sweeps.",
+    advice="0.03 to 0.1 are usual for compressors: what is left expands again and takes the place of fresh gas.",
+    formula="sum of V_c / sum of A S",
+    example=0.05,
+    plain=True,
+)
+INDICATED_WORK = _gas(
+    name="indicated_work",
+    kind=ENERGY,
+    of=lambda gas: gas.work,
+    place=430,
+    sentence=(
+        "The work that the gas does on the pistons over a turn: positive for an engine, negative for a compressor or "
+        "pump, which takes it."
+    ),
+    advice="Maximise it in either case. Friction and other loads are not in it; with them it is the delivered work.",
+    formula="sum of the areas of p over V: closed integral of p dV",
+    example="-60 J",
+    better="high",
+    signed=True,
+)
+MEAN_EFFECTIVE_PRESSURE = _gas(
+    name="mean_effective_pressure",
+    kind=PRESSURE,
+    of=lambda gas: gas.cycle_work / gas.swept,
+    place=441,
+    sentence="The constant pressure that would do the work of a cycle in one stroke; negative where gas takes work.",
+    advice="It compares cylinders of different size. With fixed pressures it follows from the clearance ratio alone.",
+    formula="work of the cycles, of two turns for four strokes / sum of A S",
+    example="-2.4 bar",
+    better="high",
+    signed=True,
+    plain=True,
+)
+VOLUMETRIC_EFFICIENCY = _gas(
+    name="volumetric_efficiency",
+    kind=RATIO,
+    of=lambda gas: gas.delivers,
+    place=450,
+    sentence="The volume of gas that a compressor takes in during a stroke, over the volume that its piston sweeps.",
+    advice="What is left in the clearance expands first. Zero or less: nothing is delivered. Valves are ideal here.",
+    formula="1 - (V_c / (A S)) ((p_h / p_l)^(1/n_e) - 1); 1 for a liquid",
+    example=0.8,
+    better="high",
+    domain=Domain.share("the volumetric efficiency", "0.6 to 0.9"),
+    floor=0.05,  # towards zero the machine runs for nothing
+    needs=(COMPRESSOR,),
+)
