@@ -21,10 +21,11 @@ from .load import (
     CycleAngle,
     During,
     Enters,
-    Entry,
     Load,
     Passage,
     Table,
+    built,
+    points,
     require_table,
     require_word,
 )
@@ -142,16 +143,6 @@ class AngleTable(Load):
         return f"table of {len(self.angles)} crank angles{datum}, {during}"
 
 
-def _built(
-    crank_angles: tuple[float, ...],
-    forces: tuple[float, ...],
-    measured_from: AngleDatum,
-    cycle: CycleAngle,
-    during: During,
-) -> AngleTable:
-    return AngleTable(angles=crank_angles, forces=forces, datum=measured_from, cycle=cycle, during=during)
-
-
 def _of_pressures(
     pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
 ) -> AngleTable:
@@ -166,13 +157,8 @@ AngleTable.tables = (
         "table of forces over the crank angle",
         "A force tabulated over the crank angle: linear between the points, periodic.",
         (
-            Entry(
-                "crank_angles",
-                "Angle",
-                "crank angles, increasing, spanning less than the cycle",
-                ["0 deg", "90 deg"],
-                several=True,
-                increasing=True,
+            points(
+                "crank_angles", "Angle", "crank angles, increasing, spanning less than the cycle", "0 deg", "90 deg"
             ),
             FORCES,
             ANGLE_DATUM,
@@ -180,7 +166,7 @@ AngleTable.tables = (
             DURING,
         ),
         {"crank_angles": ["0 deg", "180 deg"], "forces": ["0 N", "-100 N"]},
-        _built,
+        built(AngleTable, crank_angles="angles", measured_from="datum"),
     ),
     Table(
         "pressure_angles",
@@ -188,14 +174,13 @@ AngleTable.tables = (
         "table of pressures over the crank angle",
         "Pressure in a cylinder over the crank angle: linear between the points, periodic; pressures are absolute.",
         (
-            Entry(
+            points(
                 "pressure_angles",
                 "Angle",
                 "crank angles from the dead centre at the head, in the sense of rotation, increasing, spanning less "
                 "than the cycle",
-                ["0 deg", "90 deg"],
-                several=True,
-                increasing=True,
+                "0 deg",
+                "90 deg",
             ),
             *PRESSURES,
             CYCLE,

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from .angle_table import AngleTable
-from .load import ANGLE_DATUM, CYCLE, AngleDatum, CycleAngle, Entry, Passage, Table
+from .load import ANGLE_DATUM, CYCLE, Entry, Passage, Table, built, points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,12 +44,6 @@ class CrankTable(AngleTable):
         return f"table of {len(self.angles)} torques on the crank over crank angle{datum}{cycle}"
 
 
-def _built(
-    torque_angles: tuple[float, ...], torques: tuple[float, ...], measured_from: AngleDatum, cycle: CycleAngle
-) -> CrankTable:
-    return CrankTable(angles=torque_angles, forces=torques, datum=measured_from, cycle=cycle)
-
-
 CrankTable.tables = (
     Table(
         "torque_angles",
@@ -57,13 +51,8 @@ CrankTable.tables = (
         "table of torques on the crank over the crank angle",
         "A torque on the crank tabulated over the crank angle: linear between the points, periodic.",
         (
-            Entry(
-                "torque_angles",
-                "Angle",
-                "crank angles, increasing, spanning less than the cycle",
-                ["0 deg", "90 deg"],
-                several=True,
-                increasing=True,
+            points(
+                "torque_angles", "Angle", "crank angles, increasing, spanning less than the cycle", "0 deg", "90 deg"
             ),
             Entry(
                 "torques",
@@ -76,6 +65,6 @@ CrankTable.tables = (
             CYCLE,
         ),
         {"torque_angles": ["0 deg", "180 deg"], "torques": ["0 N m", "-20 N m"]},
-        _built,
+        built(CrankTable, torque_angles="angles", torques="forces", measured_from="datum"),
     ),
 )

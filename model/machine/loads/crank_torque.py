@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import Enters, Entry, Load, Table
+from .load import Enters, Entry, Load, Table, built
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,18 +63,6 @@ class CrankTorque(Load):
         return "; ".join(parts) or "no torque on the crank"
 
 
-def _constant(crank_torque: float) -> CrankTorque:
-    return CrankTorque(torque=crank_torque)
-
-
-def _against(crank_resistance: float) -> CrankTorque:
-    return CrankTorque(resistance=crank_resistance)
-
-
-def _spring(torque_per_angle: float, free_angle: float) -> CrankTorque:
-    return CrankTorque(crank_stiffness=torque_per_angle, free_angle=free_angle)
-
-
 CrankTorque.tables = (
     Table(
         "crank_torque",
@@ -83,7 +71,7 @@ CrankTorque.tables = (
         "A constant torque on the crank, besides that of the drive.",
         (Entry("crank_torque", "Torque", "positive counter-clockwise", "-50 N m"),),
         {"crank_torque": "-50 N m"},
-        _constant,
+        built(CrankTorque, crank_torque="torque"),
     ),
     Table(
         "crank_resistance",
@@ -92,7 +80,7 @@ CrankTorque.tables = (
         "A torque of constant size on the crank against every motion, such as that of a brake or a seal.",
         (Entry("crank_resistance", "PositiveTorque", "its size", "5 N m"),),
         {"crank_resistance": "5 N m"},
-        _against,
+        built(CrankTorque, crank_resistance="resistance"),
     ),
     Table(
         "torque_per_angle",
@@ -104,6 +92,6 @@ CrankTorque.tables = (
             Entry("free_angle", "Angle", "crank angle at which the spring is free of torque", "45 deg"),
         ),
         {"torque_per_angle": "40 N m/rad", "free_angle": "0 deg"},
-        _spring,
+        built(CrankTorque, torque_per_angle="crank_stiffness"),
     ),
 )

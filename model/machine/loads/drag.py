@@ -55,6 +55,6 @@ Drag.tables = (
         "A resistance that grows with the square of the slider speed, as that of a fluid.",
         (Entry("drag", "QuadraticDamping", "force per square of the speed", "20 N s^2/m^2"),),
         {"drag": "10 N s^2/m^2"},
-        lambda drag: Drag(drag=drag),
+        Drag,
     ),
 )

@@ -178,6 +178,16 @@ class Load:
         raise NotImplementedError
 
 
+def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
+    """Return what builds a load from the values of its table. fields: of the load, by keys that differ."""
+    return lambda **given: kind(**{fields.get(key, key): value for key, value in given.items()})
+
+
+def points(name: str, kind: str, description: str, *example: str) -> Entry:
+    """Return the key of where the points of a table are, in increasing order."""
+    return Entry(name, kind, description, list(example), several=True, increasing=True)
+
+
 def require_word(name: str, value: object, words: object) -> None:
     """Refuse a value that is none of the words of a `Literal`."""
     if value not in get_args(words):

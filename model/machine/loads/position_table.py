@@ -10,7 +10,21 @@ import numpy as np
 
 from ...checks import keep_tuples
 from .cylinder import PRESSURES, Head, piston_forces
-from .load import DATUM, DURING, FORCES, Datum, During, Enters, Entry, Load, Passage, Table, require_table, require_word
+from .load import (
+    DATUM,
+    DURING,
+    FORCES,
+    Datum,
+    During,
+    Enters,
+    Load,
+    Passage,
+    Table,
+    built,
+    points,
+    require_table,
+    require_word,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,12 +83,6 @@ class PositionTable(Load):
         return f"table of {len(self.positions)} positions from the {self.datum}, {self.during}"
 
 
-def _built(
-    positions: tuple[float, ...], forces: tuple[float, ...], measured_from: Datum, during: During
-) -> PositionTable:
-    return PositionTable(positions=positions, forces=forces, datum=measured_from, during=during)
-
-
 def _of_pressures(pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any) -> PositionTable:
     forces = piston_forces(pressure_positions, head=head, **pressures)
     return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during)
@@ -87,20 +95,13 @@ PositionTable.tables = (
         "table of forces over the slider position",
         "A force tabulated over the slider position: linear between the points, constant beyond them.",
         (
-            Entry(
-                "positions",
-                "Length",
-                "slider positions, increasing",
-                ["0 mm", "20 mm"],
-                several=True,
-                increasing=True,
-            ),
+            points("positions", "Length", "slider positions, increasing", "0 mm", "20 mm"),
             FORCES,
             DATUM,
             DURING,
         ),
         {"positions": ["0 mm", "50 mm"], "forces": ["0 N", "-100 N"], "measured_from": "inner dead centre"},
-        _built,
+        built(PositionTable, measured_from="datum"),
     ),
     Table(
         "pressure_positions",
@@ -108,13 +109,12 @@ PositionTable.tables = (
         "table of pressures over the slider position",
         "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant beyond.",
         (
-            Entry(
+            points(
                 "pressure_positions",
                 "Length",
                 "distances of the piston from its top, the dead centre at the head, increasing",
-                ["0 mm", "20 mm"],
-                several=True,
-                increasing=True,
+                "0 mm",
+                "20 mm",
             ),
             *PRESSURES,
             DURING,

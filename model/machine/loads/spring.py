@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import DATUM, Datum, Enters, Entry, Load, Table, require_word
+from .load import DATUM, Datum, Enters, Entry, Load, Table, built, require_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,10 +43,6 @@ class Spring(Load):
         return f"spring {self.stiffness:.6g} N/m, free at {1e3 * self.free_position:.6g} mm from the {self.datum}"
 
 
-def _built(stiffness: float, free_position: float, measured_from: Datum) -> Spring:
-    return Spring(stiffness=stiffness, free_position=free_position, datum=measured_from)
-
-
 Spring.tables = (
     Table(
         "stiffness",
@@ -59,6 +55,6 @@ Spring.tables = (
             DATUM,
         ),
         {"stiffness": "1 N/mm", "free_position": "0 mm", "measured_from": "inner dead centre"},
-        _built,
+        built(Spring, measured_from="datum"),
     ),
 )

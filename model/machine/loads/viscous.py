@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import Enters, Entry, Load, Table
+from .load import Enters, Entry, Load, Table, built
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,10 +37,6 @@ class Viscous(Load):
         return f"viscous, {self.coefficient:.6g} N s/m"
 
 
-def _built(viscous: float) -> Viscous:
-    return Viscous(coefficient=viscous)
-
-
 Viscous.tables = (
     Table(
         "viscous",
@@ -49,6 +45,6 @@ Viscous.tables = (
         "A resistance proportional to the slider speed.",
         (Entry("viscous", "Damping", "force per speed", "50 N s/m"),),
         {"viscous": "10 N s/m"},
-        _built,
+        built(Viscous, viscous="coefficient"),
     ),
 )
