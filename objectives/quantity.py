@@ -11,14 +11,14 @@ from enum import Enum
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..model.arrays import Array as Array
+from ..model.arrays import Whole
 from ..model.machine.mechanism import Mechanism
 from .kinds import Face, Kind
 from .needs import Need, Without
 from .reach import Reach
 
-Array = NDArray[np.float64]
 Better = Literal["low", "high"]
 Offer = Literal["motion", "proportions", "requirement", "objective"]
 """Parts of a form that ask for a quantity unasked: the wanted motion, rules of proportion, what must hold, what is
@@ -108,7 +108,7 @@ class Pieces:
     least: bool = False
     other: Pieces | None = None
 
-    def at(self, places: NDArray[np.int64]) -> Pieces:
+    def at(self, places: Whole) -> Pieces:
         """Return the pieces at some places (n, m) of each design."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),

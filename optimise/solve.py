@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from ..model.arrays import Array
 from ..model.errors import InputError
 from ..objectives.own.interruption import interrupted_by
 from .certificate.infeasible import prove_infeasible
@@ -17,7 +18,6 @@ from .feasibility.best import Best, best_of
 from .feasibility.infeasibility import diagnose
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
-from .front.stationarity import Array
 from .methods.auto.auto import deliver, searched_by
 from .methods.auto.so_far import so_far
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients

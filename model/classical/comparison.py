@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
@@ -17,8 +18,6 @@ from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .lumped import lumped, rotating_and_reciprocating
 from .series import series_acceleration, series_torque, tangent_torque
-
-Array = NDArray[np.float64]
 
 ACCELERATION = ("series",)
 TORQUE = ("two masses by mass centre", "two masses, half and half", "series", "k F tan(alpha)")

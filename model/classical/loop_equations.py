@@ -15,12 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Mask, Whole
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-
-Array = NDArray[np.float64]
 
 _LAST_STEP = 1e-10
 """A step that ends the iteration, rad and shares of the rod: what is left is half its square times tan(phi)."""
@@ -37,7 +36,7 @@ class LoopSolution:
     rod_angle: Array
     rod_velocity: Array
     rod_acceleration: Array
-    iterations: NDArray[np.int64]
+    iterations: Whole
 
 
 def solve_loop(
@@ -108,7 +107,7 @@ def _jacobian(l: Array, phi: Array) -> Array:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def _solve(jacobian: Array, right: Array, wanted: NDArray[np.bool_], theta: Array) -> Array:
+def _solve(jacobian: Array, right: Array, wanted: Mask, theta: Array) -> Array:
     """Solve at the angles that are wanted; zero elsewhere."""
     singular = wanted & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
@@ -121,12 +120,12 @@ def _solve(jacobian: Array, right: Array, wanted: NDArray[np.bool_], theta: Arra
     return found
 
 
-def _not_converged(most: int, moving: NDArray[np.bool_], theta: Array) -> str:
+def _not_converged(most: int, moving: Mask, theta: Array) -> str:
     return (
         f"the iteration must end within {most} steps; got none at crank angle "
         f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
     )
 
 
-def _first_degrees(where: NDArray[np.bool_], theta: Array) -> Any:
+def _first_degrees(where: Mask, theta: Array) -> Any:
     return math.degrees(float(theta[where].flat[0]))

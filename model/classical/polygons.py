@@ -17,11 +17,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..linkage.linkage import Linkage
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..errors import SlidercrankError
 from .equations import STATES, System, rates
-
-Array = NDArray[np.float64]
 
 BETWEEN = 4
 """Samples per step of the integrator; a vibration of the contact takes six steps or more."""
@@ -38,7 +36,7 @@ class Trace:
     times: list[Array] = field(default_factory=list)
     states: list[Array] = field(default_factory=list)
     rates: list[Array] = field(default_factory=list)
-    outward: list[NDArray[np.bool_]] = field(default_factory=list)
+    outward: list[Mask] = field(default_factory=list)
     impact_times: list[float] = field(default_factory=list)
     impact_speeds: list[float] = field(default_factory=list)
 

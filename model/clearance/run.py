@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
@@ -21,7 +21,6 @@ from .equations import observe
 from .phases import FLIGHT, Integrator, Trace
 from .system import build
 
-Array = NDArray[np.float64]
 Status = Literal["done", "cancelled"]
 
 
@@ -68,7 +67,7 @@ class ClearanceRun:
     penetration: Array
     journal_x: Array
     journal_y: Array
-    in_contact: NDArray[np.bool_]
+    in_contact: Mask
     torque: Array
     input_work: Array
     load_work: Array

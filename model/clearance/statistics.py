@@ -6,14 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..signals.peaks import find_peaks
 from ..signals.signals import Signal
 from .run import ClearanceRun
-
-Array = NDArray[np.float64]
 
 CONFIDENCE = 0.99
 

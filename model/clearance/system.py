@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
@@ -18,7 +18,7 @@ from .equations import System
 
 def build(
     mechanism: Mechanism, linkage: Linkage, clearance: Clearance, *, start: float = 0.0
-) -> tuple[System, NDArray[np.float64], Loads]:
+) -> tuple[System, Array, Loads]:
     """Return the system, its derived block and the structure of its loads. start: crank angle at time zero, rad.
 
     Raises `InputError` for a crank that accelerates, for masses that leave the motion undetermined, and for a clearance

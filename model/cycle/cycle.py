@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
@@ -26,8 +27,6 @@ from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .self_locking import locking_margin
-
-Array = NDArray[np.float64]
 
 _COLUMNS = 16
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")

@@ -19,8 +19,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.segments import crowded, crowding, uncrowded
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
@@ -29,8 +29,6 @@ from ..machine.two_turns import TURN, cycle_turns
 from ..signals.averages import average
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
-
-Array = NDArray[np.float64]
 
 _NODES, _TAIL, _ROUNDS = 16, 3, 40
 _RESOLVED = 1e-12  # what may be left of the last Legendre coefficients of a panel

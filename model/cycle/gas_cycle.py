@@ -14,8 +14,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.gas import compressed_at, expanded_at
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import turning
@@ -27,8 +27,6 @@ from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.two_turns import cycle_turns, halves
-
-Array = NDArray[np.float64]
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
 _SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below rounding

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..dynamics.gas import compressed_at, expanded_at
 from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
@@ -17,7 +18,6 @@ from ..machine.loads.cylinder import Cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import half_at
 
-Array = NDArray[np.float64]
 _BEFORE = 5e-10  # rad, that a crank angle is taken earlier: less than what figures mark jumps by
 
 

@@ -20,8 +20,6 @@ from ..machine.raw import load_structure, raw_vector
 from .cycle import cycle
 from .self_locking import locking_margin
 
-Array = NDArray[np.float64]
-
 _SAMPLES = 256  # of a quarter or so of the cycle
 
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..machine.mechanism import Mechanism
-
-Array = NDArray[np.float64]
 
 
 def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:

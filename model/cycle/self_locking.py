@@ -24,16 +24,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kinematics.geometry import least_transmission_angle
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import number_of, require_width
 from ..machine.raw import Raw
-
-Array = NDArray[np.float64]
 
 
 def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
@@ -25,8 +26,6 @@ from ..signals.panels import Extreme, Panels, panels_of
 from .cycle import breakpoints, cycle
 from .pace import pace, pace_knots
 from .shaking import shaking_curves
-
-Array = NDArray[np.float64]
 
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 256

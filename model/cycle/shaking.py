@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
@@ -14,8 +15,6 @@ from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
 from ..signals.signals import design_motion
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
 from ..machine.design import design_at
 from ..machine.raw import Loads
 from .contact import cut_contacts
 from .rubbing import always_drives
 from .segments import Cuts, Watch, cut_cycle, room_for
-
-Array = NDArray[np.float64]
 
 
 class Breakpoints(NamedTuple):

@@ -10,12 +10,13 @@ from threading import Lock
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import AssemblyError
 
 
-def turning(designs: ArrayLike) -> NDArray[np.float64]:
+def turning(designs: ArrayLike) -> Array:
     """Return designs (n, 3 + k) of full rotation as a contiguous array: crank, rod, offset, m, and more.
 
     Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.

@@ -6,15 +6,13 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import Row, Table, kernel
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
 from .in_line import in_line
-
-Array = NDArray[np.float64]
 
 
 class ClosedForm(IntEnum):

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..checks import keep_tuples
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
@@ -27,7 +27,6 @@ from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import Row, Table, seldom_kernel
 from .position import motion
 
-Array = NDArray[np.float64]
 Freedom = Literal["fixed", "free"]
 Measure = Literal["greatest", "rms"]
 

@@ -17,12 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import turning
 from .position import motion
 from .target_motion import Measure, TargetMotion, fit
-
-Array = NDArray[np.float64]
 
 _PEAKS = 6  # local peaks over the points, of either sign, that make pieces
 _BESIDE = 3  # the highest of the other points

@@ -17,14 +17,15 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Branch
-from .values import Array, first, numbers
+from .values import first, numbers
 
 Solution = Literal["outward", "inward"]
 
@@ -169,7 +170,7 @@ def finite(name: str, value: ArrayLike) -> Array:
 
 
 def _refuse(
-    wrong: NDArray[np.bool_],
+    wrong: Mask,
     x: Array,
     dimensions: tuple[Array, Array, Array],
     rule: str,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
@@ -17,7 +18,7 @@ from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
 from .from_slider import CrankSolution, crank_solutions
 from .picture import Pose, figure, svg
-from .values import Array, Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
+from .values import Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,9 +68,9 @@ class Linkage:
         return 1.0 if self.branch == "open" else -1.0
 
     @property
-    def rotates_fully(self) -> NDArray[np.bool_]:
+    def rotates_fully(self) -> Mask:
         """Whether the crank turns through: rod > crank + |offset|."""
-        turns: NDArray[np.bool_] = self.rod.real > self.crank.real + np.abs(self.offset.real)
+        turns: Mask = self.rod.real > self.crank.real + np.abs(self.offset.real)
         return turns
 
     def require_full_rotation(self) -> None:

@@ -13,11 +13,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..machine.loads.load import Passage
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
-Array = NDArray[np.float64]
 MORE = 0.01
 """Of the greater work: strokes whose works differ by less are loaded alike."""
 _STEPS = 256  # of a stroke: sums good to 1e-3

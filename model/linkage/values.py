@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..kinematics.in_line import in_line
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -99,12 +98,12 @@ def in_a_turn(angle: Array) -> Array:
     return found
 
 
-def first(values: Array, where: NDArray[np.bool_]) -> float:
+def first(values: Array, where: Mask) -> float:
     """Return the first of the values that are marked."""
     return float(np.asarray(values)[where].flat[0])
 
 
-def in_mm(crank: Array, rod: Array, offset: Array, where: NDArray[np.bool_]) -> str:
+def in_mm(crank: Array, rod: Array, offset: Array, where: Mask) -> str:
     """Return the first of the linkages that are marked, in words, mm."""
     crank, rod, offset = (np.broadcast_to(value, where.shape) for value in (crank, rod, offset))
     return (

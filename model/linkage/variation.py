@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from .linkage import Linkage
 from .values import Kinematics
 
-Array = NDArray[np.float64]
 Dimension = Literal["crank", "rod", "offset"]
 
 

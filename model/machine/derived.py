@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Whole
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Integers, Row, Table, kernel
 from .design import DESIGN, LOAD_ROWS, derive
 from .raw import Loads
-
-Array = NDArray[np.float64]
 
 _ONE, _NONE = np.zeros((1, 0)), np.zeros(0, np.int64)
 
@@ -44,7 +43,7 @@ def _derive(
 
 
 def derived(
-    raw: Array, loads: Loads, columns: NDArray[np.int64] = _NONE, designs: Array = _ONE, *, steps: bool = False
+    raw: Array, loads: Loads, columns: Whole = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
     """Return blocks (n, DESIGN + LOAD_ROWS k, 1) of raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
 

@@ -13,8 +13,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import InputError
 
@@ -146,7 +147,7 @@ class Drive:
         """Inertia turning with the crank besides the mechanism, seen at the crank: flywheel + ratio^2 motor, kg m^2."""
         return self.flywheel + self.gear_ratio**2 * self.motor_inertia
 
-    def torque(self, crank_speed: ArrayLike, direction: float) -> NDArray[np.float64]:
+    def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
 
         direction: +1 or -1, the way the motor is meant to turn the crank.

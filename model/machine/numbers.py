@@ -15,8 +15,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Whole
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
@@ -24,8 +24,6 @@ from .mechanism import Mechanism
 from .raw import LOAD_SLOTS, Raw, raw_vector
 from .remembered import remembered, remembered_batch
 from .varying import Varying
-
-Array = NDArray[np.float64]
 
 _LINK = {
     "width": (0, "m"),
@@ -90,7 +88,7 @@ class Numbers:
     the design's numbers; None where that is the identity.
     """
 
-    columns: NDArray[np.int64]
+    columns: Whole
     values: Array
     slopes: Array | None
 

@@ -11,8 +11,8 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
@@ -59,7 +59,7 @@ class Loads(NamedTuple):
     force: Row
 
 
-def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
+def raw_vector(mechanism: Mechanism) -> Array:
     """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
 
     Raises `InputError` for one with varying numbers: it has none before a design says which.
@@ -103,7 +103,7 @@ def raw_vector(mechanism: Mechanism) -> NDArray[np.float64]:
 
 
 @remembered
-def fullest_inputs(mechanism: Mechanism) -> tuple[NDArray[np.float64], Loads]:
+def fullest_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
     """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has."""
     raw = raw_vector(mechanism.fullest)
     raw.flags.writeable = False

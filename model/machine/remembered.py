@@ -8,14 +8,11 @@ from functools import wraps
 from threading import Lock
 from typing import Concatenate, ParamSpec, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Array
 from .mechanism import Mechanism
 
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
-Array = NDArray[np.float64]
 
 _BATCHES = 4
 _LARGEST = 512  # designs of a batch: the chunks of kernels, see `batches.in_chunks`

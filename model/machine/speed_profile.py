@@ -13,12 +13,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite
 from ..errors import InputError
-
-Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
 _MOST = 100  # harmonics

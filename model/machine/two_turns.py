@@ -15,14 +15,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Whole
 from ..errors import InputError
 from .mechanism import Mechanism
 from .remembered import remembered
 from .varying import Varying
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
 
@@ -61,7 +59,7 @@ def one_turn(mechanism: Mechanism) -> Mechanism:
     return halves(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
 
 
-def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> NDArray[np.int64]:
+def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> Whole:
     """Return the place of the half, 0 or 1, at crank angles, rad, for dead centres inner and outer; broadcasts."""
     datum = _datum(mechanism)
     way = 1.0 if datum == "zero crank angle" else mechanism.direction

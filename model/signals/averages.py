@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, on_crank, sense_of
 from ..dynamics.rubbing import always_drives, joint_forces
@@ -39,8 +39,6 @@ from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_r
 from .signals import Signal, signal
 from .two_turns import averaged
 from .watch import inputs_of, watch_of
-
-Array = NDArray[np.float64]
 
 _NODES = 192  # of a smooth curve; why so many: `quadrature`
 _TORQUE = int(Signal.TORQUE)

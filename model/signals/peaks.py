@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import (
@@ -41,8 +41,6 @@ from ..machine.two_turns import cycle_turns, halves
 from .signals import Signal, design_motion, signal
 from .two_turns import highest
 from .watch import inputs_of, watch_of
-
-Array = NDArray[np.float64]
 
 ANGLES = 128
 """Sampled angles a turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds

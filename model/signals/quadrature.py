@@ -7,11 +7,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import analytic
-
-Array = NDArray[np.float64]
 
 # Measured on rods 0.1 % longer than crank + offset (kappa 0.21), over random machines: 128 nodes and 12 panels of 16
 # nodes leave an RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11. Below EVEN there are more.

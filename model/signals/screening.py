@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.segments import crowding
 from ..dynamics.torque import forces, smooth_load
 from ..kernel.arithmetic import STEP, analytic, inverse, root
@@ -33,8 +33,6 @@ from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
 from .signals import Signal, design_motion, signal
 from .watch import watch_of
-
-Array = NDArray[np.float64]
 
 ANGLES = 64
 """Sampled angles a turn, where thousands of designs are only sorted."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
@@ -36,8 +36,6 @@ from ..machine.two_turns import cycle_turns, halves
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
 from .signals import Signal
 from .watch import inputs_of
-
-Array = NDArray[np.float64]
 
 LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
 """Places of the curves."""

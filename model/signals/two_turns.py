@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kinematics import geometry
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import in_cycle
-
-Array = NDArray[np.float64]
 
 
 class _Peaks(Protocol):

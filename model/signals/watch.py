@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Array
 from ..dynamics.segments import Watch
 from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
@@ -14,8 +12,6 @@ from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
 from ..machine.remembered import remembered
 from ..machine.two_turns import one_turn
 from .signals import Signal
-
-Array = NDArray[np.float64]
 
 
 def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:

@@ -24,16 +24,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask, Whole
 from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
 from ..machine.remembered import remembered_batch
 from .section_forces import CRANK, ROD, Stress, at_share
-from .stress_points import WIDE, Field, Whole, field_of
+from .stress_points import WIDE, Field, field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_of, propose, room_for
-
-Array = NDArray[np.float64]
 
 KEPT = 8
 """Maxima kept of a design, highest first."""
@@ -78,7 +76,7 @@ class _Maxima:
     value: Array
     angle: Array
     segment: Whole
-    used: NDArray[np.bool_]
+    used: Mask
     spacing: Array
 
     def __post_init__(self) -> None:

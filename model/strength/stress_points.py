@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Mask, Whole
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
 from ..dynamics.contact import rubs, shift_of, sides_of
 from ..dynamics.rubbing import joint_forces
@@ -26,9 +27,6 @@ from ..machine.raw import Loads, Raw
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import inputs_of, watch_of
 from .section_forces import stress_along
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 ANGLES = 128
 """Samples a turn, at least three a segment."""
@@ -181,9 +179,9 @@ class Field:
     samples: Samples
 
     @property
-    def locked(self) -> NDArray[np.bool_]:
+    def locked(self) -> Mask:
         """Return whether friction locks a design, (n,)."""
-        none: NDArray[np.bool_] = self.cuts.many == 0
+        none: Mask = self.cuts.many == 0
         return none
 
     def ends(self, which: Whole, segment: Whole) -> tuple[Array, Array]:

@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from .push import bend
 from .swing import Swing, extreme_angles
 
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 _FLAT = 1e-12
 
 
@@ -33,7 +31,7 @@ class DrivenAngles:
     slopes: Array
 
 
-def closes(swing: Swing, designs: Array) -> Bools:
+def closes(swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close over the whole swing, without a dead point where the slider drives."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
@@ -42,7 +40,7 @@ def closes(swing: Swing, designs: Array) -> Bools:
     return np.asarray(found)
 
 
-def passes(swing: Swing, sign: float, designs: Array) -> Bools:
+def passes(swing: Swing, sign: float, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close and pass no dead point where the slider drives.
 
     sign: +1 on the open branch, -1 on the crossed one.
@@ -54,7 +52,7 @@ def passes(swing: Swing, sign: float, designs: Array) -> Bools:
     return found
 
 
-def _dead(swing: Swing, sign: float, designs: Array) -> Bools:
+def _dead(swing: Swing, sign: float, designs: Array) -> Mask:
     """Return which designs have a dead point in the swing: beyond two of them the angle is above zero again."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     found = np.zeros(len(designs), np.bool_)

@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..cycle.cycle import curves_of, design_of
 from ..dynamics.torque import Balance, balance, with_couple
 from ..kinematics.position import Motion, motion
@@ -35,7 +36,7 @@ from ..machine.mechanism import Mechanism
 from ..signals.position_error import influences
 from .law import way as way_of
 from .push import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
-from .swing import Array, Swing
+from .swing import Swing
 
 _STILL = 1e-200
 """A crank speed, rad/s, that says which way the crank turns and has no inertia."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import analytic
 from .words import Law
-
-Array = NDArray[np.float64]
 
 _TURN = 2.0 * np.pi
 _RAMP = 1.0 / 3.0

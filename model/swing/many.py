@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask, Whole
 from ..dynamics.rubbing import drives
 from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
@@ -28,9 +28,6 @@ from .law import corners, shares_of
 from .points import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
 from .swing import Swing, extreme_angles
 
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Integers = NDArray[np.int64]
 _THIN = 1e-12
 _SCAN = 33
 _CONTACTS = 6
@@ -47,10 +44,10 @@ class Pieces:
 
     back: bool
     cuts: Array
-    state: Integers
+    state: Whole
 
     @property
-    def live(self) -> Bools:
+    def live(self) -> Mask:
         """Pieces (n, c - 1) that have a length."""
         return np.asarray(np.diff(self.cuts, axis=1) > _THIN)
 
@@ -100,7 +97,7 @@ class Many:
         found = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, inside, back))
         return found.reshape(*shape, found.shape[1])
 
-    def locked(self) -> Bools:
+    def locked(self) -> Mask:
         """Return which designs friction may lock somewhere on the swing."""
         if not self.rubs:
             return np.zeros(self.count, np.bool_)
@@ -211,7 +208,7 @@ class Many:
         cuts, states_of = np.concatenate([own.cuts, more], axis=1), np.concatenate([own.state, state], axis=1)
         return _sorted(Pieces(own.back, cuts, states_of))
 
-    def _root(self, design: Integers, low: Array, high: Array, inside: Array, back: float) -> Array:
+    def _root(self, design: Whole, low: Array, high: Array, inside: Array, back: float) -> Array:
         """Return the shares between two at which the guide's force is zero, by bisection and Newton's iteration."""
         rising = self.states(design, high, inside, back)[:, GUIDE].real > 0.0
         at, rows = 0.5 * (low + high), np.arange(len(low))
@@ -229,7 +226,7 @@ class Many:
                 break
         return at
 
-    def moved(self, own: Pieces, design: Integers, cut: Integers, inside: Array) -> Array:
+    def moved(self, own: Pieces, design: Whole, cut: Whole, inside: Array) -> Array:
         """Return by how much cuts (p,) of designs move in share per unit of each raw number, (p, c)."""
         state = own.state[design, cut]
         slips = np.zeros((len(design), self.columns))
@@ -253,7 +250,7 @@ def _sorted(own: Pieces) -> Pieces:
     return Pieces(own.back, cuts, np.where(ends, -1, state))
 
 
-def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Bools:
+def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can swing as asked; see `require_swing` of one."""
     sign = 1.0 if mechanism.branch == "open" else -1.0
     found = passes(swing, sign, designs)

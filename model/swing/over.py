@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..cycle.cycle import kinks_of_loads
 from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
@@ -17,9 +17,8 @@ from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure
 from .forces import SwingCurves, driver_ends, swing_curves
 from .law import corners, share_of
-from .swing import Array, Swing, dead_points
+from .swing import Swing, dead_points
 
-Bools = NDArray[np.bool_]
 _SAMPLES = 721
 _ZOOMS, _ZOOMED = 7, 41
 _EQUAL = 1e-12
@@ -164,7 +163,7 @@ class Over:
             found += [self._change(share[i], share[i + 1], side, back) for i in places]
         return found
 
-    def _change(self, low: float, high: float, side: Callable[[SwingCurves], Bools], back: bool) -> float:
+    def _change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
         """Return the share between two at which a side changes, on the side of the latter; bisection."""
         after = side(self.at(np.array([high]), back=back))[0]
         for _ in range(_BISECTIONS):
@@ -173,15 +172,15 @@ class Over:
         return float(high)
 
 
-def _locks(curves: SwingCurves) -> Bools:
+def _locks(curves: SwingCurves) -> Mask:
     return np.isnan(curves.drive)
 
 
-def _presses(curves: SwingCurves) -> Bools:
+def _presses(curves: SwingCurves) -> Mask:
     return curves.guide > 0.0
 
 
-def _turns_back(curves: SwingCurves) -> Bools:
+def _turns_back(curves: SwingCurves) -> Mask:
     return curves.rod_rate > 1.0
 
 

@@ -12,8 +12,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Whole
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
@@ -21,8 +21,6 @@ from .many import Many, Pieces, able
 from .points import DRIVE, ERROR
 from .swing import Swing
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 KEPT = 6
 """Peaks kept of a design, highest first."""
 _LEAST, _ALL = 9, 41  # samples of a piece, and of a way in one piece
@@ -50,9 +48,9 @@ class SwingPeaks:
 class _Tops:
     """Candidates (p,) of many designs: where they are, and between which shares."""
 
-    design: Integers
-    piece: Integers
-    cut: Integers
+    design: Whole
+    piece: Whole
+    cut: Whole
     share: Array
     low: Array
     high: Array
@@ -144,7 +142,7 @@ def _of_way(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> 
     return values, places, slopes
 
 
-def _slips(many: Many, own: Pieces, design: Integers, cut: Integers, inside: Array) -> Array:
+def _slips(many: Many, own: Pieces, design: Whole, cut: Whole, inside: Array) -> Array:
     slips = np.zeros((len(design), many.columns))
     on = np.flatnonzero(cut >= 0)
     if len(on):
@@ -183,11 +181,11 @@ def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> _T
     )
 
 
-def _refined(many: Many, tops: _Tops, inside: Array, back: float, state: int) -> tuple[Array, Integers]:
+def _refined(many: Many, tops: _Tops, inside: Array, back: float, state: int) -> tuple[Array, Whole]:
     """Return the shares of tops, roots of the slope by bracketed secants, and the cut of each, -1 for none."""
     share, cut = tops.share.copy(), tops.cut.copy()
 
-    def slope(rows: Integers) -> Array:
+    def slope(rows: Whole) -> Array:
         found = many.states(tops.design[rows], share[rows], inside[rows], back, STEP)[:, state]
         return np.asarray(np.where(found.real < 0.0, -1.0, 1.0) * found.imag / STEP)
 
@@ -243,7 +241,7 @@ def _at_ends(many: Many, gradients: bool) -> tuple[Array, Array, Array]:
     return first, where, np.take_along_axis(np.stack(slopes, axis=1), order[:, :, None], axis=1)
 
 
-def _ranks(design: Integers) -> Integers:
+def _ranks(design: Whole) -> Whole:
     """Return the rank of each of sorted rows within its design."""
     start = np.searchsorted(design, design, side="left")
     return np.asarray(np.arange(len(design)) - start, dtype=np.int64)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Whole
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.rubbing import joint_forces
@@ -23,7 +24,6 @@ from .law import code_of, way_at
 from .push import PinSides, bend, free_pin, newton_step, pin_rows
 from .swing import Swing
 
-Array = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
@@ -219,7 +219,7 @@ def states(
     steps: Complexes,
     loads: Loads,
     path: Path,
-    points: tuple[NDArray[np.int64], NDArray[np.int64], Array, Array, Array, Array],
+    points: tuple[Whole, Whole, Array, Array, Array, Array],
 ) -> Complexes:
     """Return states (p, 8) at points: numbers of block and stepped block, share and its imaginary part, piece, way.
 

@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..checks import require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
@@ -21,7 +20,6 @@ from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .words import Driver, Law
 
-Array = NDArray[np.float64]
 _TURN = 2.0 * math.pi
 _LEAST, _MOST = 1e-6, 1e9  # s
 

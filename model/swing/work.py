@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
@@ -19,7 +19,6 @@ from .many import Many, Pieces, able
 from .points import DRIVE, RATE
 from .swing import Swing
 
-Array = NDArray[np.float64]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _PANELS, _GRADED = 8, 1
 _CHUNK = 64

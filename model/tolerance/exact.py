@@ -31,11 +31,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
-from .sources import Array, counted_angles, limit_box
+from .sources import counted_angles, limit_box
 
 _CELLS = 4  # highest samples around which the greatest deviation is searched further
 _TURN = 2.0 * np.pi

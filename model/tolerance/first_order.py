@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
-from .sources import Array, limit_box, limits, source_influences
+from .sources import limit_box, limits, source_influences
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .sources import Array, counted_angles, limits, source_influences
+from .sources import counted_angles, limits, source_influences
 from .spreads import Draw, Spreads
 
 CHUNK = 1024

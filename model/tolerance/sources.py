@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
-
-Array = NDArray[np.float64]
 
 SOURCES = (
     *("crank", "rod", "offset", "crank angle"),

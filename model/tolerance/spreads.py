@@ -8,9 +8,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from ..machine.loads.load import require_word
-from .sources import GUIDE, PINS, Array
+from .sources import GUIDE, PINS
 
 Shape = Literal["normal", "truncated normal", "uniform", "triangular"]
 Contact = Literal["along the rod", "any direction", "anywhere"]

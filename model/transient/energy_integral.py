@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .equation import Array
+from ..arrays import Array
 
 if TYPE_CHECKING:
     from .turn import Guess, PeriodicTurn

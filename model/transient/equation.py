@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
@@ -38,8 +38,6 @@ from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12

@@ -19,11 +19,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
-from .equation import NEAREST, TURN, Array, CrankEquation, Stretch
+from .equation import NEAREST, TURN, CrankEquation, Stretch
 from .record import Recorder, Transient, Verdict
 
 _EPS = 1e-12

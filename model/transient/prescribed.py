@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..cycle.cycle import Cycle, cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from .equation import TURN, Array
+from .equation import TURN
 
 Function = Callable[[Array], ArrayLike]
 

@@ -7,11 +7,12 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from ..arrays import Array
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
-from .equation import TURN, Array, CrankEquation, Stretch
+from .equation import TURN, CrankEquation, Stretch
 
 Verdict = Literal["time is up", "turns done", "steady", "stands still", "beyond the torque table", "cancelled"]
 

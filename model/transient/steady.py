@@ -6,13 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.dissipation import works_over_a_turn
 from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
 from ..machine.mechanism import Mechanism
 from .energy_integral import coasting, cut_where_least, graded
-from .equation import TURN, Array
+from .equation import TURN
 from .forward import drive_of
 from .shaft import equation_of
 from .turn import Guess, PeriodicTurn, Profile, Torque

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
+from ..arrays import Array, Mask
 from ..dynamics.segments import crowded, crowding, uncrowded
-from .equation import TURN, Array, Equation, Terms
+from .equation import TURN, Equation, Terms
 
 _NODES = 16
 _PANELS = 40
@@ -144,7 +144,7 @@ class PeriodicTurn:
         """Return the same turn whose panels end at further crank angles, (n,), rad."""
         return PeriodicTurn(self.equation, self.dimensions, (*self.cuts, *(float(angle) for angle in angles)))
 
-    def _rough(self, values: Array) -> NDArray[np.bool_]:
+    def _rough(self, values: Array) -> Mask:
         """Return the panels, (panels,), on which values on the nodes are not resolved."""
         tail = np.abs(values @ self._series[-_TAIL:].T).max(axis=1)
         return np.asarray(~(tail <= _RESOLVED * np.abs(values).max()))

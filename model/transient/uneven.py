@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..cycle.cycle import Cycle, breakpoints, cycle
 from ..cycle.pace import pace, pace_knots
 from ..cycle.shaking import shaking_curves
@@ -25,8 +25,6 @@ from ..linkage.single import single
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.panels import Extreme, panels_of
-
-Array = NDArray[np.float64]
 
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 360

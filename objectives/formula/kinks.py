@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Mask
 from ..quantity import Array, Pieces
 from .expression import Number
 from .slopes import BINARY, UNARY, partials, sum_of
@@ -34,7 +34,7 @@ class Side:
     values: Array
     gradients: Array
     labels: Array
-    there: NDArray[np.bool_]
+    there: Mask
 
     @property
     def first(self) -> Side:
@@ -236,7 +236,7 @@ def _extreme(function: str, arguments: list[Both]) -> Both:
     return Both(together, narrow, sign) if greatest else Both(narrow, together, sign)
 
 
-def _either(rows: NDArray[np.bool_], one: Side, other: Side) -> Side:
+def _either(rows: Mask, one: Side, other: Side) -> Side:
     """Return one side where `rows` (n,) says so, another one elsewhere."""
     at = rows[:, None]
     return Side(

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.kernel.arithmetic import STEP
 from ...model.machine.mechanism import Mechanism
 from .designs import Designs, Peaks
 
-Array = NDArray[np.float64]
 Function = Callable[[Designs], Any]
 
 PIECES = 32

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.follow import follow_forces
 from .apply import Answer, Function, Refused, apply, place
@@ -136,7 +136,7 @@ def main() -> None:
                 Path(path).unlink(missing_ok=True)  # whoever asked may have been killed
                 return
             mechanism = machine or mechanism
-            dimensions: NDArray[np.float64] = np.frombuffer(data).reshape(-1, 3)
+            dimensions: Array = np.frombuffer(data).reshape(-1, 3)
             try:
                 with watch:
                     answer = apply(function, mechanism, dimensions, column, make=Timed)

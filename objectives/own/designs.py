@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
@@ -31,7 +32,7 @@ _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 class Peaks(np.ndarray[Any, np.dtype[Any]]):
     """Local peaks (n, k) with their crank angles, which arithmetic keeps: the search follows peaks by them."""
 
-    angles: NDArray[np.float64] | None = None
+    angles: Array | None = None
 
     def __array_finalize__(self, of: object) -> None:
         """Take over the angles of what this was made of."""
@@ -83,7 +84,7 @@ class Designs:
         return len(self._dimensions)
 
     @property
-    def angles(self) -> NDArray[np.float64]:
+    def angles(self) -> Array:
         """Crank angles (n, 128) around the cycle, closer together where the linkage comes close to locking."""
         return self._uncrowded(np.linspace(-np.pi, np.pi, _GRID, endpoint=False))[0]
 
@@ -188,7 +189,7 @@ class Designs:
         sine, cosine = np.sin(angle), np.cos(angle)
         return motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
 
-    def _uncrowded(self, tau: Numbers) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _uncrowded(self, tau: Numbers) -> tuple[Array, Array]:
         """Return crank angles (n, k) of crowded ones, and their derivative by them; see `segments.crowding`."""
         q = (self.crank / (self.rod - magnitude(self.offset))).real
         kappa = np.sqrt(np.sqrt(np.maximum(1.0 - q * q, 1e-12)))
@@ -197,16 +198,16 @@ class Designs:
         angle = 0.5 * np.pi + tau + turn - _TURN * np.round(turn / _TURN)
         return angle, kappa / (cosine**2 + (kappa * sine) ** 2)
 
-    def _sampled(self, curve: Curve, tau: Numbers) -> NDArray[np.float64]:
+    def _sampled(self, curve: Curve, tau: Numbers) -> Array:
         values = np.asarray(curve(self._uncrowded(tau)[0]))
         if values.shape != tau.shape:
             raise ValueError(
                 f"a curve must give as many values as it gets crank angles, {tau.shape}; got {values.shape}; "
                 "use the angles that it gets, and sums over them nowhere"
             )
-        return cast(NDArray[np.float64], values.real)
+        return cast(Array, values.real)
 
-    def _around(self, curve: Curve, centre: Numbers, steps: Numbers) -> NDArray[np.float64]:
+    def _around(self, curve: Curve, centre: Numbers, steps: Numbers) -> Array:
         """Return the curve (n, p, s) at steps (s,) from crowded angles (n, p)."""
         tau = centre[:, :, None] + steps
         return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
@@ -222,7 +223,7 @@ class Designs:
         step = np.where(smooth, -first / np.where(smooth, second, 1.0), 0.0)
         return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
 
-    def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, NDArray[np.float64]]:
+    def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, Array]:
         """Return peaks and angles with those at a jump moved onto it: dead centres move with the design."""
         dimensions = (self.crank, self.rod, self.offset)
         outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)

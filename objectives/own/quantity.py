@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Whole
 from ...model.cycle.self_locking import locking_margin
 from ...model.errors import InputError
 from ...model.kernel.batches import turning
@@ -179,7 +179,7 @@ class OwnQuantity(Quantity):
             )
         return turning(dimensions)
 
-    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[NDArray[np.int64]]:
+    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[Whole]:
         """Yield the rows of designs that friction does not lock: of the others the forces are not determined."""
         rows = np.arange(len(dimensions))
         if mechanism.friction.acts:

@@ -23,8 +23,9 @@ from typing import IO, Any
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
-from .apply import Answer, Array, Refused
+from .apply import Answer, Refused
 from .child import HEAD, unpacked
 from .interruption import ask, farewell, killed
 

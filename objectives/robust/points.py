@@ -6,8 +6,8 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Mask, Whole
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
@@ -28,7 +28,7 @@ class Around:
     gradients: Array
     local: Array
     labels: Array
-    turns: NDArray[np.bool_]
+    turns: Mask
 
     def highest(self, slopes: Array) -> tuple[Array, Array]:
         """Return values (n, q) of the highest piece at each point, and its slopes."""
@@ -67,7 +67,7 @@ def corners(columns: list[int]) -> Array:
     return found
 
 
-def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[NDArray[np.int64], Array]:
+def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[Whole, Array]:
     """Return the designs (m,) whose offset may be zero within the limits, and their points (m, q, 3) there.
 
     The points are the corners of the other dimensions' box, in units of the limits.
@@ -117,7 +117,7 @@ def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: 
     return Around(values, gradients, local, found.labels.reshape(values.shape), turns)
 
 
-def followed(here: Around) -> tuple[Array, Array, NDArray[np.bool_]]:
+def followed(here: Around) -> tuple[Array, Array, Mask]:
     """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and where found.
 
     A piece is found at a point where a piece of nearly the same label is.

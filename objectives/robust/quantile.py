@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Whole
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array
 from .points import star
@@ -114,7 +114,7 @@ class Sample:
         found = found + exact - _each("nd,nd->n", shift, control)
         return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
 
-    def _ranked(self, machines: Array) -> tuple[NDArray[np.int64], Array]:
+    def _ranked(self, machines: Array) -> tuple[Whole, Array]:
         """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
         first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no order
         some = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)

@@ -8,8 +8,8 @@ from dataclasses import field as _field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Mask, Whole
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
@@ -211,7 +211,7 @@ class RobustQuantity(Quantity):
     def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
         here = around(self.inner, mechanism, dimensions, star(list(columns)))
         values, slopes, found = followed(here)
-        kept: NDArray[np.bool_] = np.logical_and.reduce(found, axis=1)
+        kept: Mask = np.logical_and.reduce(found, axis=1)
         values = np.where(kept[:, None, :], values, -np.inf)
         # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
         top, steepest = here.highest(here.gradients)
@@ -238,7 +238,7 @@ class RobustQuantity(Quantity):
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
 
-def _blocks(rows: NDArray[np.bool_], size: int) -> Iterator[NDArray[np.int64]]:
+def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
     """Yield the places of rows in blocks that may be held at once. size: numbers that each takes."""
     places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
     for begin in range(0, len(places), step):
@@ -246,7 +246,7 @@ def _blocks(rows: NDArray[np.bool_], size: int) -> Iterator[NDArray[np.int64]]:
 
 
 def _together(
-    count: int, parts: list[tuple[NDArray[np.int64], tuple[Array, Array, Array]]], *, absent: float
+    count: int, parts: list[tuple[Whole, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
     """Return values, gradients and labels of all designs from those of some each; the missing ones are `absent`."""
     if len(parts) == 1:
@@ -277,6 +277,6 @@ def require_options(case: str, order: int, share: float, samples: int, shape: st
         )
 
 
-def _inside(dimensions: Array, limits: Array) -> NDArray[np.bool_]:
+def _inside(dimensions: Array, limits: Array) -> Mask:
     crank, rod, offset = dimensions.T[:3]
     return np.asarray((crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1)))

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Mask, Whole
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from .points import Around, around, corners, followed, in_line, limits_of
@@ -23,7 +23,7 @@ _EXACT = 1e-15
 class Inside:
     """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some besides the corners."""
 
-    rows: NDArray[np.int64]
+    rows: Whole
     points: Array
 
 
@@ -74,7 +74,7 @@ def within(
     return Inside(rows, given)
 
 
-def _worst(here: Around, low: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _worst(here: Around, low: bool) -> tuple[Array, Array, Mask]:
     """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage turns."""
     values, slopes = here.highest(here.local)
     sign = -1.0 if low else 1.0

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...model.arrays import Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
@@ -84,7 +85,7 @@ def evaluate(
     found = _found(mechanism, chosen, rows if whole else rows[turns], gradients)
     values = np.full((len(rows), len(chosen)), np.nan)
     jacobian = np.full((*values.shape, rows.shape[1]), np.nan) if gradients else None
-    where: slice | NDArray[np.bool_] = slice(None) if whole else turns
+    where: slice | Mask = slice(None) if whole else turns
     for column, part in enumerate(found):
         values[where, column] = part.values
         if jacobian is not None and part.gradients is not None:
@@ -93,7 +94,7 @@ def evaluate(
     return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
 
 
-def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> NDArray[np.bool_]:
+def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) turn fully; with a swing, which can make it."""
     if swing is not None:
         return able(mechanism, swing, designs)

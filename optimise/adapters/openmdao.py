@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.machine.numbers import unit_of
 from ..problem.problem import Problem
 from .missing import require
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from openmdao.api import ExplicitComponent
     from openmdao.vectors.default_vector import DefaultVector
 
@@ -55,9 +55,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
             for name, value in zip(names, values, strict=True):
                 outputs[name] = value
 
-        def compute_partials(
-            self, inputs_: DefaultVector, partials: dict[tuple[str, str], NDArray[np.float64]]
-        ) -> None:
+        def compute_partials(self, inputs_: DefaultVector, partials: dict[tuple[str, str], Array]) -> None:
             _, jacobian = problem.evaluate(_design(inputs_), names, gradients=True)
             for row, name in enumerate(names):
                 for column, of in enumerate(inputs):

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
@@ -22,10 +22,9 @@ from ..search.candidates import Table
 from ..search.elimination import UNKNOWNS
 from ..search.evaluation import Evaluator
 from .cycle import Curve, best_angles
-from .enclosure import Array, Enclosure, beside, coordinate
+from .enclosure import Enclosure, beside, coordinate
 from .limits import Limits
 
-Mask = NDArray[np.bool_]
 _ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
 
@@ -183,7 +182,7 @@ class Boxes:
         least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
 
-    def _angles(self, rows: NDArray[np.int64], lower: Array, upper: Array) -> tuple[Array, dict[str, Array]]:
+    def _angles(self, rows: Whole, lower: Array, upper: Array) -> tuple[Array, dict[str, Array]]:
         """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn."""
         middle = self.sheet.dimensions(0.5 * (lower[rows] + upper[rows]))
         turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
@@ -217,12 +216,12 @@ def _minimised(objective: Objective, below: Array, above: Array) -> Array:
     return below
 
 
-def _rows(value: Enclosure, rows: NDArray[np.int64]) -> Enclosure:
+def _rows(value: Enclosure, rows: Whole) -> Enclosure:
     empty = None if value.empty is None else value.empty[rows]
     return Enclosure(value.centre[rows], value.slopes[:, rows], value.rest[rows], empty)
 
 
-def _spread(value: Enclosure, rows: NDArray[np.int64], n: int) -> Enclosure:
+def _spread(value: Enclosure, rows: Whole, n: int) -> Enclosure:
     """Return an enclosure of n boxes that says nothing of those not in `rows`."""
     parts = value.centre.shape[1]
     centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))

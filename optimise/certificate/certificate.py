@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from .enclosure import Array
+from ...model.arrays import Array
 
 Status = Literal["proven", "out of budget", "cancelled"]
 

@@ -19,10 +19,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
-from .enclosure import Array
 from .search import Search
 
 EPSILON, SECONDS = 0.01, 60.0

@@ -12,8 +12,8 @@ from __future__ import annotations
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask
 from ...model.dynamics.torque import Forces, forces, smooth_load
 from ...model.kernel.arithmetic import magnitude, root
 from ...model.kinematics.position import motion
@@ -28,7 +28,7 @@ from ...model.signals.screening import screen, screens
 from ...model.signals.signals import Signal, design_motion, signal
 from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
-from .enclosure import UNIT, Array, Enclosure, beside, between, chosen
+from .enclosure import UNIT, Enclosure, beside, between, chosen
 from .gas import gas_force
 
 _TURN = 2.0 * np.pi
@@ -209,9 +209,7 @@ def _at_share(
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
-def _at_dead_centre(
-    d: Design, sine: Array, cosine: Array, middle: Array
-) -> tuple[NDArray[np.bool_], Enclosure, Enclosure]:
+def _at_dead_centre(d: Design, sine: Array, cosine: Array, middle: Array) -> tuple[Mask, Enclosure, Enclosure]:
     """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there."""
     r, l, e = (column[:, None] for column in middle.T)
     at = motion(sine, cosine, r, l, e, d.branch)

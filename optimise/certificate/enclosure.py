@@ -21,10 +21,8 @@ from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from ...model.arrays import Array, Mask
 
 UNIT = 2.0**-50
 INFLATION = 1e-12

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.machine.loads.cylinder import Cylinder
-from .enclosure import UNIT, Array, Enclosure, between, chosen
+from .enclosure import UNIT, Enclosure, between, chosen
 
 
 def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Enclosure) -> Enclosure:

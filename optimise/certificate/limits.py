@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE
-from .enclosure import INFLATION, Array, Enclosure
+from .enclosure import INFLATION, Enclosure
 
 _INSIDE = 1e-9  # relative: by how much a trial design stays off the limits
 _ROUNDS = 3  # of moving it into the box's feasible part

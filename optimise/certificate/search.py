@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, constraints_of, minimised
@@ -21,7 +21,6 @@ from ..search.recorded import polish
 from .boxes import Boxes, usable
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, thinned, volume_gap
-from .enclosure import Array
 from .tree import Tree, pool
 
 _BATCH = 4096  # boxes halved at a time
@@ -95,7 +94,7 @@ class Search:
         late = time.perf_counter() - self.start > self.seconds * (1.0 - _SHARE)
         return self.stopped or late or len(self.tree) > _MOST
 
-    def _recovered(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _recovered(self, rows: Whole) -> Whole:
         """Close those boxes that designs added since they were opened cover; return the others."""
         tree = self.tree
         tree.excess[rows] = excess(

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from os import cpu_count
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ..search.candidates import Table
 from .boxes import Bounded, Boxes
-from .enclosure import Array
 
 _FIRST = {0: 1, 1: 64, 2: 24, 3: 12}  # boxes along each axis to begin with
 _CHUNK = 2048  # boxes bounded at once: the working arrays stay in the cache
@@ -28,13 +27,13 @@ class Tree(Table):
     designs it counts. axis: (n,), which to split; -1 where none is left. bounded: boxes so far.
     """
 
-    sheet: NDArray[np.int64]
+    sheet: Whole
     lower: Array
     upper: Array
     corner: Array
     excess: Array
-    seen: NDArray[np.int64]
-    axis: NDArray[np.int64]
+    seen: Whole
+    axis: Whole
     sheets: list[Boxes] = field(kw_only=True)
     bounded: int = field(default=0, kw_only=True)
 
@@ -78,18 +77,18 @@ class Tree(Table):
         own = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, seen), axis)
         self.become(self.join(Tree(*own, sheets=self.sheets)))
 
-    def keep(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> None:
+    def keep(self, rows: Whole | Mask) -> None:
         """Keep only these boxes."""
         self.become(self[rows])
 
-    def largest(self, count: int) -> NDArray[np.int64]:
+    def largest(self, count: int) -> Whole:
         """Return boxes that can be split, those of the largest excess."""
         rows = np.flatnonzero(self.axis >= 0)
         if len(rows) <= count:
             return rows
         return rows[np.argpartition(-self.excess[rows], count)[:count]]
 
-    def halved(self, rows: NDArray[np.int64]) -> list[tuple[int, Array, Array]]:
+    def halved(self, rows: Whole) -> list[tuple[int, Array, Array]]:
         """Take boxes out and return their two halves, by sheet: index, lower, upper (n, k)."""
         found = []
         for index, boxes in enumerate(self.sheets):

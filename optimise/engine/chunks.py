@@ -12,11 +12,10 @@ from time import perf_counter
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from .engine import LONGEST, Engine, Poll, Serial
 
-Array = NDArray[np.float64]
 Value = TypeVar("Value")
 Subject = TypeVar("Subject")
 Asked = TypeVar("Asked", bound=Hashable)

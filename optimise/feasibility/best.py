@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
 from ..engine.engine import Engine
-from ..front.stationarity import Array
 from ..methods.auto.auto import AUTO, searched_by
 from ..problem.problem import Problem, Settings, Variant
 from ..problem.requirements import Constraint, Objective, Sense

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..engine.engine import Engine
-from ..front.stationarity import Array
 from ..problem.problem import Problem, Settings
 from ..problem.violation import FEASIBLE, constraints_of
 from ..search.checkpoints import Checkpoints

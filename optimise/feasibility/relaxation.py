@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from ..front.stationarity import Array
+from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Sense, Word
 from ..problem.violation import FEASIBLE

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from ...model.arrays import Array, Mask
 
 SAME = 1e-9
 """Relative spread of what counts as one number.
@@ -14,7 +16,7 @@ times greater.
 """
 
 
-def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.bool_]:
+def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
     """Return whether the numbers of each column are equal to rounding: () or (m,) of values (n,) or (n, m).
 
     The spread is compared with the greatest magnitude, at least with `size`: of a distance from a target that is the
@@ -23,7 +25,7 @@ def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.bool_
     return np.asarray(spread(values, size=size) == 0.0)
 
 
-def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> NDArray[np.float64]:
+def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
     """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
     values = np.asarray(values, dtype=np.float64)
     known = np.where(np.isfinite(values), values, np.nan)

@@ -5,18 +5,17 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
-from .stationarity import Array
 
 _WORD = 63  # designs told by the bits of one integer, whose sign is left alone
 _CHUNK = 2048  # designs that one thread filters at a time
 _OBJECTIVES, _MANY = 4, 40_000  # of fewer objectives, and of more designs, a filter of n log n steps is quicker
 
 
-def nondominated(values: Array) -> NDArray[np.int64]:
+def nondominated(values: Array) -> Whole:
     """Return the indices of designs that no other dominates, ascending; of equals, the first.
 
     Designs are put in order, by the first objective first: only those before one may dominate it. For each other
@@ -115,7 +114,7 @@ def _beat(points: Table, others: Table, clearly: float, slightly: float, found: 
                 break
 
 
-def beating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> NDArray[np.bool_]:
+def beating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
     """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
 
     slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.

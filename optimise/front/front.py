@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 Columns = dict[str, NDArray[Any]]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
 _LEAST = 1e-4  # of a range: a step that is worth telling

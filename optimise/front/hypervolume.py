@@ -6,11 +6,10 @@ import heapq
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.kernel.kernel import Row, Table, kernel
 from .constant import spread
-from .stationarity import Array
 
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""
@@ -79,7 +78,7 @@ def _shared(taken: Table, count: int, point: Row, corners: Table) -> int:
     return kept
 
 
-def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: Stand = unheard) -> NDArray[np.int64]:
+def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: Stand = unheard) -> Whole:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
 
-Array = NDArray[np.float64]
 
-
-def neighbours(points: Array, count: int) -> tuple[Array, NDArray[np.int64]]:
+def neighbours(points: Array, count: int) -> tuple[Array, Whole]:
     """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, each its own first one.
 
     count: n at most.

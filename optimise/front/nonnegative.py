@@ -7,12 +7,10 @@ Every polishing step, multiplier and trade-off rate is such a problem, of some d
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.kernel.arithmetic import analytic
 from ...model.kernel.kernel import Row, Table, kernel
-
-Array = NDArray[np.float64]
 
 _STEPS = 50
 """Changes of the active set at most, for each column."""

@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from .constant import spread
-from .stationarity import Array
 
 Normalisation = Literal["range", "vector"]
 _TIE = 1e-9  # of a range, of a closeness: nearer together is rounding

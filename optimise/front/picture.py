@@ -7,12 +7,12 @@ from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...model.arrays import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 _WIDTH, _HEIGHT, _ROOM = 320.0, 200.0, 30.0  # px of the SVG
 
 

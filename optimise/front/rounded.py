@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...objectives.tables.varying_column import varying_column
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE, violated_by
 from .slack import slack_of
-from .stationarity import Array
 
 if TYPE_CHECKING:
     import pandas as pd

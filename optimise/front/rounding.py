@@ -13,8 +13,8 @@ from decimal import Decimal
 from numbers import Integral, Real
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ...objectives.robust.quantity import RobustQuantity
@@ -26,7 +26,6 @@ from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, vio
 from .constant import spread
 from .dominance import nondominated
 from .rounded import Rounded
-from .stationarity import Array
 
 LENGTHS = ("crank", "rod", "offset")
 REACHES = (16, 32)
@@ -214,7 +213,7 @@ class _Search:
             found = np.maximum(found, violated_by(constraint, held[:, column]))
         return found
 
-    def _order(self, designs: Array, losses: Array) -> NDArray[np.int64]:
+    def _order(self, designs: Array, losses: Array) -> Whole:
         """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
         way = np.abs((designs - self.given) / steps).max(axis=1)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..problem.requirements import Constraint
 from ..problem.violation import sides
 from .constant import is_constant
-from .stationarity import Array
 
 
 def slack_of(constraint: Constraint, values: Array) -> Array:

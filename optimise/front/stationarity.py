@@ -12,11 +12,9 @@ with sum lambda = 1 as one more weighted row, the minimiser is the same up to it
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from .nonnegative import nonnegative_least_squares
-
-Array = NDArray[np.float64]
 
 STATIONARY = 1e-6
 """Residual, objectives scaled by their range, below which a design counts as stationary."""
@@ -43,7 +41,7 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
 
 
 def strict_multipliers(
-    goals: Array, owner: NDArray[np.int64], active: Array, *, exactly: bool = False
+    goals: Array, owner: Whole, active: Array, *, exactly: bool = False
 ) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,) and mu (q,) where every objective must carry weight.
 

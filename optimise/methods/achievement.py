@@ -8,9 +8,8 @@ then rho f_i each. Ceilings join the constraints. Kinks stay what they are: noth
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array
+from ...model.arrays import Array, Mask
 from ..search.evaluation import Evaluator
 from ..search.pieces import Rows
 from .scalar import Form
@@ -25,7 +24,7 @@ class Achievement:
         self.evaluator, self.form = evaluator, form
         self.ideal, self.span = ideal, span
 
-    def valid(self, u: Array) -> NDArray[np.bool_]:
+    def valid(self, u: Array) -> Mask:
         """Return which points give a linkage that turns fully."""
         return self.evaluator.valid(u)
 

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..front.stationarity import Array
+from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.candidates import stacked

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..front.stationarity import Array
+from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.assemble import span_of

@@ -10,9 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array
+from ...model.arrays import Array, Whole
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.candidates import Table
@@ -20,7 +19,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .registry import budget
 
-Rows = NDArray[np.int64]
+Rows = Whole
 
 BAND = 0.01
 """Relative violation that counts as none where an equality is left, which no sample meets; the delivery removes it."""

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ..front.stationarity import Array
+from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run

@@ -18,9 +18,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array
+from ...model.arrays import Array, Whole
 from ..search.evaluation import Evaluator
 from ..search.pieces import Rows, alone, greatest
 
@@ -132,7 +131,7 @@ class Programme:
         self._go(z[: self.k])
         return np.pad(self._limits.gradients[self._held()], ((0, 0), (0, self.m + 1)))
 
-    def _held(self) -> NDArray[np.int64]:
+    def _held(self) -> Whole:
         """Return the rows that must vanish; for a piece that this design lacks, the row of the highest."""
         own, instead = self._equal.T
         return np.asarray(np.where(np.isfinite(self._limits.values[own]), own, instead))
@@ -164,7 +163,7 @@ class Programme:
         self._goals, self._limits = goals, limits
 
 
-def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.int64]:
+def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
     """Return the constraint rows (e, 2) of each equality that are to vanish: its highest piece, and the opposite row.
 
     Every piece has a row on one side, the highest alone one on the other side; both say the same of it, and a solver
@@ -182,9 +181,9 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> NDArray[np.int64]:
     return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
-def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArray[np.int64]], ...]:
+def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole], ...]:
     """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
-    found: tuple[list[NDArray[np.int64]], ...] = ([], [])
+    found: tuple[list[Whole], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]
     bounds = [constraint.lower is not None for constraint in evaluator.constraints]
     for rows, apart, groups in ((goals, last, found[0]), (limits, bounds, found[1])):
@@ -196,7 +195,7 @@ def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[NDArr
     return found
 
 
-def _placed(rows: Rows, before: Rows, groups: list[NDArray[np.int64]]) -> Rows:
+def _placed(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
     """Return the rows in the former places of the same pieces; peaks come by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
@@ -207,7 +206,7 @@ def _placed(rows: Rows, before: Rows, groups: list[NDArray[np.int64]]) -> Rows:
     return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
 
 
-def _matched(apart: Array) -> NDArray[np.int64]:
+def _matched(apart: Array) -> Whole:
     """Return for each place the row that goes there."""
     from scipy.optimize import linear_sum_assignment
 

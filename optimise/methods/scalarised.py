@@ -16,9 +16,9 @@ from math import comb
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..front.dominance import nondominated
 from ..front.hypervolume import scaling
-from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..front.stationarity import Array
+from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.evaluation import Evaluator

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.checks import keep_tuples
 from ...model.errors import InputError
 from .requirements import Range
@@ -35,7 +35,7 @@ class Discrete:
         if not self.values or not all(map(math.isfinite, self.values)) or not rising:
             raise InputError(f"the values of {self.name} must be finite and ascending, one at least; sort them")
 
-    def within(self, ends: Range) -> NDArray[np.float64]:
+    def within(self, ends: Range) -> Array:
         """Return the values of a range."""
         room = SAME * max(abs(ends.lower), abs(ends.upper))
         return np.array([value for value in self.values if ends.lower - room <= value <= ends.upper + room])

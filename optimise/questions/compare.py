@@ -11,13 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ...model.errors import InputError
 from ..front.constant import spread
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
-from ..front.stationarity import Array
 
 TOLERANCE = 1e-6
 """Share of an objective's range that counts as equal: designs are exact to about that."""
@@ -36,16 +35,16 @@ class Comparison:
     the range that counts as equal in `in_union`, `coverage` and `dominates`.
     """
 
-    sizes: NDArray[np.int64]
+    sizes: Whole
     ideal: Array
     span: Array
     hypervolumes: Array
     union: float
     shares: Array
-    in_union: NDArray[np.int64]
+    in_union: Whole
     coverage: Array
     epsilon: Array
-    dominates: NDArray[np.bool_]
+    dominates: Mask
     tolerance: float
 
 

@@ -15,13 +15,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ..front.dominance import beating
 from ..front.front import ParetoFront
 from ..front.hypervolume import scaling
-from ..front.stationarity import STATIONARY, Array
+from ..front.stationarity import STATIONARY
 from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings
 from ..problem.requirements import Constraint, Range
@@ -203,7 +203,7 @@ def _zoom(finished: Finished, evaluators: list[Evaluator], archive: Archive, val
             break
 
 
-def _ranked(finished: Finished, archive: Archive, values: Array) -> NDArray[np.int64]:
+def _ranked(finished: Finished, archive: Archive, values: Array) -> Whole:
     """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
     rows = finished.best()
     if archive.met.any():  # samples within a band around the constraints prove nothing

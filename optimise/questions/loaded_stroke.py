@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Mask
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
@@ -86,7 +87,7 @@ def _left_out(problem: Problem) -> list[str]:
     return []
 
 
-def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> NDArray[np.bool_]:
+def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> Mask:
     return np.asarray((slow != "equal") & (loaded != "equal") & (slow != loaded))
 
 

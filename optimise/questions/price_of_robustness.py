@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..front.front import ParetoFront
-from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.robust import nominal
 from ..problem.violation import FEASIBLE

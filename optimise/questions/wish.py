@@ -23,12 +23,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ..front.front import ParetoFront
 from ..front.rounding import ranges_or_sizes
-from ..front.stationarity import Array
 from ..methods.achievement import Achievement
 from ..methods.registry import require_gradients
 from ..methods.scalar import SUM, Form
@@ -171,9 +170,7 @@ class Wishes:
         order = sorted(found, key=lambda index: (found[index], index))
         return [index for index in order if found[index] <= found[order[0]] + _WORSE][:_SHEETS]
 
-    def _ends(
-        self, form: Form, evaluator: Evaluator, index: int, rows: NDArray[np.int64]
-    ) -> list[tuple[float, int, Array]]:
+    def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: Whole) -> list[tuple[float, int, Array]]:
         """Return where the starts on a sheet end, with the form's value there; none that is not feasible."""
         if not len(rows):
             return []

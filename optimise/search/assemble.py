@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ...model.kinematics.in_line import without_rounding
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.slack import slack_of
-from ..front.stationarity import STATIONARY, Array, multipliers
+from ..front.stationarity import STATIONARY, multipliers
 from ..problem.problem import Problem, choice_field
 from ..problem.violation import constraints_of
 from .candidates import Finished
@@ -30,7 +31,7 @@ _GLIMPSE = 40  # designs of a round that count in the history of a search that w
 
 
 def assemble(
-    problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, rows: NDArray[np.int64] | None = None
+    problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, rows: Whole | None = None
 ) -> ParetoFront:
     """Return the front of the best of finished designs, at least one.
 
@@ -79,7 +80,7 @@ def assemble(
     )
 
 
-def _torn(problem: Problem, variants: NDArray[np.int64], dimensions: Array) -> NDArray[np.bool_]:
+def _torn(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
     """Return which designs (n,) lie on a kink that their slopes do not tell all of.
 
     Of a formula with kinks of both kinds, such as a difference of peaks, slopes tell those of one kind with the active
@@ -100,7 +101,7 @@ def _torn(problem: Problem, variants: NDArray[np.int64], dimensions: Array) -> N
     return found
 
 
-def _best(problem: Problem, finished: Finished, stand: Stand) -> NDArray[np.int64]:
+def _best(problem: Problem, finished: Finished, stand: Stand) -> Whole:
     rows = finished.best(stand)
     if len(problem.objectives) == 1:
         return rows
@@ -108,7 +109,7 @@ def _best(problem: Problem, finished: Finished, stand: Stand) -> NDArray[np.int6
     return rows[choose(finished.values[rows], problem.settings.designs, always=best, stand=stand)]
 
 
-def columns_of(problem: Problem, variants: NDArray[np.int64], dimensions: Array, stand: Stand = unheard) -> Columns:
+def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stand = unheard) -> Columns:
     """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
 
     variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.

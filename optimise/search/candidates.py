@@ -9,9 +9,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ..front.dominance import nondominated
 from ..front.hypervolume import Stand, unheard
-from ..front.stationarity import STATIONARY, Array
+from ..front.stationarity import STATIONARY
 from ..problem.violation import FEASIBLE
 from .evaluation import Evaluator
 from .sampling import apart
@@ -72,10 +73,10 @@ class Candidates(Table):
     minimised. met: (n,), which of them meet every constraint; the others are near enough to be moved there.
     """
 
-    sheet: NDArray[np.int64]
+    sheet: Whole
     u: Array
     values: Array
-    met: NDArray[np.bool_]
+    met: Mask
 
     @classmethod
     def empty(cls, objectives: int) -> Self:
@@ -86,7 +87,7 @@ class Candidates(Table):
         """Return those that meet every constraint and those that are to be moved there: choose from each alone."""
         return [group for group in (self[self.met], self[~self.met]) if len(group)]
 
-    def leading(self, column: int, count: int) -> NDArray[np.int64]:
+    def leading(self, column: int, count: int) -> Whole:
         """Return at most `count` rows that meet every constraint, and as many others.
 
         The best in an objective come first, each `apart` from the better ones.
@@ -156,7 +157,7 @@ class Finished(Candidates):
         self.become(self.join(Finished(*found, span=self.span)))
 
     @property
-    def free(self) -> NDArray[np.bool_]:
+    def free(self) -> Mask:
         """Whether the sheet leaves something free."""
         return np.array([slopes.shape[1] > 0 for _, slopes in self.goals], dtype=np.bool_)
 
@@ -164,7 +165,7 @@ class Finished(Candidates):
         """Return the designs of sheets that leave nothing free, which no gradient is scaled for, with another span."""
         return replace(self[~self.free], span=span)
 
-    def best(self, stand: Stand = unheard) -> NDArray[np.int64]:
+    def best(self, stand: Stand = unheard) -> Whole:
         """Return the rows that none dominates, fewer where they hardly differ; ascending. stand: called for each.
 
         None of them is as good as another one to `EQUAL` everywhere and better somewhere.
@@ -203,6 +204,6 @@ class Finished(Candidates):
         return np.array(sorted(alone), dtype=np.int64)
 
 
-def _as_good(values: Array, row: Array, within: Array) -> NDArray[np.bool_]:
+def _as_good(values: Array, row: Array, within: Array) -> Mask:
     """Return which designs (n, m) are nowhere worse than one (m,) by more than these differences."""
     return np.asarray((values - row <= within).all(axis=1))

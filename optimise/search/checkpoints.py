@@ -18,15 +18,15 @@ from dataclasses import dataclass
 from typing import Protocol, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ...model.errors import ForeignRecords
 
 PAUSE = 1.0
 """s between two records of a long round: what a kill loses at most, and the step under way."""
 
-Numbers = NDArray[np.float64] | NDArray[np.int64]
-Words = NDArray[np.int64]
+Numbers = Array | Whole
+Words = Whole
 Arrays = TypeVar("Arrays", bound=tuple[Numbers, ...])
 """What a step gives: the same number of arrays, floats and integers in the same places, every time."""
 

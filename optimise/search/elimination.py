@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
@@ -27,7 +27,6 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
 
-Array = NDArray[np.float64]
 UNKNOWNS = ("crank", "rod", "offset")
 _LINEAR = "linear: "
 """How the origin of a rule of linear equalities begins."""

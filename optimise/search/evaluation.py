@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Mask, Whole
 from ...objectives.quantity import Array, Pieces
 from ...objectives.tables.evaluate import moving
 from ..engine.chunks import Chunked, Shared
@@ -71,7 +71,7 @@ class Evaluator:
         objectives[rows] = found
         return dimensions, objectives, violation
 
-    def _screened(self, dimensions: Array, band: float) -> tuple[NDArray[np.int64], Array, Array]:
+    def _screened(self, dimensions: Array, band: float) -> tuple[Whole, Array, Array]:
         """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
         self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)
@@ -121,7 +121,7 @@ class Evaluator:
 
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------
 
-    def valid(self, u: Array) -> NDArray[np.bool_]:
+    def valid(self, u: Array) -> Mask:
         """Return which points give a linkage that turns fully, or makes the swing of the problem."""
         return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
 

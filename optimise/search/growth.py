@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
-from ..front.stationarity import Array
 
 _MOST = {1: 1, 2: 5000, 3: 5000, 4: 1000, 5: 600}
 """Designs of which the volume is told, by objectives: it takes 2 ms of these, and ten times as long of some more."""

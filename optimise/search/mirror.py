@@ -12,10 +12,10 @@ from collections.abc import Hashable
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of
 from .elimination import Sheet

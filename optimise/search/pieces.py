@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array
+from ...model.arrays import Array, Whole
 
 ACTIVE = 1e-8
 """Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
@@ -25,7 +24,7 @@ class Rows:
     values: Array
     gradients: Array
     labels: Array
-    owner: NDArray[np.int64]
+    owner: Whole
 
     @classmethod
     def none(cls, n: int, k: int) -> Rows:
@@ -55,7 +54,7 @@ def box(u: Array, *, within: float = ACTIVE) -> Array:
     return np.concatenate([-edge[u < within], edge[u > 1.0 - within]])
 
 
-def active_pieces(goals: Rows, chosen: tuple[int, ...], *, within: float = ACTIVE) -> NDArray[np.int64]:
+def active_pieces(goals: Rows, chosen: tuple[int, ...], *, within: float = ACTIVE) -> Whole:
     """Return the pieces that tie for the greatest of each chosen objective."""
     pieces = []
     for owner in chosen:

@@ -19,9 +19,9 @@ from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array, multipliers, strict_multipliers
+from ...model.arrays import Array, Mask, Whole
+from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
 from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
@@ -43,7 +43,7 @@ _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 class Evaluates(Protocol):
     """The part of an evaluator that the polish needs."""
 
-    def valid(self, u: Array) -> NDArray[np.bool_]:
+    def valid(self, u: Array) -> Mask:
         """Return which points can be evaluated."""
         ...
 
@@ -152,7 +152,7 @@ class _Batch:
         violation = self.limits.values.max(axis=1, initial=0.0)
         return Polished(self.u, greatest(self.goals, m), violation, residual, ragged(pieces), ragged(active))
 
-    def _feasible(self) -> NDArray[np.bool_]:
+    def _feasible(self) -> Mask:
         return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)
 
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
@@ -199,7 +199,7 @@ class _Batch:
             hold=self.hold,
         )
 
-    def _hessians(self, rows: NDArray[np.int64], drafts: list[Step]) -> Array:
+    def _hessians(self, rows: Whole, drafts: list[Step]) -> Array:
         """Return the Hessians (n, k, k) of the Lagrangians with fixed multipliers, made positive definite."""
         u = self.u[rows]
         n, k = u.shape
@@ -218,7 +218,7 @@ class _Batch:
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
-    def _search(self, rows: NDArray[np.int64], steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+    def _search(self, rows: Whole, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
         """Take the steps that lower the merit, after correction where necessary; shrink the radius of the rest.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.

@@ -19,8 +19,8 @@ from itertools import accumulate
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..front.nonnegative import nonnegative_least_squares
-from ..front.stationarity import Array
 from .pieces import Rows
 
 LOSS = 1e3

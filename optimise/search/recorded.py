@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ..engine.engine import Serial
-from ..front.stationarity import Array
 from .candidates import Polished, ragged
 from .checkpoints import Numbers
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 
-Lengths = NDArray[np.int64]
+Lengths = Whole
 _Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None]
 """Scale, chosen objectives and iterations of a polish."""
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Whole
 from ..front.hypervolume import scaling
 from ..front.neighbours import neighbours
-from ..front.stationarity import Array
 from .sobol import sobol
 
 FACES = 0.3
@@ -17,7 +16,7 @@ APART = 0.1
 """Distance in the unit box of starts that are to lead to different optima."""
 
 
-def apart(worth: Array, points: Array, sheet: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def apart(worth: Array, points: Array, sheet: Whole, count: int) -> Whole:
     """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
 
     Points of different sheets are apart.

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array, Mask, Whole
 from ...objectives.robust.quantity import RobustQuantity
 from ..front.dominance import nondominated
 from ..front.hypervolume import Stand
 from ..front.progress import REPEATING, Progress
-from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from .candidates import Candidates, Finished
@@ -75,7 +74,7 @@ class Archive(Candidates):
         self.put(*fresh)
         return sum(map(len, fresh))
 
-    def take(self, index: int, u: Array, values: Array, met: NDArray[np.bool_] | None = None) -> None:
+    def take(self, index: int, u: Array, values: Array, met: Mask | None = None) -> None:
         """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
 
         met: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
@@ -94,7 +93,7 @@ def _some(values: Array) -> Array:
     return values[:: 1 + len(values) // _SHOWN]
 
 
-def _worth(candidates: Candidates) -> NDArray[np.int64]:
+def _worth(candidates: Candidates) -> Whole:
     """Return the rows of candidates worth keeping; others that meet every constraint displace these alone."""
     rows = _best(candidates.values)
     if candidates.met.all():
@@ -103,7 +102,7 @@ def _worth(candidates: Candidates) -> NDArray[np.int64]:
     return np.concatenate([own[_best(candidates.values[own])], rows[~candidates.met[rows]]])
 
 
-def _best(values: Array) -> NDArray[np.int64]:
+def _best(values: Array) -> Whole:
     """Return the rows worth keeping: the non-dominated ones, or many of a single objective, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)

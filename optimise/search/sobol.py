@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
+
 _BITS = 30
 # Inner coefficients of the polynomial as a number, and the first direction numbers; of each dimension.
 _FIRST: tuple[tuple[int, tuple[int, ...]], ...] = (
@@ -26,7 +28,7 @@ _FIRST: tuple[tuple[int, tuple[int, ...]], ...] = (
 )
 
 
-def sobol(power: int, dimension: int, random: np.random.Generator) -> NDArray[np.float64]:
+def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
     """Return 2^power points of the unit box (n, k). random: spawns the generator that scrambles them."""
     if dimension > len(_FIRST):
         from scipy.stats import qmc

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..front.stationarity import Array
+from ...model.arrays import Array, Mask
 from .candidates import Polished
 from .evaluation import Evaluator
 from .pieces import Rows
@@ -19,7 +18,7 @@ class _Violations:
     def __init__(self, evaluator: Evaluator) -> None:
         self.inner = evaluator
 
-    def valid(self, u: Array) -> NDArray[np.bool_]:
+    def valid(self, u: Array) -> Mask:
         return self.inner.valid(u)
 
     def exact(self, u: Array) -> tuple[Rows, Rows]:

@@ -29,6 +29,7 @@ from typing import Literal
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.cycle.shaking import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.extras import required
@@ -39,7 +40,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.signals.averages import average
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
-from .shaking_rows import Array, mean_rows, moving_moment, rows, with_masses
+from .shaking_rows import mean_rows, moving_moment, rows, with_masses
 
 Measure = Literal["peak", "rms"]
 

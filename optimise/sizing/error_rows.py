@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.signals.peaks import find_peaks
@@ -15,7 +15,6 @@ from ...model.signals.signals import Signal
 from ...model.tolerance.sources import counted_angles, limits, source_influences
 from ..problem.costs import NAMES, Costs
 
-Array = NDArray[np.float64]
 Kind = Literal["worst case", "rss"]
 
 _START = 32  # crank angles a turn in `start`

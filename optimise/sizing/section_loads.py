@@ -16,13 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
-from ..front.stationarity import Array
 
 _ANGLES = 2880  # samples a turn: a peak of the n-th harmonic is low by (n pi / 2880)^2 / 2 = 6e-7 n^2
 _STATIONS = 257  # along the rod: the moment between two is higher by 8e-6 of it

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
@@ -26,7 +27,6 @@ from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.strength import Material
-from ..front.stationarity import Array
 from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_states, rod_loads, same
 from .section_limits import SectionLimits
 from .section_loads import Whip, joint_loads, whip_of

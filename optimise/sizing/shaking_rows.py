@@ -22,16 +22,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.cycle.shaking import shaking_curves
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.design import link_properties
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Mechanism
-
-Array = NDArray[np.float64]
 
 NAMES = ("c along", "c across", "m", "b along", "b across", "I")
 """Columns: counterweight's moment along and across the crank, kg m; of what is added to the rod, mass, kg, first moment

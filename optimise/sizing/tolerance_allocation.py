@@ -32,6 +32,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
@@ -39,7 +40,7 @@ from ...model.linkage.single import single
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ..problem.costs import Costs
-from .error_rows import Array, ErrorRows, Kind
+from .error_rows import ErrorRows, Kind
 
 ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried

@@ -30,8 +30,8 @@ from .settings import part_of_app
 from .throttle import Turns
 
 if TYPE_CHECKING:
+    from ...model.arrays import Array
     from ...optimise.front.front import ParetoFront
-    from ...optimise.front.stationarity import Array
     from ...optimise.questions.wish import Wishes
 
 MOST_DESIGNS = 40_000

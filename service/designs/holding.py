@@ -9,7 +9,7 @@ import numpy as np
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ...optimise.front.stationarity import Array
+    from ...model.arrays import Array
     from ...optimise.problem.requirements import Constraint
     from .stored_designs import StoredDesign
 

@@ -12,7 +12,7 @@ from ..runs.result import Result, Wanted
 from .selection import plain_number
 
 if TYPE_CHECKING:
-    from ...optimise.front.stationarity import Array
+    from ...model.arrays import Array
 
 _TOPSIS = '--topsis "peak_torque=2, transmission_angle=1"'
 _LEXICOGRAPHIC = '--lexicographic "peak_torque: 5 %, transmission_angle"'

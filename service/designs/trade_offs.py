@@ -10,9 +10,9 @@ import numpy as np
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
+    from ...model.arrays import Array
     from ...objectives.kinds import System
     from ...optimise.front.front import ParetoFront
-    from ...optimise.front.stationarity import Array
     from ...optimise.search.elimination import Sheet
     from .stored_designs import StoredDesign
 

@@ -14,7 +14,7 @@ from .requirements import ranges_of, requirements_of, unmet
 from .stored_designs import StoredDesign
 
 if TYPE_CHECKING:
-    from ...optimise.front.stationarity import Array
+    from ...model.arrays import Array
 
 _SAME = 1e-9  # of an objective's range over the front: a difference below is rounding
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...model.arrays import Array
     from ...optimise.front.front import ParetoFront
-    from ...optimise.front.stationarity import Array
 
 Cell = float | str | None
 Row = dict[str, Cell]

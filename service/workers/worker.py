@@ -25,9 +25,9 @@ from .heartbeat import PULSE, Budget, Heartbeat, Stop
 from .logs import about
 
 if TYPE_CHECKING:
+    from ...model.arrays import Array
     from ...optimise.engine.engine import Engine
     from ...optimise.front.progress import Progress
-    from ...optimise.front.stationarity import Array
     from ...optimise.problem.problem import Problem
 
 _log = logging.getLogger(__name__)

@@ -13,8 +13,8 @@ from enum import IntEnum
 from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...checks import require_all_finite
 from ...errors import InputError
 
@@ -51,10 +51,10 @@ class Passage(NamedTuple):
     """
 
     outward: bool
-    angle: NDArray[np.float64]
-    distance: NDArray[np.float64]
+    angle: Array
+    distance: Array
 
-    def work(self, force: Any) -> NDArray[np.float64]:
+    def work(self, force: Any) -> Array:
         """Return the work (n,), J, of a force in the middle of each step, N outward."""
         return np.asarray(np.sum(force * np.diff(self.distance, axis=1), axis=1))
 

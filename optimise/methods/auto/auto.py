@@ -9,13 +9,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....model.arrays import Array, Mask, Whole
 from ...front.dominance import beating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import Stand, choose
 from ...front.neighbours import neighbours
-from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import SELECTING, assemble, span_of
 from ...search.candidates import Candidates, Finished, stacked
@@ -108,7 +107,7 @@ def _candidates(problem: Problem) -> int:
     return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
-def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> NDArray[np.int64]:
+def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> Whole:
     """Return the rows of designs whose polish is to become the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
@@ -116,7 +115,7 @@ def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) ->
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
     values, stand = group.values[rows], run.stage(SELECTING)
 
-    def compute() -> tuple[NDArray[np.int64]]:
+    def compute() -> tuple[Whole]:
         return (choose(values, _candidates(problem), always=always, stand=stand),)
 
     return rows[evaluator.step("choice", (values,), compute)[0]]
@@ -175,14 +174,14 @@ def _sample(problem: Problem, evaluators: list[Evaluator], archive: Archive, bes
     archive.screen_all(points())
 
 
-def _against(screened: Array, front: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _against(screened: Array, front: Array) -> tuple[Mask, Mask]:
     """Return which screened designs dominate one of the front, and which none of the front dominates."""
     kept = np.zeros(len(front) + len(screened), dtype=bool)
     kept[nondominated(np.concatenate([front, screened]))] = True
     return beating(screened, front, clearly=_CLEAR, slightly=_GAIN), kept[len(front) :]
 
 
-def _few(screened: Array, rows: NDArray[np.int64], front: Array, count: int, stand: Stand) -> NDArray[np.int64]:
+def _few(screened: Array, rows: Whole, front: Array, count: int, stand: Stand) -> Whole:
     """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
     if len(rows) <= count:
         return rows

@@ -6,12 +6,11 @@ import contextlib
 import time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....model.arrays import Array, Whole
 from ....objectives.own.interruption import interrupted_by
 from ....objectives.own.quantity import runs_own
 from ...front.front import ParetoFront
-from ...front.stationarity import Array
 from ...problem.problem import Problem
 from ...search.assemble import assemble, columns_of, empty, span_of
 from ...search.candidates import Finished
@@ -81,9 +80,7 @@ def _take(problem: Problem, evaluators: list[Evaluator], archive: Archive, finis
             break
 
 
-def _soon(
-    problem: Problem, evaluators: list[Evaluator], finished: Finished, rows: NDArray[np.int64]
-) -> NDArray[np.int64]:
+def _soon(problem: Problem, evaluators: list[Evaluator], finished: Finished, rows: Whole) -> Whole:
     """Return those rows whose quantities are had within a moment, all of them as a rule."""
     if len(rows) <= _TRIED:
         return rows
@@ -95,7 +92,7 @@ def _soon(
     return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]
 
 
-def _spread(values: Array, count: int) -> NDArray[np.int64]:
+def _spread(values: Array, count: int) -> Whole:
     """Return at most `count` rows of objectives (n, m), never fewer than the best of each; spread over the first."""
     if len(values) <= count:
         return np.arange(len(values))

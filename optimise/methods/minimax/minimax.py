@@ -27,7 +27,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...front.stationarity import Array
+from ....model.arrays import Array
 from ...problem.problem import Problem
 from ...problem.violation import FEASIBLE
 from ...search.evaluation import Evaluator

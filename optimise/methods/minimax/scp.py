@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...front.stationarity import Array
+from ....model.arrays import Array
 from ...search.pieces import Rows, alone, bent, difference
 from ...search.polish import Evaluates
 from .subproblem import Step, Subproblem

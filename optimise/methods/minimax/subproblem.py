@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from ....model.arrays import Array
 from ....model.extras import required
-from ...front.stationarity import Array
 
 _ABSENT = -1e3
 """Value of rows that are not there: no step within the unit box makes them count."""

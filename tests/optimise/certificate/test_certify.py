@@ -7,11 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
-from slidercrank.optimise.certificate.enclosure import Array
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.problem.problem import Problem

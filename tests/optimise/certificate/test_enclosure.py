@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.kernel.arithmetic import magnitude, root
 from slidercrank.model.kinematics import geometry
 from slidercrank.optimise.certificate.cycle import interpolated
-from slidercrank.optimise.certificate.enclosure import Array, Enclosure, coordinate
+from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "sum": lambda x, y, z: 3.0 - (x + y) * 2.0 + z / 7.0 - x,

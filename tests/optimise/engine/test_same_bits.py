@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.tolerance.spreads import Shape
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import Case, RobustQuantity, Side
 from slidercrank.optimise.engine.engine import Engine
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust

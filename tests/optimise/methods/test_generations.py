@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.stationarity import Array
 from slidercrank.optimise.methods import nsga as evolutionary
 from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.population import Brood, Generation, generation_seed
