@@ -1,13 +1,13 @@
 """Balance: effect of the moving masses on the frame over the cycle, without gravity and load.
 
-See `model.dynamics.inertia`.
+See `model.dynamics.inertia`; of several cylinders it is that of all, `model.signals.of_shaft`.
 """
 
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
 from .kinds import FORCE, TORQUE
-from .needs import MASSES, MOTION, SWINGING_MASSES
+from .needs import COUPLES, MASSES, MOTION, SHAKES, SWINGING_MASSES
 from .quantity import Group
 
 _SECTION = "10. Motor and balance"
@@ -23,7 +23,7 @@ PEAK_SHAKING_FORCE = CyclePeak(
     formula="max |F_s|, F_s = minus the rate of change of the momentum of all links",
     section=_SECTION,
     picture="shaking force",
-    needs=(MOTION, MASSES),
+    needs=(MOTION, MASSES, SHAKES),
 )
 RMS_SHAKING_FORCE = CycleAverage(
     name="rms_shaking_force",
@@ -37,7 +37,7 @@ RMS_SHAKING_FORCE = CycleAverage(
     formula="sqrt(mean of |F_s|^2 over the crank angle)",
     section=_SECTION,
     picture="shaking force",
-    needs=(MOTION, MASSES),
+    needs=(MOTION, MASSES, SHAKES),
 )
 PEAK_SHAKING_MOMENT = CyclePeak(
     name="peak_shaking_moment",
@@ -64,4 +64,20 @@ RMS_SHAKING_MOMENT = CycleAverage(
     section=_SECTION,
     picture="shaking moment",
     needs=(MOTION, MASSES, SWINGING_MASSES),
+)
+PEAK_ROCKING_COUPLE = CyclePeak(
+    name="peak_rocking_couple",
+    title="peak rocking couple",
+    kind=TORQUE,
+    signal=Signal.ROCKING_COUPLE,
+    place=275,
+    group=Group.FORCES,
+    sentence=(
+        "The greatest couple about an axis across the shaft with which several cylinders rock the frame within a turn."
+    ),
+    advice="It comes from the places of the cylinders along the shaft, counted from the shaft's zero.",
+    formula="max |sum over the cylinders of (-z F_y, z F_x)|, z the place of a cylinder",
+    section=_SECTION,
+    picture="shaking force",
+    needs=(MOTION, MASSES, COUPLES),
 )

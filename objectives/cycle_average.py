@@ -10,6 +10,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
 from ..model.machine.raw import Raw
 from ..model.signals.averages import average
+from ..model.signals.of_shaft import time_share
 from ..model.signals.signals import Signal
 from .quantity import Array, Quantity, Values
 
@@ -20,7 +21,7 @@ Which = Literal["mean", "rms"]
 class CycleAverage(Quantity):
     """The mean or the root mean square of a signal over crank angle.
 
-    The torque counts with its sign. times_speed: the average times the crank speed, a power from a torque.
+    The torque counts with its sign. times_speed: the average times the crank speed over time, a power from a torque.
     """
 
     signal: Signal
@@ -38,10 +39,12 @@ class CycleAverage(Quantity):
             (found.mean, found.mean_gradients) if self.which == "mean" else (found.rms, found.rms_gradients)
         )
         if self.times_speed:
+            share = time_share(mechanism)
             if not mechanism.varying:
-                speed = mechanism.speed
+                speed = mechanism.speed * share
                 return Values(speed * values, None if slopes is None else speed * slopes)
             speeds, rates = number_of(mechanism, Raw.SPEED, dimensions, otherwise=mechanism.speed)
+            speeds, rates = share * speeds, share * rates
             if slopes is not None:
                 slopes = speeds[:, None] * slopes + rates * values[:, None]
             values = speeds * values

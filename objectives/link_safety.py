@@ -12,7 +12,7 @@ import numpy as np
 from ..model.machine.mechanism import Mechanism
 from .bars import LINKS, Formula, OfBars, Part, closed, constant, strength_of, stress
 from .kinds import RATIO
-from .needs import A_BAR, LOADED, STRENGTH
+from .needs import A_BAR, EVEN_SPEED, LOADED, STRENGTH
 from .quantity import Array, Group
 
 _COMPRESSION = ((0.0, 1.0),)
@@ -84,7 +84,7 @@ FATIGUE_SAFETY = FatigueSafety(
     picture="rod",
     example=1.5,
     better="high",
-    needs=(STRENGTH, A_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )
 BUCKLING_SAFETY = BucklingSafety(
     name="buckling_safety",
@@ -103,5 +103,5 @@ BUCKLING_SAFETY = BucklingSafety(
     picture="rod",
     example=3.0,
     better="high",
-    needs=(STRENGTH, A_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )

@@ -9,7 +9,7 @@ from functools import partial
 from ..model.machine.mechanism import Mechanism
 from .bars import LINKS, NEAR, OfBars, Part, closed, constant, net_section, over, pin_force, strength_of, stress
 from .kinds import PRESSURE, RATIO
-from .needs import A_BAR, CRANK_BAR, LOADED, ROD_BAR, STRENGTH
+from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array, Group
 
 STATIC = ((1.0, 0.0), (0.0, 1.0))
@@ -66,7 +66,7 @@ ROD_STRESS = _stress(
     advice="A wider rod lowers it until its own inertia bends it more.",
     formula="max of |N / (w d) +- 6 M / (d w^2)| and K F / ((w - D) d) over place and crank angle",
     picture="rod",
-    needs=(STRENGTH, ROD_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, ROD_BAR, LOADED),
 )
 CRANK_STRESS = replace(
     ROD_STRESS,
@@ -80,7 +80,7 @@ CRANK_STRESS = replace(
     ),
     advice="It is that at the crank pivot where the torque is large.",
     picture="crank",
-    needs=(STRENGTH, CRANK_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, LOADED),
 )
 STATIC_SAFETY = LinkStress(
     name="static_safety",
@@ -97,5 +97,5 @@ STATIC_SAFETY = LinkStress(
     example=2.0,
     better="high",
     signed=True,
-    needs=(STRENGTH, A_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )

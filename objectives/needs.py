@@ -18,6 +18,8 @@ from ..model.machine.dissipation import (
 )
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.members import cylinder_count
+from ..model.signals.whole import couples, shakes
 
 Without = Literal["undefined", "equal", "zero"]
 
@@ -130,6 +132,29 @@ COMPRESSOR = Need(
     lambda machine: bool(compressors(machine)),
     "it comes from a compressor or pump; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
+    without="undefined",
+)
+
+SHAKES = Need(
+    shakes,
+    "the shaking forces of these cylinders cancel for every design; got cranks and banks that stand against each other "
+    "in pairs; use peak_rocking_couple, or leave it out",
+)
+"""Cylinders whose shaking forces leave something."""
+COUPLES = Need(
+    couples,
+    "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got none; add for "
+    'example [mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',
+    without="undefined",
+)
+ONE_CYLINDER = Need(
+    lambda machine: cylinder_count(machine) == 1,
+    "a stroke is of one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
+    without="undefined",
+)
+EVEN_SPEED = Need(
+    lambda machine: machine.speed_profile is None,
+    "strength and wear are those at a constant speed; got a speed profile; leave it out for them",
     without="undefined",
 )
 

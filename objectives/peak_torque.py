@@ -5,7 +5,7 @@ from functools import partial
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import TORQUE
-from .needs import DRIVEN
+from .needs import DRIVEN, ONE_CYLINDER
 from .quantity import Group
 
 _TORQUE = "T = J alpha + J' omega^2 / 2 + V' - F x'"
@@ -16,17 +16,17 @@ _peak = partial(
     group=Group.DRIVE,
     section="8. Dynamics",
     picture="torque",
-    needs=(DRIVEN,),
 )
 PEAK_TORQUE = _peak(
     name="peak_torque",
     place=20,
     sentence=(
         "The greatest torque that the drive must give within a turn, whichever way it acts, with all masses, "
-        "loads, gravity and friction of the job."
+        "loads, gravity and friction of the job; of several cylinders on one crankshaft that of all together."
     ),
     advice="It sizes motor and gear; at high speed inertia dominates it, at low speed the load.",
     formula=f"max |T|, {_TORQUE}: reflected inertia J, potential energy V, load F",
+    needs=(DRIVEN,),
     offered=("requirement", "objective"),
     on_sheet=True,
 )
@@ -37,6 +37,8 @@ PEAK_TORQUE_OUTWARD = _peak(
     place=50,
     sentence="The greatest torque of the drive while the slider moves outward, away from the crank pivot.",
     formula=f"max |T| over the outward stroke, {_TORQUE}",
+    needs=(DRIVEN, ONE_CYLINDER),
+    instead=PEAK_TORQUE.name,
     plain=True,
 )
 PEAK_TORQUE_INWARD = _peak(
@@ -46,5 +48,7 @@ PEAK_TORQUE_INWARD = _peak(
     place=60,
     sentence="The greatest torque of the drive while the slider moves inward, towards the crank pivot.",
     formula=f"max |T| over the inward stroke, {_TORQUE}",
+    needs=(DRIVEN, ONE_CYLINDER),
+    instead=PEAK_TORQUE.name,
     plain=True,
 )

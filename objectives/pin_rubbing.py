@@ -10,12 +10,13 @@ from functools import partial
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.members import alone
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
 from .bars import LINKS, Formula, OfBars, Part, closed
 from .kinds import LENGTH, PRESSURE_SPEED
-from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS
+from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS
 from .pin_load import JOINED
 from .quantity import Array, Group
 
@@ -35,7 +36,7 @@ class PinRubbing(OfBars):
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return it for each bar that the pin bears in; see `OfBars`."""
-        work, place = turn_work(mechanism, designs, gradients=gradients), _RUBS[self.pin]
+        work, place = turn_work(alone(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]
         mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)
@@ -90,7 +91,7 @@ PV_PIVOT = _pv(
     sentence="The mean of pressure times rubbing speed in the bearing of the crank's pivot, over the crank's depth.",
     formula="mean of |P| |omega| / (2 b) over the crank angle, b the depth of the bar",
     picture="pivot force",
-    needs=(STRENGTH, CRANK_BAR, PIVOT_LOADED, SPEED),
+    needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, PIVOT_LOADED, SPEED),
 )
 PV_CRANK_PIN = _pv(
     name="pv_crank_pin",
@@ -101,7 +102,7 @@ PV_CRANK_PIN = _pv(
     sentence="The mean of pressure times rubbing speed in the crank pin's bearing, in the thinner of crank and rod.",
     formula="mean of |A| (1 - phi') |omega| / (2 b) over the crank angle, b the depth of the bar",
     picture="crank pin force",
-    needs=(STRENGTH, A_BAR, LOADED, SPEED),
+    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED, SPEED),
 )
 PV_SLIDER_PIN = _pv(
     name="pv_slider_pin",
@@ -112,7 +113,7 @@ PV_SLIDER_PIN = _pv(
     sentence="The mean of pressure times rubbing speed in the slider pin's bearing, over the depth of the rod.",
     formula="mean of |B| |phi'| |omega| / (2 b) over the crank angle, b the depth of the bar",
     picture="slider pin force",
-    needs=(STRENGTH, ROD_BAR, LOADED, SPEED),
+    needs=(STRENGTH, EVEN_SPEED, ROD_BAR, LOADED, SPEED),
 )
 WEAR_PIVOT = _wear(
     name="wear_pivot",
@@ -123,7 +124,7 @@ WEAR_PIVOT = _wear(
     sentence="The depth that a million cycles wear off the bearing of the crank's pivot, over the depth of the crank.",
     formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
     picture="pivot force",
-    needs=(WEARS, CRANK_BAR, PIVOT_LOADED),
+    needs=(WEARS, EVEN_SPEED, CRANK_BAR, PIVOT_LOADED),
 )
 WEAR_CRANK_PIN = _wear(
     name="wear_crank_pin",
@@ -134,7 +135,7 @@ WEAR_CRANK_PIN = _wear(
     sentence="The depth that a million cycles wear off the bearing of the crank pin, in the thinner of crank and rod.",
     formula="10^6 K / (2 b) times the integral of |A| (1 - phi') over the crank angle of a cycle",
     picture="crank pin force",
-    needs=(WEARS, A_BAR, LOADED),
+    needs=(WEARS, EVEN_SPEED, A_BAR, LOADED),
 )
 WEAR_SLIDER_PIN = _wear(
     name="wear_slider_pin",
@@ -145,5 +146,5 @@ WEAR_SLIDER_PIN = _wear(
     sentence="The depth that a million cycles wear off the bearing of the slider pin, over the depth of the rod.",
     formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
     picture="slider pin force",
-    needs=(WEARS, ROD_BAR, LOADED),
+    needs=(WEARS, EVEN_SPEED, ROD_BAR, LOADED),
 )

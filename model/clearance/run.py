@@ -17,6 +17,7 @@ from ..linkage.single import single
 from ..machine.clearance import Clearance
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
+from ..machine.members import require_plain
 from .equations import observe
 from .phases import FLIGHT, Integrator, Trace
 from .system import build
@@ -114,6 +115,7 @@ def simulate(
     """
     if not mechanism.speed:
         raise InputError("a joint with clearance is simulated over turns of the crank; got speed 0; give a crank speed")
+    require_plain(mechanism, "the simulation of a loose joint")
     require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
     if not 0 <= discard < cycles:
         raise InputError(

@@ -26,6 +26,7 @@ from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
+from .pace import pace
 from .self_locking import locking_margin
 
 _COLUMNS = 16
@@ -112,7 +113,8 @@ def cycle(
 ) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; the mechanism's if None.
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; if None those of the mechanism,
+    along its profile if it has one. Several cylinders: the curves are of one, see `several`.
     Where a load or friction jumps (exactly on a dead centre, or where the rod turns back) the value on one side is
     given: at a dead centre that of the inward stroke; where the speed is zero, that of counter-clockwise motion. Torque
     and forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
@@ -120,9 +122,10 @@ def cycle(
     """
     linkage = single(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
+    own = pace(mechanism, angles)
     speeds, accelerations = (
-        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), angles.shape))
-        for given, own in ((speed, mechanism.speed), (acceleration, mechanism.acceleration))
+        np.array(np.broadcast_to(np.asarray(of if given is None else given, dtype=np.float64), angles.shape))
+        for given, of in zip((speed, acceleration), own, strict=True)
     )
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")

@@ -11,6 +11,7 @@ volume. Over a turn the back pressure does none.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.compressor import Compressor
 from ..machine.loads.cylinder import Cylinder
 from ..machine.mechanism import Mechanism
+from ..machine.members import cylinder_count
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.two_turns import cycle_turns, halves
@@ -46,6 +48,11 @@ class GasCycle(NamedTuple):
     cycle_work: Any
     delivers: Any
 
+    def times(self, count: int) -> GasCycle:
+        """Return the sums of several machines."""
+        volumes = {"swept": count * self.swept, "clearance": count * self.clearance}
+        return self._replace(**volumes, work=count * self.work, cycle_work=count * self.cycle_work)
+
 
 def cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
     """Return the cylinders among the loads of a machine, each after its place."""
@@ -67,8 +74,15 @@ def may_deliver_nothing(mechanism: Mechanism) -> bool:
 def gas_cycle(
     mechanism: Mechanism, designs: Array, of: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
-    """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k)."""
+    """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k).
+
+    Of several cylinders on one crankshaft volumes and works are those of all.
+    """
     designs = turning(designs)
+    several = cylinder_count(mechanism)
+    if several > 1:
+        one = replace(mechanism, arrangement=None)
+        return gas_cycle(one, designs, lambda gas: of(gas.times(several)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _of_two_turns(mechanism, designs, gradients=gradients)
         return np.asarray(of(sums), dtype=np.float64), None if rates is None else _differentiated(of, sums, rates)

@@ -17,6 +17,15 @@ def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
     return speed * ratio, speed**2 * ratio * profile.slope(crank_angle)
 
 
+def bend(mechanism: Mechanism, crank_angle: Array) -> Array:
+    """Return the slope of the acceleration over the crank angle, rad/s^2, at crank angles (n,), rad."""
+    profile = mechanism.speed_profile
+    if profile is None:
+        return np.zeros(crank_angle.shape)
+    slope = profile.slope(crank_angle)
+    return np.asarray(mechanism.speed**2 * (slope**2 + profile.ratio(crank_angle) * profile.curvature(crank_angle)))
+
+
 def pace_knots(mechanism: Mechanism) -> Array:
     """Return the crank angles (k,), rad, at which the speed is not analytic."""
     return np.array([] if mechanism.speed_profile is None else mechanism.speed_profile.knots, dtype=np.float64)

@@ -10,17 +10,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
+from ..machine.members import members
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.panels import Extreme, Panels, panels_of
 from .cycle import breakpoints, cycle
@@ -33,15 +32,6 @@ _ROUNDING = 1e-14  # of forces that cancel, as a share of their sizes
 _NOTHING = 1e-12
 """Share of what the cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
 _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE = range(6)
-
-
-class Member(NamedTuple):
-    """A cylinder as a machine of its own. lead: of its crank angle over the shaft's, rad. bank: rad. place: m."""
-
-    mechanism: Mechanism
-    lead: float
-    bank: float
-    place: float
 
 
 @dataclass(frozen=True)
@@ -86,25 +76,6 @@ class WholeCycle:
     def peak(self) -> Extreme:
         """The torque of greatest size."""
         return max(self.greatest, self.least, key=lambda extreme: abs(extreme.value))
-
-
-def members(mechanism: Mechanism) -> tuple[Member, ...]:
-    """Return the cylinders of a machine, each as a machine of its own. Raises `InputError` without an arrangement."""
-    arrangement = mechanism.arrangement
-    if arrangement is None:
-        raise InputError(
-            "several cylinders need to be stated; got none; add to the job for example "
-            '[mechanism] cylinders = { phases = ["0 deg", "180 deg"] }'
-        )
-    found = []
-    x, y = mechanism.gravity
-    for k in range(len(arrangement.phases)):
-        bank = arrangement.bank(k)
-        c, s = math.cos(bank), math.sin(bank)
-        turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
-        alone = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
-        found.append(Member(alone, arrangement.lead(k), bank, arrangement.place(k)))
-    return tuple(found)
 
 
 def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> WholeCurves:

@@ -15,6 +15,7 @@ from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
 from ..signals.signals import design_motion
+from .pace import pace
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ def shaking_curves(
 ) -> ShakingCurves:
     """Return the curves of one fully turning linkage at crank angles (n,), rad.
 
-    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,); the mechanism's if None.
+    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,); if None those of the mechanism, along its
+    profile if it has one.
     """
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -51,6 +53,10 @@ def shaking_curves(
     block = np.empty((DESIGN, 1))
     derive(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
+    if mechanism.speed_profile is not None:
+        own = pace(mechanism, theta)
+        speed = own[0] if speed is None else speed
+        acceleration = own[1] if acceleration is None else acceleration
     d = d if speed is None else d._replace(speed=speed)
     d = d if acceleration is None else d._replace(acceleration=acceleration)
     sine, cosine = np.sin(theta), np.cos(theta)

@@ -104,8 +104,8 @@ class Mechanism:
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
-    speed_profile: how the speed goes over the crank angle, for `transient.uneven`; everything else has it constant.
-    arrangement: identical cylinders on one crankshaft, for `cycle.several`; everything else is of one cylinder.
+    speed_profile: how the speed goes over the crank angle; what moves under a motor finds its own.
+    arrangement: identical cylinders on one crankshaft; `signals.of_shaft` says what adds up and what is of one.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     strength: material and pins, for what judges the strength of bars; nothing else depends on it.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,

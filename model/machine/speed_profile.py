@@ -7,6 +7,7 @@ w dw/d(theta) = speed^2 p p'.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -23,6 +24,8 @@ _MOST = 100  # harmonics
 _LEAST = 4  # points of a table
 _SAMPLES = 64  # of the highest harmonic's period
 _CLOSED = 1e-9  # rad
+_SETTLED = 1e-14  # of a mean, relative
+_PANELS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,19 +57,32 @@ class Harmonics:
     def ratio(self, theta: Array) -> Array:
         """Return p at crank angles, rad, real or complex."""
         found = np.ones_like(theta)
-        for k, (a, b) in enumerate(self._pairs, start=1):
+        for k, (a, b) in enumerate(self.pairs, start=1):
             found = found + a * np.cos(k * theta) + b * np.sin(k * theta)
         return np.asarray(found)
 
     def slope(self, theta: Array) -> Array:
         """Return dp/d(theta)."""
         found = np.zeros_like(theta)
-        for k, (a, b) in enumerate(self._pairs, start=1):
+        for k, (a, b) in enumerate(self.pairs, start=1):
             found = found + k * (b * np.cos(k * theta) - a * np.sin(k * theta))
         return np.asarray(found)
 
+    def curvature(self, theta: Array) -> Array:
+        """Return the second derivative of p."""
+        found = np.zeros_like(theta)
+        for k, (a, b) in enumerate(self.pairs, start=1):
+            found = found - k**2 * (a * np.cos(k * theta) + b * np.sin(k * theta))
+        return np.asarray(found)
+
+    @cached_property
+    def over_time(self) -> float:
+        """Mean speed over time, as a share of that over the crank angle."""
+        return _over_time(self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines))))
+
     @property
-    def _pairs(self) -> list[tuple[float, float]]:
+    def pairs(self) -> list[tuple[float, float]]:
+        """a_k and b_k of each harmonic."""
         count = max(len(self.cosines), len(self.sines))
         cosines, sines = (values + (0.0,) * (count - len(values)) for values in (self.cosines, self.sines))
         return list(zip(cosines, sines, strict=True))
@@ -154,6 +170,20 @@ class SpeedTable:
         """Return dp/d(theta)."""
         return np.asarray(self._spline(theta, 1) / self.mean)
 
+    def curvature(self, theta: Array) -> Array:
+        """Return the second derivative of p."""
+        return np.asarray(self._spline(theta, 2) / self.mean)
+
+    @cached_property
+    def over_time(self) -> float:
+        """Mean speed over time, as a share of that over the crank angle."""
+        return _over_time(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
+
+    @property
+    def pieces(self) -> tuple[Array, Array]:
+        """Knots (k + 1,) of a turn, rad, and the polynomials (4, k) of p between them, by falling powers."""
+        return np.array(self._spline.x), np.ascontiguousarray(self._spline.c / self.mean)
+
     @property
     def text(self) -> str:
         """The profile in a few words."""
@@ -161,6 +191,18 @@ class SpeedTable:
 
 
 Profile = Harmonics | SpeedTable
+
+
+def _over_time(ratio: Callable[[Array], Array], ends: Array) -> float:
+    """Return one over the mean of 1 / p, by panels of Gauss between ends that are halved until it settles."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    found, before = math.nan, math.inf
+    while not abs(found - before) <= _SETTLED * abs(found) and len(ends) < _PANELS:
+        width = np.diff(ends)
+        angle = ends[:-1, None] + 0.5 * width[:, None] * (1.0 + nodes)
+        found, before = _TURN / float(np.sum(0.5 * width[:, None] * weights / ratio(angle))), found
+        ends = np.sort(np.concatenate([ends, ends[:-1] + 0.5 * width]))
+    return found
 
 
 def _require_positive(theta: Array, ratio: Array) -> None:

@@ -32,9 +32,11 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
+from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
+from .of_shaft import averages_of_shaft
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
 from .signals import Signal, signal
 from .two_turns import averaged
@@ -206,9 +208,11 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
 
     The k columns more are the values of the machine's varying numbers.
     The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
-    work over a turn.
+    work over a turn. Several cylinders and a profile of the speed count as `of_shaft` says.
     """
     designs = turning(designs)
+    if is_shaft(mechanism):
+        return Averages(*averages_of_shaft(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (average(half, kind, designs, gradients=gradients) for half in halves(mechanism))
         return Averages(*averaged(first, second))

@@ -111,6 +111,11 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     return Panels(lows[order], widths[order], coefficients[order])
 
 
+def resolved_tail(values: Array) -> Array:
+    """Return the greatest of the last coefficients (p,) of curves at the nodes of panels (p, 16)."""
+    return np.asarray(np.abs(values @ _FIT[-_TAIL:].T).max(axis=1, initial=0.0))
+
+
 def _roots(coefficients: Array) -> Array:
     """Return the real roots within the panel."""
     size = np.abs(coefficients).max()

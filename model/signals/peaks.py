@@ -35,9 +35,11 @@ from ..kernel.kernel import ComplexCube, Cube, Table, kernel
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
+from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
+from .of_shaft import apart, highest_of, peaks_of_shaft
 from .signals import Signal, design_motion, signal
 from .two_turns import highest
 from .watch import inputs_of, watch_of
@@ -337,8 +339,17 @@ def find_peaks(
 
     during: for torque, "outward stroke" or "inward stroke" restricts the search; the position error counts over the
     window of the mechanism's tolerances. kept: peaks returned a design. angles: samples a turn.
+    Several cylinders and a profile of the speed count as `of_shaft` says.
     """
     designs = turning(designs)
+    if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
+        parts = [
+            find_peaks(one, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
+            for one in apart(mechanism, kind)
+        ]
+        if parts:
+            return Peaks(*highest_of([(part.values, part.angles, part.gradients) for part in parts]))
+        return Peaks(*peaks_of_shaft(mechanism, kind, designs, during=during, gradients=gradients, kept=kept))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
             find_peaks(half, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)

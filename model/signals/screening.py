@@ -25,6 +25,7 @@ from ..kernel.kernel import Cube, Integers, Row, Table, kernel
 from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
+from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.remembered import remembered
@@ -62,13 +63,18 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     """Whether `screen` handles this signal of this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
-    watch = watch_of(mechanism, kind, during=during)
+    watch, shaft = watch_of(mechanism, kind, during=during), is_shaft(mechanism)
     mechanism = mechanism.fullest
     whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `locate` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
-        return whole and not mechanism.friction.acts and all(load.enters <= Enters.VISCOUS for load in mechanism.loads)
+        return (
+            whole
+            and not shaft
+            and not mechanism.friction.acts
+            and all(load.enters <= Enters.VISCOUS for load in mechanism.loads)
+        )
     return whole
 
 

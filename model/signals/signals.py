@@ -18,8 +18,8 @@ class Signal(IntEnum):
     """A signal that is watched over the cycle by its size.
 
     Torque (N m), forces (N), power (W), the component along the slider line of the force between rod and slider (N),
-    slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking force (N) and shaking
-    moment (N m).
+    slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking force (N), shaking
+    moment (N m) and rocking couple (N m), which is of several cylinders alone.
     """
 
     TORQUE = 0
@@ -37,6 +37,7 @@ class Signal(IntEnum):
     REFLECTED_INERTIA = 12
     SHAKING_FORCE = 13
     SHAKING_MOMENT = 14
+    ROCKING_COUPLE = 15
 
     @property
     def needs_forces(self) -> bool:

@@ -30,9 +30,11 @@ from ..kinematics.position import motion_of
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
+from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
+from .of_shaft import turn_work_of_shaft
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
 from .signals import Signal
 from .watch import inputs_of
@@ -178,9 +180,11 @@ def _integrate(
 def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> TurnWork:
     """Return the means of fully turning designs (n, 3 + k): crank, rod, offset, m, then the machine's varying numbers.
 
-    Of a cycle of two turns they are over both.
+    Of a cycle of two turns they are over both, of several cylinders the sum.
     """
     designs = turning(designs)
+    if is_shaft(mechanism):
+        return TurnWork(*turn_work_of_shaft(mechanism, designs, gradients=gradients))
     if cycle_turns(mechanism) > 1:
         first, second = (turn_work(half, designs, gradients=gradients) for half in halves(mechanism))
         slopes = None

@@ -12,10 +12,10 @@ import math
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.several import Member, members
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
+from ..machine.members import Member, members
 from ..machine.two_turns import cycle_turns, half_at, halves
 from .equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 

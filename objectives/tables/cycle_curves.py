@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.cycle.cycle import cycle
+from ...model.cycle.pace import bend, pace
+from ...model.cycle.several import whole_curves
 from ...model.errors import InputError
 from ...model.kinematics.position import motion, third_derivative
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import numbers
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.members import cylinder_count
 from ..kinds import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, POWER, SPEED, TORQUE, Face, face, per
 from ..quantity import Array
 
@@ -51,7 +54,8 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     """Return the curves of one fully turning linkage at crank angles (n,), rad; the angle comes first.
 
     Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
-    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive. Without a crank
+    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive, of several cylinders
+    together over the angle of the shaft; all else is of one over that of its own crank. Without a crank
     speed, velocity, acceleration and jerk are those of one radian per second: derivatives by the crank angle; there is
     no power (NaN). Position errors are NaN without tolerances. What is given where a load jumps, and what is raised:
     see `model.cycle.cycle`.
@@ -62,20 +66,23 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     if not mechanism.tolerances.given:
         acting = replace(acting, position_error=nothing, position_error_rss=nothing)
     speed = mechanism.speed
-    rates, pace = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
+    rates, note = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
     theta = acting.crank_angle
+    torque, of = acting.torque, ""
+    if cylinder_count(mechanism) > 1:
+        torque, of = whole_curves(mechanism, linkage, theta).torque, " of all cylinders"
     jerk = _jerk(replace(mechanism, speed=speed or 1.0), linkage, theta)
     velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
     return [
         Curve("crank_angle", "crank angle", theta, *_ANGLE),
         Curve("slider_position", "slider position", moving.slider_position, *_LENGTH),
-        Curve("slider_velocity", f"slider velocity{pace}", velocity, *rates[0]),
-        Curve("slider_acceleration", f"slider acceleration{pace}", acceleration, *rates[1]),
-        Curve("slider_jerk", f"slider jerk{pace}", jerk, *rates[2]),
+        Curve("slider_velocity", f"slider velocity{note}", velocity, *rates[0]),
+        Curve("slider_acceleration", f"slider acceleration{note}", acceleration, *rates[1]),
+        Curve("slider_jerk", f"slider jerk{note}", jerk, *rates[2]),
         Curve("rod_angle", "rod angle", linkage.at(theta).rod_angle, *_ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, *_ANGLE),
-        Curve("torque", "drive torque", acting.torque, *_TORQUE),
-        Curve("power", "drive power", speed * acting.torque if speed else nothing, *_POWER),
+        Curve("torque", f"drive torque{of}", torque, *_TORQUE),
+        Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, *_POWER),
         Curve("load", "load on the slider", acting.load, *_FORCE),
         *(Curve(name, _force_title(name), getattr(acting, name), *_FORCE) for name in _FORCES),
         Curve("guide", "guide force", acting.guide, *_FORCE),
@@ -109,11 +116,14 @@ def even_angles(count: int, most: int = MOST) -> Array:
 
 
 def _jerk(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Array:
-    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a, the crank's acceleration a being the same at every angle."""
+    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta), a the crank's acceleration."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
     third = third_derivative(sine, cosine, m, linkage.crank)
-    return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
+    if mechanism.speed_profile is None:
+        return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
+    speed, acceleration = pace(mechanism, theta)
+    return np.asarray((third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * bend(mechanism, theta)) * speed)
 
 
 def _force_title(name: str) -> str:

@@ -21,6 +21,7 @@ from collections.abc import Callable
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ...model.machine.members import require_plain
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .search import Search
@@ -43,7 +44,7 @@ def certify_designs(
     objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
     rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
     dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
-    forces under friction, peaks that are not minimised; and for a swing.
+    forces under friction, peaks that are not minimised; and for a swing, several cylinders and a speed profile.
     """
     listed = (f"the values of {item.name}" for item in problem.discrete)
     more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
@@ -57,6 +58,8 @@ def certify_designs(
             "a certificate is of a crank that turns through; got a swing; the residuals of the front tell how near its "
             "designs are to optimal"
         )
+    for part in problem.parts():
+        require_plain(part.mechanism, "a certificate")
     if not len(dimensions):
         raise InputError("an empty front cannot be certified; its message says why nothing is feasible")
     if not 0.0 < epsilon < 1.0:

@@ -2,8 +2,8 @@
 
 Mirrored about the slider's direction and run backwards, a machine with offset e is one with offset -e that turns the
 same way. Accelerations and whatever depends on the position alone are the same in both, velocities change sign. So the
-two are equal in everything unless gravity across the slider line, a load or friction that depends on the motion, or
-what is asked for tells them apart.
+two are equal in everything unless gravity across the slider line, a load or friction that depends on the motion,
+several cylinders, a speed profile, or what is asked for tells them apart.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.machine.members import is_shaft
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
@@ -63,6 +64,8 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
     machine = part.mechanism.fullest
     if any(map(_may_differ, part.own)) or machine.gravity[1] or machine.acceleration or machine.friction.acts:
+        return True
+    if is_shaft(part.mechanism):
         return True
     if not all(load.by_position for load in machine.loads):
         return True  # what differs at some crank angles only would be seen in some designs only

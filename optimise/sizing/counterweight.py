@@ -37,6 +37,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.members import require_plain
 from ...model.signals.averages import average
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
@@ -145,6 +146,7 @@ def balance(
     Raises `InputError` for a crank that stands or accelerates, and where nothing that moves has a mass.
     """
     require_word("measure", measure, Measure)
+    require_plain(mechanism, "the balance of a counterweight")
     linkage = single(mechanism, linkage)
     for name, value in (("arm", arm), ("radius", radius), ("most", most)):
         if value is not None and not (math.isfinite(value) and value > 0.0):

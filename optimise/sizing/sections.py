@@ -26,6 +26,7 @@ from ...model.linkage.single import single
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.members import require_plain
 from ...model.machine.strength import Material
 from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_states, rod_loads, same
 from .section_limits import SectionLimits
@@ -73,6 +74,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     pins.
     """
     require_frictionless(mechanism.friction, "section sizing")
+    require_plain(replace(mechanism, arrangement=None), "section sizing")
     linkage = single(mechanism, linkage)
     task = _Task(mechanism, linkage, material, limits, whip_of(mechanism, linkage))
     sizes = np.log([limits.width[0], limits.depth[0]] * 2)

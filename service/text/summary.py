@@ -79,7 +79,7 @@ def _speed(problem: Problem) -> list[str]:
 def _given(mechanism: Mechanism) -> list[str]:
     lines = []
     if mechanism.speed_profile is not None:
-        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities are at the mean speed")
+        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities are those along it")
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
     lines += [f"{name}: {_link(getattr(mechanism, name))}" for name in ("crank", "rod")]
@@ -91,7 +91,11 @@ def _given(mechanism: Mechanism) -> list[str]:
         )
     lines.append(f"slider: {mechanism.slider_mass:.6g} kg")
     if mechanism.arrangement is not None:
-        lines.append(f"on one crankshaft: {mechanism.arrangement.text}; quantities are of one cylinder")
+        lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
+        lines.append(
+            "of all cylinders: torque, power, work, energy, volumes and shaking; of the one that has the most: forces "
+            "of the joints, stresses, motion of the slider"
+        )
     if any(mechanism.gravity):
         x, y = mechanism.gravity
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")

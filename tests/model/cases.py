@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -21,7 +22,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.machine.strength import Material, Strength
-from slidercrank.objectives.needs import A_BAR, COMPRESSOR, CRANK_BAR, CYLINDER, LOSSES, ROD_BAR, RUBS, WEARS
+from slidercrank.objectives.needs import A_BAR, COMPRESSOR, COUPLES, CRANK_BAR, CYLINDER, LOSSES, ROD_BAR, RUBS, WEARS
 from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
 from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
 from slidercrank.objectives.needs import STRENGTH as STRONG
@@ -141,9 +142,11 @@ RUBBING_PIVOT = Friction(crank_pivot=Pin(radius=0.01, coefficient=0.1))
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """Return a machine that has what a quantity is of.
 
-    A compressor more for cylinders, bars for their strength; for losses a crank pivot that rubs, which locks no design,
-    and a load that resists more than any other one drives.
+    Two cylinders for a rocking couple, a compressor more for the gas of one, bars for their strength; for losses a
+    crank pivot that rubs, which locks no design, and a load that resists more than any other one drives.
     """
+    if COUPLES in quantity.needs:
+        return replace(machine, arrangement=Arrangement(phases=(0.0, 2.0), places=(-0.05, 0.06)))
     if {LOSSES, RUBS} & set(quantity.needs):
         resistance = StrokeForce(outward=-3000.0, inward=3000.0)
         return replace(machine, friction=RUBBING_PIVOT, loads=(*machine.loads, resistance))

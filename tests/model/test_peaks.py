@@ -31,6 +31,7 @@ from tests.model.virtual_work import drive_torque, position_error
 DESIGNS = random_designs(1000, seed=1)
 # Rounding of 1 - sin(phi)^2 near locking, to its third power in the torque, makes 1e-13; the rule asks for 1e-9.
 EXACT = 2e-12
+OF_ONE = [signal for signal in Signal if signal is not Signal.ROCKING_COUPLE]  # which takes several cylinders
 
 
 def highest(machine: Mechanism, signal: Signal, designs: Array = DESIGNS, during: str = "cycle") -> Array:
@@ -111,7 +112,7 @@ def test_peak_torque_of_a_stroke_is_that_of_a_dense_sweep(name: str, during: str
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@pytest.mark.parametrize("signal", list(Signal), ids=lambda signal: signal.name)
+@pytest.mark.parametrize("signal", OF_ONE, ids=lambda signal: signal.name)
 def test_peaks_are_sorted_and_lie_where_they_say(name: str, signal: Signal) -> None:
     machine = MACHINES[name]
     designs = DESIGNS[:50]
@@ -153,7 +154,7 @@ def test_flywheel_alone_has_a_constant_torque() -> None:
 
 
 def test_mechanism_at_rest_has_peaks_of_zero() -> None:
-    for signal in Signal:
+    for signal in OF_ONE:
         assert np.all(highest(Mechanism(), signal) == 0.0), signal
 
 

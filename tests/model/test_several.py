@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.several import members, whole_curves, whole_cycle
+from slidercrank.model.cycle.several import whole_curves, whole_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.members import alone, members
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -91,6 +92,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
     machine, linkage = random_whole(3 * seed + 1)
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
     found = whole_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
+    machine = alone(machine)
     peak = find_peaks(machine, Signal.TORQUE, design, kept=1)
     averages = average_torque(machine, design)
     assert abs(found.peak.value) == pytest.approx(peak.values[0, 0], rel=1e-10)

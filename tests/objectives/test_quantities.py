@@ -193,7 +193,7 @@ def test_quantity_scales_with_a_power_of_the_size(name: str, power: int) -> None
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_mirrored_machine_is_judged_alike(name: str) -> None:
-    """Mirrored about the slider line: offset, rotation, gravity along y and mass centres across change their sign."""
+    """Mirrored about the slider line: offset, rotation, gravity along y, mass centres across and phases change sign."""
     machine = fitted(QUANTITIES[name], SMOOTH)
     rod = machine.rod
     mirrored = dataclasses.replace(
@@ -204,6 +204,9 @@ def test_mirrored_machine_is_judged_alike(name: str) -> None:
         rod=dataclasses.replace(rod, centre_across=0.02) if isinstance(rod, RigidLink) else rod,
         counterweight=dataclasses.replace(SMOOTH.counterweight, angle=-SMOOTH.counterweight.angle),
     )
+    if (shaft := machine.arrangement) is not None:
+        shaft = dataclasses.replace(shaft, phases=tuple(-phase for phase in shaft.phases))
+        mirrored = dataclasses.replace(mirrored, arrangement=shaft)
     original, image = values(name, DESIGNS, machine), values(name, DESIGNS * [1.0, 1.0, -1.0], mirrored)
     # The mirrored torque is the negative one.
     sign = -1.0 if name == "mean_torque" else 1.0

@@ -16,6 +16,7 @@ NAMES = {
     *("peak_slider_speed", "peak_slider_acceleration"),
     *("self_locking_margin", "peak_power", "mean_power", "peak_reflected_inertia"),
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "rms_shaking_moment"),
+    "peak_rocking_couple",
     *("efficiency", "energy_per_cycle", "friction_loss", "envelope_length", "envelope_height"),
     *("pv_pivot", "pv_crank_pin", "pv_slider_pin", "wear_pivot", "wear_crank_pin", "wear_slider_pin"),
 }

@@ -11,7 +11,9 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.members import alone
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.sizing.counterweight import balance
 from slidercrank.service.topics.cylinders import analysis
 from slidercrank.service.topics.motor import analysis as motor
 from tests.service.conftest import Command
@@ -30,7 +32,16 @@ def test_the_figure_draws_the_whole_and_each() -> None:
 
 def test_what_is_of_one_cylinder_says_so() -> None:
     with pytest.raises(InputError, match=r"one cylinder; got 2 cylinders at 0, 171.887 deg, at 0, 100 mm along"):
-        motor.numbers(TWO, LINKAGE)
+        balance(TWO, LINKAGE)
+
+
+def test_the_motor_is_that_of_all_cylinders() -> None:
+    found, whole = motor.numbers(TWO, LINKAGE), analysis.numbers(TWO, LINKAGE)
+    assert found["peak_torque_Nm"] == pytest.approx(whole["peak_torque_Nm"], rel=1e-12)
+    assert found["rms_torque_Nm"] == pytest.approx(whole["rms_torque_Nm"], rel=1e-12)
+    one = motor.numbers(alone(TWO), LINKAGE)["mean_reflected_inertia_kg_m2"]
+    assert found["mean_reflected_inertia_kg_m2"] == pytest.approx(2.0 * one, rel=1e-9)
+    assert found["least_reflected_inertia_kg_m2"] < found["mean_reflected_inertia_kg_m2"]
 
 
 def test_the_command_tells_the_whole(pytestconfig: pytest.Config, command: Command, tmp_path: Path) -> None:
@@ -41,12 +52,14 @@ def test_the_command_tells_the_whole(pytestconfig: pytest.Config, command: Comma
     found = json.loads(command(*line, "--json", "--figures", str(tmp_path)).stdout)
     whole = found["cylinders"]
     assert [one["phase_deg"] for one in whole["cylinders"]] == [0.0, pytest.approx(180.0)]
-    assert whole["mean_torque_Nm"] == pytest.approx(2.0 * found["mean_torque_Nm"], rel=1e-9)
+    assert whole["mean_torque_Nm"] == pytest.approx(found["mean_torque_Nm"], rel=1e-9)
     assert whole["peak_rocking_couple_Nm"] == 0.0
     assert whole["peak_rocking_couple_angle_deg"] is None
     assert (tmp_path / "cylinders.png").stat().st_size > 10_000
     assert "energy change" in command(*line).stdout
-    assert "on one crankshaft: 2 cylinders at 0, 180 deg; quantities are of one" in command("check", str(job)).stdout
+    said = command("check", str(job)).stdout
+    assert "on one crankshaft: 2 cylinders at 0, 180 deg" in said
+    assert "of all cylinders: torque, power" in said
 
 
 @pytest.mark.parametrize(

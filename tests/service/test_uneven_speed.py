@@ -35,11 +35,12 @@ def test_the_command_tells_and_draws(pytestconfig: pytest.Config, command: Comma
     # Mean over time of w0 (1 + a cos 2 theta): w0 sqrt(1 - a^2), by the residue theorem.
     assert uneven["mean_speed_over_time_rpm"] == pytest.approx(900.0 * math.sqrt(1.0 - 0.05**2), rel=1e-12)
     assert uneven["least_speed_rpm"] == pytest.approx(855.0)
-    assert uneven["peak_torque_at_constant_speed_Nm"] == pytest.approx(found["peak_torque_Nm"], rel=1e-9)
+    assert uneven["peak_torque_Nm"] == pytest.approx(found["peak_torque_Nm"], rel=1e-9)
+    assert uneven["mean_power_W"] == pytest.approx(found["mean_power_W"], rel=1e-9)
     assert uneven["mean_torque_Nm"] == pytest.approx(found["mean_torque_Nm"], rel=1e-9)
     assert (tmp_path / "uneven_speed.png").stat().st_size > 10_000
     assert "at constant speed" in command(*line).stdout
-    assert "2 harmonics of the crank angle; quantities are at the mean" in " ".join(
+    assert "2 harmonics of the crank angle; quantities are those along it" in " ".join(
         command("check", job).stdout.split()
     )
 

@@ -6,9 +6,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
-from ....model.cycle.shaking import shaking_curves
+from ....model.cycle.several import WholeCurves, whole_curves
+from ....model.cycle.shaking import ShakingCurves, shaking_curves
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Counterweight
 from ....model.machine.mechanism import Mechanism
@@ -48,6 +50,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     return values
 
 
+def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> ShakingCurves | WholeCurves:
+    """Return the shaking of all cylinders at crank angles (n,), rad."""
+    if mechanism.arrangement is not None:
+        return whole_curves(mechanism, linkage, theta)
+    return shaking_curves(mechanism, linkage, theta)
+
+
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
     lines: list[text.Line] = []
@@ -63,13 +72,13 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return shaking force and moment over the cycle, with and without the counterweight."""
     theta, bare = turn(), _bare(mechanism)
-    degrees, now = np.degrees(theta), shaking_curves(mechanism, linkage, theta)
+    degrees, now = np.degrees(theta), _curves(mechanism, linkage, theta)
     size, moment = (
         [Line("as it is", degrees, np.hypot(now.force_x, now.force_y))],
         [Line("as it is", degrees, now.moment)],
     )
     if bare is not None:
-        then = shaking_curves(bare, linkage, theta)
+        then = _curves(bare, linkage, theta)
         size.append(Line("without counterweight", degrees, np.hypot(then.force_x, then.force_y), 1))
         moment.append(Line("without counterweight", degrees, then.moment, 1))
     along, across = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)

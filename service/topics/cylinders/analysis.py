@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from ....model.cycle.several import members, whole_breakpoints, whole_curves, whole_cycle
+from ....model.cycle.several import whole_breakpoints, whole_curves, whole_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.members import alone, members
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
@@ -51,8 +52,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         **_with_angle("peak_shaking_moment", "Nm", whole.shaking_moment),
         "rms_shaking_moment_Nm": whole.rms_shaking_moment,
         **_with_angle("peak_rocking_couple", "Nm", whole.couple),
-        "peak_shaking_force_of_one_N": peak(mechanism, Signal.SHAKING_FORCE, linkage).value,
-        "peak_shaking_moment_of_one_Nm": peak(mechanism, Signal.SHAKING_MOMENT, linkage).value,
+        "peak_shaking_force_of_one_N": peak(alone(mechanism), Signal.SHAKING_FORCE, linkage).value,
+        "peak_shaking_moment_of_one_Nm": peak(alone(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
 
 

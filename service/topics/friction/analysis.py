@@ -15,6 +15,7 @@ from ....model.cycle.locked_angles import verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.members import alone
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
@@ -38,6 +39,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes no net
     work.
     """
+    mechanism = alone(mechanism)
     friction, found = mechanism.friction, verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
@@ -111,6 +113,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
 
     At angles where friction locks there is no torque and no force.
     """
+    mechanism = alone(mechanism)
     smooth = replace(mechanism, friction=Friction())
     found = verdict(mechanism, linkage)
     ends = [end for span in found.locked for end in span]

@@ -11,14 +11,17 @@ from rich.console import Console
 from scipy.optimize import minimize_scalar
 
 from ....model.cycle.cycle import breakpoints, cycle
+from ....model.cycle.pace import pace
 from ....model.cycle.self_locking import locking_margin
+from ....model.cycle.several import whole_curves
 from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
-from ....model.machine.arrangement import require_one_cylinder
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.members import cylinders_of
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average, average_torque
+from ....model.signals.of_shaft import time_share
 from ....model.signals.peaks import find_peaks
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
@@ -32,9 +35,8 @@ _SAMPLES = 2048
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
-    Torque and power are None where friction locks the linkage. Raises `InputError` for several cylinders.
+    Torque and power are None where friction locks the linkage. Of several cylinders they are those of all together.
     """
-    require_one_cylinder(mechanism.arrangement, "motor sizing")
     design = row_of(linkage)
     torque = find_peaks(mechanism, Signal.TORQUE, design, kept=1)
     power = find_peaks(mechanism, Signal.POWER, design, kept=1)
@@ -42,7 +44,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     greatest = find_peaks(mechanism, Signal.REFLECTED_INERTIA, design, kept=1)
 
     def inertia(angle: Any) -> Any:
-        return shaking_curves(mechanism, linkage, angle).reflected_inertia
+        return _inertia(mechanism, linkage, angle)
 
     around = np.linspace(0.0, 2.0 * math.pi, _SAMPLES, endpoint=False)
     lowest, step = float(around[np.argmin(inertia(around))]), 2.0 * math.pi / _SAMPLES
@@ -63,13 +65,19 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "mean_torque_Nm": plain(averages.mean[0]),
         "peak_power_W": plain(power.values[0, 0]),
         "peak_power_angle_deg": degrees(power.angles[0, 0]),
-        "mean_power_W": plain(mechanism.speed * averages.mean[0]),
+        "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]),
         "greatest_reflected_inertia_kg_m2": float(greatest.values[0, 0]),
         "greatest_reflected_inertia_angle_deg": degrees(greatest.angles[0, 0]),
         "least_reflected_inertia_kg_m2": float(least.fun),
         "least_reflected_inertia_angle_deg": degrees(least.x),
         "mean_reflected_inertia_kg_m2": float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
     }
+
+
+def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
+    """Return the moving inertia of all cylinders at crank angles (n,), rad."""
+    curves = (shaking_curves(own.mechanism, linkage, angle + own.lead) for own in cylinders_of(mechanism))
+    return sum(own.reflected_inertia for own in curves)
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
@@ -87,12 +95,14 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     turns = cycle_turns(mechanism)
     theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns)
-    degrees, torque = np.degrees(theta), cycle(mechanism, linkage, theta).torque
+    degrees = np.degrees(theta)
+    several = mechanism.arrangement is not None
+    torque = (whole_curves if several else cycle)(mechanism, linkage, theta).torque
     averages = average_torque(mechanism, design)
-    rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed)
-    inertia = Line("inertia", degrees, shaking_curves(mechanism, linkage, theta).reflected_inertia)
+    rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * time_share(mechanism))
+    inertia = Line("inertia", degrees, _inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
-    power = Line("power", degrees, torque * mechanism.speed)
+    power = Line("power", degrees, torque * pace(mechanism, theta)[0])
     panels = (
         over_turn("drive torque, N m", Line("torque", degrees, torque), level=None if locks else ("RMS", rms)),
         over_turn("power, W", power, level=None if locks else ("mean", mean)),

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.several import members
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -21,6 +20,7 @@ from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.members import members
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import simulate

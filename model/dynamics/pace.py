@@ -1,0 +1,68 @@
+"""The speed of a crank over its angle within kernels: a share of the mean, with its derivatives."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..kernel.arithmetic import analytic
+from ..kernel.kernel import Row, Table
+from ..machine.mechanism import Mechanism
+from ..machine.remembered import remembered
+from ..machine.speed_profile import Harmonics
+
+_TURN = 2.0 * math.pi
+
+
+class Pace(NamedTuple):
+    """A profile p(theta) of the crank speed, 1 on the mean: harmonics, or the pieces of a periodic cubic spline.
+
+    cosines, sines: (h,). knots: (k + 1,), increasing, spanning a turn, rad; none for harmonics. pieces: (4, k), by
+    falling power of the distance from the knot before.
+    """
+
+    cosines: Row
+    sines: Row
+    knots: Row
+    pieces: Table
+
+
+@remembered
+def pace_of(mechanism: Mechanism) -> Pace:
+    """Return the profile of a machine; without one it is 1 throughout."""
+    profile, none = mechanism.speed_profile, np.zeros(0)
+    if profile is None:
+        return Pace(none, none, none, np.zeros((4, 0)))
+    if isinstance(profile, Harmonics):
+        pairs = np.array(profile.pairs).reshape(-1, 2)
+        return Pace(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), none, np.zeros((4, 0)))
+    return Pace(none, none, *profile.pieces)
+
+
+@analytic
+def ratio_at(theta: Any, pace: Pace) -> Any:
+    """Return p and its first three derivatives at a crank angle of the shaft, rad."""
+    p, first, second, third = 1.0, 0.0, 0.0, 0.0
+    for i in range(pace.cosines.shape[0]):
+        k = i + 1.0
+        a, b = pace.cosines[i], pace.sines[i]
+        c, s = math.cos(k * theta), math.sin(k * theta)
+        even, odd = a * c + b * s, b * c - a * s
+        p, first, second, third = p + even, first + k * odd, second - k * k * even, third - k * k * k * odd
+    count = pace.pieces.shape[1]
+    if count > 0:
+        at = theta - _TURN * math.floor((theta - pace.knots[0]) / _TURN)
+        low, high = 0, count
+        while high - low > 1:
+            middle = (low + high) // 2
+            if pace.knots[middle] <= at:
+                low = middle
+            else:
+                high = middle
+        x = at - pace.knots[low]
+        a, b, c, s = pace.pieces[0, low], pace.pieces[1, low], pace.pieces[2, low], pace.pieces[3, low]
+        p, first = ((a * x + b) * x + c) * x + s, (3.0 * a * x + 2.0 * b) * x + c
+        second, third = 6.0 * a * x + 2.0 * b, 6.0 * a
+    return p, first, second, third

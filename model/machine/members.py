@@ -1,0 +1,79 @@
+"""The cylinders of a crankshaft as machines of their own, and whether a machine is followed as a shaft.
+
+A machine is followed as a shaft where several cylinders add up, or where its speed follows a profile; any other one by
+the formulas of a single crank at constant speed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+from ..errors import InputError
+from .arrangement import require_one_cylinder
+from .mechanism import Mechanism
+from .remembered import remembered
+
+
+class Member(NamedTuple):
+    """A cylinder as a machine of its own. lead: of its crank angle over the shaft's, rad. bank: rad. place: m."""
+
+    mechanism: Mechanism
+    lead: float
+    bank: float
+    place: float
+
+
+def is_shaft(mechanism: Mechanism) -> bool:
+    """Return whether a machine has cylinders that are stated one by one, or a speed profile."""
+    return mechanism.arrangement is not None or mechanism.speed_profile is not None
+
+
+def cylinder_count(mechanism: Mechanism) -> int:
+    """Return how many cylinders a machine has on its crankshaft."""
+    return 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
+
+
+@remembered
+def alone(mechanism: Mechanism) -> Mechanism:
+    """Return one cylinder of a machine by itself, in the bank of angle zero, at its constant mean speed."""
+    return replace(mechanism, arrangement=None, speed_profile=None) if is_shaft(mechanism) else mechanism
+
+
+@remembered
+def members(mechanism: Mechanism) -> tuple[Member, ...]:
+    """Return the cylinders of a machine, each as a machine of its own. Raises `InputError` without an arrangement.
+
+    Gravity is turned into the axes of each bank; one that varies from design to design keeps its values.
+    """
+    arrangement = mechanism.arrangement
+    if arrangement is None:
+        raise InputError(
+            "several cylinders need to be stated; got none; add to the job for example "
+            '[mechanism] cylinders = { phases = ["0 deg", "180 deg"] }'
+        )
+    found = []
+    x, y = mechanism.gravity
+    for k in range(len(arrangement.phases)):
+        bank = arrangement.bank(k)
+        c, s = math.cos(bank), math.sin(bank)
+        turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
+        own = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
+        found.append(Member(own, arrangement.lead(k), bank, arrangement.place(k)))
+    return tuple(found)
+
+
+def require_plain(mechanism: Mechanism, what: str) -> None:
+    """Refuse several cylinders and a speed profile where an analysis has neither; what: its subject."""
+    require_one_cylinder(mechanism.arrangement, what)
+    if mechanism.speed_profile is not None:
+        raise InputError(
+            f"{what} takes a crank at constant speed; got a speed profile, {mechanism.speed_profile.text}; leave "
+            "speed_profile out for it"
+        )
+
+
+def cylinders_of(mechanism: Mechanism) -> tuple[Member, ...]:
+    """Return the cylinders of any machine: the only one of a machine without an arrangement."""
+    return members(mechanism) if mechanism.arrangement is not None else (Member(alone(mechanism), 0.0, 0.0, 0.0),)

@@ -1,0 +1,163 @@
+"""Peaks and averages of a machine that is followed as a shaft: which curves add up, which are of one cylinder.
+
+Torque and power, moving inertia, shaking force, moment and rocking couple are of all cylinders together. Forces of the
+joints and the slider's motion are of the cylinder that has the most, its crank angle counted from its own slider line;
+without a profile cylinders that gravity pulls alike have the same. Geometry knows nothing of either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..kernel.batches import in_chunks
+from ..machine.dissipation import works_over_a_turn
+from ..machine.mechanism import Mechanism
+from ..machine.members import alone, cylinder_count, cylinders_of
+from .shaft import Shaft
+from .shaft_averages import shaft_means
+from .shaft_curves import CURVES, WORK
+from .shaft_peaks import shaft_peaks
+from .signals import Signal
+from .whole import couples
+
+Found = tuple[Array, Array, Array | None]
+
+SUMS = (
+    Signal.TORQUE,
+    Signal.POWER,
+    Signal.REFLECTED_INERTIA,
+    Signal.SHAKING_FORCE,
+    Signal.SHAKING_MOMENT,
+    Signal.ROCKING_COUPLE,
+)
+"""Signals that add up over the cylinders."""
+_GEOMETRY = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+_CHUNK = 128  # designs
+_STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
+
+
+def apart(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
+    """Return the machines of one crank at constant speed whose highest peak is that of the shaft; none if none are."""
+    if kind in _GEOMETRY:
+        return (alone(mechanism),)
+    banked = any(own.bank for own in cylinders_of(mechanism))
+    turned = banked and any(path.startswith("gravity.") for item in mechanism.varying for path in item.paths)
+    if kind in SUMS or mechanism.speed_profile is not None or turned:
+        return ()
+    return tuple({own.mechanism.gravity: own.mechanism for own in cylinders_of(mechanism)}.values())
+
+
+def peaks_of_shaft(
+    mechanism: Mechanism, kind: Signal, designs: Array, *, during: str, gradients: bool, kept: int
+) -> Found:
+    """Return values, angles (n, kept) and derivatives of the highest local peaks of a signal; see `find_peaks`.
+
+    Over one stroke several cylinders together have none, nor is there a rocking couple in one plane: NaN.
+    """
+    count = cylinder_count(mechanism)
+    if (during != "cycle" and count > 1) or (kind is Signal.ROCKING_COUPLE and not couples(mechanism)):
+        nothing = np.full((len(designs), kept), np.nan)
+        return nothing, nothing.copy(), np.full((len(designs), kept, designs.shape[1]), np.nan) if gradients else None
+    groups = [tuple(range(count))] if kind in SUMS else [(k,) for k in range(count)]
+    values, angles = (np.empty((len(designs), len(groups), kept)) for _ in range(2))
+    slopes = np.empty((len(designs), len(groups), kept, designs.shape[1])) if gradients else None
+
+    def work(begin: int, end: int) -> None:
+        part = designs[begin:end]
+        for place, group in enumerate(groups):
+            shaft = Shaft(mechanism, int(kind), part, members=group, during=during, gradients=gradients)
+            found = shaft_peaks(shaft, len(part), kept=kept, stroke=_STROKES[during])
+            values[begin:end, place], angles[begin:end, place] = found[:2]
+            if len(group) == 1 and count > 1:
+                angles[begin:end, place] = np.mod(found[1] + cylinders_of(mechanism)[place].lead, shaft.period)
+            if slopes is not None and found[2] is not None:
+                slopes[begin:end, place] = found[2]
+
+    in_chunks(len(designs), work, size=_CHUNK)
+    return highest_of(
+        [(values[:, p], angles[:, p], None if slopes is None else slopes[:, p]) for p in range(len(groups))]
+    )
+
+
+def highest_of(parts: list[Found]) -> Found:
+    """Return the highest of several lists of peaks (n, k), as many as each has."""
+    if len(parts) == 1:
+        return parts[0]
+    kept = parts[0][0].shape[1]
+    values, angles = (np.concatenate([part[place] for part in parts], axis=1) for place in range(2))
+    order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
+    slopes = None
+    if all(part[2] is not None for part in parts):
+        every = np.concatenate([np.asarray(part[2]) for part in parts], axis=1)
+        slopes = np.take_along_axis(every, order[:, :, None], axis=1)
+    return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), slopes
+
+
+def averages_of_shaft(
+    mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool
+) -> tuple[Array, Array, Array | None, Array | None]:
+    """Return mean, root mean square and their derivatives of a signal that adds up; see `average`.
+
+    The mean of a signal that counts by its size is NaN, but for the reflected inertia.
+    """
+    members = tuple(range(cylinder_count(mechanism)))
+    found = _means(mechanism, [int(kind)], designs, members, gradients)
+    mean, rms, mean_slopes, rms_slopes = (None if part is None else part[:, 0] for part in found)
+    assert mean is not None
+    assert rms is not None
+    if kind is Signal.TORQUE:
+        if not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
+            mean = np.where(np.isnan(mean), np.nan, 0.0)
+            mean_slopes = None if mean_slopes is None else np.zeros_like(mean_slopes)
+    elif kind is not Signal.REFLECTED_INERTIA:
+        mean = np.full_like(mean, np.nan)
+        mean_slopes = None if mean_slopes is None else np.full_like(mean_slopes, np.nan)
+    return mean, np.where(np.isnan(rms), np.inf, rms), mean_slopes, rms_slopes
+
+
+def _means(
+    mechanism: Mechanism, kinds: Sequence[int], designs: Array, members: tuple[int, ...], gradients: bool
+) -> tuple[Array, Array, Array | None, Array | None]:
+    """Return mean and root mean square (n, c) of curves, NaN where friction locks, and derivatives (n, c, 3 + k)."""
+    shape = len(designs), len(kinds)
+    mean, rms = np.empty(shape), np.empty(shape)
+    slopes = np.empty((2, *shape, designs.shape[1])) if gradients else None
+
+    def work(begin: int, end: int) -> None:
+        part = designs[begin:end]
+        shaft = Shaft(mechanism, kinds[0], part, members=members, gradients=gradients)
+        for place, kind in enumerate(kinds):
+            found = shaft_means(shaft.of(kind), len(part))
+            root = np.where(found.nothing, 0.0, np.sqrt(found.square))
+            mean[begin:end, place], rms[begin:end, place] = np.where(found.nothing, 0.0, found.mean), root
+            if slopes is not None and found.mean_gradients is not None and found.square_gradients is not None:
+                there = (root > 0.0)[:, None]
+                slopes[0, begin:end, place] = np.where(found.nothing[:, None], 0.0, found.mean_gradients)
+                half = 0.5 / np.where(there, root[:, None], 1.0)
+                slopes[1, begin:end, place] = np.where(there, half * found.square_gradients, 0.0)
+
+    in_chunks(len(designs), work, size=_CHUNK)
+    return mean, rms, None if slopes is None else slopes[0], None if slopes is None else slopes[1]
+
+
+def turn_work_of_shaft(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[Array, Array | None]:
+    """Return the means (n, 5) of `turn_work`, added up over the cylinders, and their derivatives (n, 5, 3 + k)."""
+    mean = np.zeros((len(designs), CURVES))
+    slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
+    for member in range(cylinder_count(mechanism)):
+        found = _means(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
+        mean += found[0]
+        if slopes is not None and found[2] is not None:
+            slopes += found[2]
+    locks = np.isnan(mean)
+    if slopes is not None:
+        slopes[locks] = 0.0
+    return np.where(locks, np.inf, mean), slopes
+
+
+def time_share(mechanism: Mechanism) -> float:
+    """Return the mean speed over time as a share of that over the crank angle; 1 without a profile."""
+    return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.over_time

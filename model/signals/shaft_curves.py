@@ -1,0 +1,241 @@
+"""Curves of a crankshaft: of all its cylinders together, or of one of them, at a constant speed or along a profile.
+
+Each cylinder is a single crank at the angle theta + lead, seen in axes that turn with its bank. Speed and acceleration
+of the shaft are w p and w^2 p p' of the profile p at the shaft's own angle, a constant acceleration added. Every curve
+is the size of a vector with two components, or of the first alone; components add up over the cylinders. All of it is
+complex, so that one compiled formula gives values, slopes over the crank angle and derivatives by the design.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..dynamics.contact import sides_of
+from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.inertia import reflected_inertia, shaking
+from ..dynamics.pace import Pace, ratio_at
+from ..dynamics.rubbing import Sides, joint_forces, touch
+from ..dynamics.segments import Cuts, Watch, cut_shift, enter, load_on_slider
+from ..kernel.arithmetic import STEP, analytic, magnitude, root
+from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
+from ..kinematics.position import third_derivative
+from ..machine.design import Design, design_at
+from ..machine.raw import Loads
+from .signals import Signal, design_motion
+
+TOUCH, WORK = 100, 101
+"""Curves besides signals: what has the sign of the guide's force (`rubbing.touch`), and those of `turn_work` from
+`WORK` on, in their order."""
+CURVES = 5
+VECTORS = (
+    Signal.PIVOT_FORCE,
+    Signal.CRANK_PIN_FORCE,
+    Signal.SLIDER_PIN_FORCE,
+    Signal.SHAKING_FORCE,
+    Signal.ROCKING_COUPLE,
+)
+"""Signals that are the size of a vector; the others are of one component, with its sign."""
+_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _POWER, _LINE, _SPEED, _ACCELERATION, _JERK = range(10)
+_INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _ROCKING_COUPLE = (
+    int(kind) for kind in (Signal.REFLECTED_INERTIA, Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT, Signal.ROCKING_COUPLE)
+)
+_ROW_SPEED, _ROW_ACCELERATION, _ROW_X, _ROW_Y = (
+    Design._fields.index(name) for name in ("speed", "acceleration", "gravity_x", "gravity_y")
+)
+
+
+class Axes(NamedTuple):
+    """The cylinders (m,): lead of each crank angle over the shaft's, rad, bank by its cosine and sine, place, m."""
+
+    lead: Row
+    cosine: Row
+    sine: Row
+    place: Row
+
+
+class Items(NamedTuple):
+    """What is asked for, p times: design, shaft angle in the segment that is entered, angles, their rates, half.
+
+    row, inside: (p,). angle: (p, k), rad. rate: (p, v), of the angle by each number of the design, where derivatives
+    are wanted. half: (p, m), of a cycle of two turns that each cylinder is in.
+    """
+
+    row: Integers
+    inside: Row
+    angle: Table
+    rate: Table
+    half: IntegerTable
+
+
+class Found(NamedTuple):
+    """Answers. curve: (p, k, 2 + v), value, slope over the crank angle and, if wanted, derivatives by the design.
+
+    size: (p, k), sum of the cylinders' sizes. outward: (p, m), 1 where the slider moves outward.
+    """
+
+    curve: Cube
+    size: Table
+    outward: IntegerTable
+
+
+class Blocks(NamedTuple):
+    """Derived designs of h halves. plain: (n h, rows, 1). stepped: (n h (1 + v), rows, 1), the first without a step."""
+
+    plain: Cube
+    stepped: ComplexCube
+
+
+@analytic
+def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any, place: Any, rate: Any) -> Any:
+    """Return the components of a curve of one cylinder; rate: of the acceleration over the crank angle, rad/s^2."""
+    zero = 0.0 * d.r
+    if kind == TOUCH:
+        return touch(s, c, m, d, load, sides.turn, sides.swing), zero
+    if kind <= _LINE or kind >= WORK:
+        f = joint_forces(s, c, m, d, load, sides)
+        if kind in (_TORQUE, _POWER):
+            block, theta, loads, piece, shift = place
+            torque = beside_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
+            return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
+        if kind in (_PIVOT, WORK + 2):
+            x, y = f.pivot_x, f.pivot_y
+        elif kind in (_CRANK_PIN, WORK + 3):
+            x, y = f.crank_pin_x, f.crank_pin_y
+        elif kind in (_SLIDER_PIN, WORK + 4):
+            x, y = f.slider_pin_x, f.slider_pin_y
+        elif kind == _LINE:
+            x, y = f.slider_pin_x, zero
+        else:
+            x, y = f.guide, zero
+        if kind < WORK:
+            return x, y
+        if kind == WORK:
+            return -sense_of(d) * d.branch * load * m.x_1, zero
+        if kind == WORK + 1:
+            return magnitude(x * m.x_1), zero
+        turned = 1.0 + zero if kind == WORK + 2 else 1.0 - m.rod_1 if kind == WORK + 3 else magnitude(m.rod_1)
+        return root(x * x + y * y) * turned, zero
+    if kind == _SPEED:
+        return m.x_1 * d.speed, zero
+    if kind == _ACCELERATION:
+        return m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration, zero
+    if kind == _JERK:
+        third = third_derivative(s, c, m, d.r)
+        return (third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration + m.x_1 * rate) * d.speed, zero
+    if kind == _INERTIA:
+        return reflected_inertia(s, c, m, d), zero
+    x, y, moment = shaking(s, c, m, d)
+    return (moment, zero) if kind == _SHAKING_MOMENT else (x, y)
+
+
+@seldom_kernel
+def follow_kernel(
+    kind: int,
+    members: Integers,
+    asked: Items,
+    axes: Axes,
+    pace: Pace,
+    blocks: Blocks,
+    first: Loads,
+    second: Loads,
+    turns: int,
+    vector: bool,
+    rubbing: bool,
+    wanted: bool,
+    out: Found,
+) -> None:
+    """Fill `out` with a curve of designs, added up over the cylinders `members`.
+
+    turns: halves of a cycle of two turns, with the loads `first` and `second`. vector: whether both components count.
+    """
+    rows, count = blocks.plain.shape[1], members.shape[0]
+    numbers = blocks.stepped.shape[0] // max(1, blocks.plain.shape[0])
+    watch = Watch(0, 0.0, 1.0, False)
+    own, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
+    piece = np.zeros((count, first.kind.shape[0]), np.int64)
+    shift = np.zeros((count, first.kind.shape[0]))
+    sides = np.zeros((count, 4))
+    for p in range(asked.row.shape[0]):
+        ratio, slope, _, _ = ratio_at(asked.inside[p], pace)
+        for i in range(count):
+            k = members[i]
+            loads = first if asked.half[p, k] == 0 else second
+            block = blocks.plain[asked.row[p] * turns + asked.half[p, k]]
+            for row in range(rows):
+                real[row, 0] = block[row, 0]
+            real[_ROW_SPEED, 0] = block[_ROW_SPEED, 0] * ratio
+            real[_ROW_ACCELERATION, 0] = (
+                block[_ROW_ACCELERATION, 0] + block[_ROW_SPEED, 0] * block[_ROW_SPEED, 0] * ratio * slope
+            )
+            x, y = block[_ROW_X, 0], block[_ROW_Y, 0]
+            real[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
+            real[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
+            d = design_at(real, 0)
+            local = asked.inside[p] + axes.lead[k]
+            _, outward = enter(d, real, 0, local, loads, watch, piece[i], shift[i])
+            signs = sides_of(local, d, real, 0, outward, loads, piece[i], shift[i], rubbing)
+            sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3] = signs.turn, signs.slide, signs.swing, signs.press
+            out.outward[p, i] = 1 if outward else 0
+        for a in range(asked.angle.shape[1]):
+            theta = asked.angle[p, a]
+            p_0, p_1, p_2, p_3 = ratio_at(theta, pace)
+            for v in range(numbers if wanted else 1):
+                step = STEP if v == 0 else STEP * asked.rate[p, v - 1]
+                ratio_now, slope_now = complex(p_0, step * p_1), complex(p_1, step * p_2)
+                bend = complex(p_2, step * p_3)
+                one, other = 0j, 0j
+                size = 0.0
+                for i in range(count):
+                    k = members[i]
+                    half = asked.half[p, k]
+                    loads = first if half == 0 else second
+                    given = blocks.stepped[(asked.row[p] * turns + half) * numbers + v]
+                    for row in range(rows):
+                        own[row, 0] = given[row, 0]
+                    speed = given[_ROW_SPEED, 0]
+                    own[_ROW_SPEED, 0] = speed * ratio_now
+                    square = speed * speed
+                    own[_ROW_ACCELERATION, 0] = given[_ROW_ACCELERATION, 0] + square * ratio_now * slope_now
+                    rate = square * (slope_now * slope_now + ratio_now * bend)
+                    x, y = given[_ROW_X, 0], given[_ROW_Y, 0]
+                    own[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
+                    own[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
+                    z = design_at(own, 0)
+                    local = theta + axes.lead[k]
+                    sine, cosine = math.sin(local), math.cos(local)
+                    s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
+                    at = complex(local, step)
+                    m = design_motion(s, c, z)
+                    load = load_on_slider(m, z, own, 0, at, out.outward[p, i] == 1, loads, piece[i], shift[i])
+                    signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3])
+                    place = (own, at, loads, piece[i], shift[i])
+                    x, y = _components(kind, s, c, m, z, load, signs, place, rate)
+                    if kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
+                        x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
+                    if kind == _ROCKING_COUPLE:
+                        x, y = -axes.place[k] * y, axes.place[k] * x
+                    one, other = one + x, other + y
+                    size += abs(x.real) + abs(y.real)
+                if vector:
+                    one = root(one * one + other * other)
+                if v == 0:
+                    out.curve[p, a, 0] = one.real
+                    out.curve[p, a, 1] = one.imag / STEP
+                    out.size[p, a] = size
+                else:
+                    out.curve[p, a, 1 + v] = one.imag / STEP
+
+
+@seldom_kernel
+def cut_rates(
+    chosen: Integers, angle: Row, code: Integers, number: Row, load: Integers, stepped: ComplexCube, out: Table
+) -> None:
+    """Fill `out` (p, v) with the derivatives of breakpoints, at own angles of their cylinders, by the design."""
+    cuts = Cuts(angle, code, number, load)
+    for p in range(chosen.shape[0]):
+        for v in range(out.shape[1]):
+            block = stepped[chosen[p] * (out.shape[1] + 1) + 1 + v]
+            out[p, v] = cut_shift(design_at(block, 0), block, 0, angle[p], cuts, p) / STEP

@@ -1,0 +1,86 @@
+"""Breakpoints of many crankshafts in flat lists, and the segments and panels between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, Whole
+from ..dynamics.segments import within
+from ..machine.two_turns import TURN
+
+FIXED, CONTACT = -1, -2
+"""Codes of a breakpoint that no design moves, and of one where a guide's force changes sides."""
+_THIN = 1e-13  # rad: breakpoints closer than this are one
+
+
+@dataclass(frozen=True)
+class Segments:
+    """The cycles of n designs between breakpoints: s segments in order of design and angle, with smooth curves.
+
+    row: design. low, high: rad. inside: an angle that tells the pieces. cut: the breakpoint at its start. after: the
+    segment behind, of a cycle that repeats.
+    """
+
+    row: Whole
+    low: Array
+    high: Array
+    cut: Whole
+    after: Whole
+
+    @property
+    def inside(self) -> Array:
+        """A crank angle in each that tells strokes and pieces."""
+        low: Any = self.low
+        high: Any = self.high
+        return np.asarray(within(low, high))
+
+
+@dataclass(frozen=True)
+class Breaks:
+    """Breakpoints, c of them: design, angle, cylinder, half, and what it is, as `segments.Cuts` has it.
+
+    code: `FIXED` for one that no design moves, `CONTACT` where a guide's force changes sides.
+    """
+
+    row: Whole
+    angle: Array
+    member: Whole
+    half: Whole
+    code: Whole
+    number: Array
+    load: Whole
+
+
+def joined(parts: list[Breaks]) -> Breaks:
+    """Return the breakpoints of several lists."""
+    columns = zip(*((p.row, p.angle, p.member, p.half, p.code, p.number, p.load) for p in parts), strict=True)
+    return Breaks(*(np.concatenate(column) for column in columns))
+
+
+def segments_of(breaks: Breaks, period: float) -> Segments:
+    """Return the segments between breakpoints, thin ones left out."""
+    order = np.lexsort((breaks.angle, breaks.row))
+    row, low = breaks.row[order], breaks.angle[order]
+    first = np.searchsorted(row, row, side="left")
+    last = np.searchsorted(row, row, side="right") - 1
+    place = np.arange(len(row))
+    high = np.where(place == last, low[first] + period, low[np.minimum(place + 1, len(row) - 1)])
+    kept = high - low >= _THIN
+    row, low, high, cut = row[kept], low[kept], high[kept], order[kept]
+    place = np.arange(len(row))
+    ends = np.searchsorted(row, row, side="right") - 1
+    after = np.where(place == ends, np.searchsorted(row, row, side="left"), place + 1)
+    return Segments(row, low, high, cut, after)
+
+
+def panels(segments: Segments, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
+    """Return design, entering angle, start, width and segment of panels, at least `fineness` (n,) a turn."""
+    width = segments.high - segments.low
+    count = np.maximum(1, np.ceil(width / TURN * fineness[segments.row])).astype(np.int64)
+    segment = np.repeat(np.arange(len(width)), count)
+    place = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
+    own = (width / count)[segment]
+    return segments.row[segment], segments.inside[segment], segments.low[segment] + place * own, own, segment
