@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import APIRouter, Depends, Query, Response
 
 from ...objectives.kinds import System
+from ..designs.cycle_table import cycle_csv
 from ..drawings.dxf import dxf_file
 from ..drawings.linkage_drawing import linkage_drawing
 from ..drawings.shapes import Drawing
@@ -98,6 +99,13 @@ def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric")
 
     content = _made(shown, f"pdf {units}", lambda: pdf_file(_report(shown, store, units)))
     return _file(shown, "pdf", "application/pdf", content, label="-report")
+
+
+@router.get("/cycle.csv", **of_type("text/csv"))
+def export_cycle(shown: ShownDep, units: UnitsAsked = "metric") -> Response:
+    """Give the curves of a design as a table, a row for each degree of the crank: what `export --cycle` writes."""
+    content = cycle_csv(shown.design.mechanism, shown.design.linkage, units)
+    return _file(shown, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 
 
 def _report(shown: ShownDesign, store: Store, units: System) -> Report:

@@ -1,14 +1,16 @@
 /** Curves of the API that are shown, and those made of several of them. */
 
+import { innerPosition } from "../charts/cycle.js";
+
 const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
   ["slider_pin_N", "Slider pin force", "slider_pin_x_N", "slider_pin_y_N"],
 ];
-const ORDER = ["slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
+const ORDER = ["way_mm", "slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
 
-/** Return {curves, columns} with the sizes of the joint forces next to their components. @param {Pick<Api.Cycle, "curves" | "columns">} cycle */
-export function withResultants({ curves, columns }) {
+/** Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre. @param {Api.Cycle} cycle */
+export function withResultants({ curves, columns, inner_dead_centre_deg: centre }) {
   /** @type {Api.Curves} */
   const more = { ...curves };
   /** @type {Api.Column[]} */
@@ -18,6 +20,9 @@ export function withResultants({ curves, columns }) {
     more[key] = curves[x].map((value, n) => (value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n])));
     known.push({ key, title, unit: "N" });
   }
+  const start = innerPosition(curves, [centre]);
+  more.way_mm = curves.slider_position_mm.map((value) => (value === null || start === null ? null : value - start));
+  known.push({ key: "way_mm", title: "displacement from inner dead centre", unit: "mm" });
   return { curves: more, columns: known };
 }
 

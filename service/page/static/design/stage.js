@@ -3,7 +3,7 @@
 import { between } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
-import { ARROWS, largestForce } from "../mechanism/arrows.js";
+import { ARROWS, forceAt, largestForce, scaleOf } from "../mechanism/arrows.js";
 import { drawing } from "../mechanism/drawing.js";
 import { lengthsOf } from "./loading.js";
 import { around, frameOf } from "../mechanism/frame.js";
@@ -15,11 +15,11 @@ const EVERY = 100; // ms between two readouts while it moves
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
 /**
- * Put mechanisms and their controls into `place`; turning: of turning.js. Returns
+ * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
- * @param {HTMLElement} place @param {ReturnType<typeof turningOf>} turning
+ * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof turningOf>} turning
  */
-export function stage(place, turning) {
+export function stage(place, strip, turning) {
   const drawn = h("div", { class: "machines" });
   /** @type {Page.Machine[]} */
   let machines = [];
@@ -28,19 +28,22 @@ export function stage(place, turning) {
   const toggle = h("button", { type: "button", class: "primary play", onclick: () => (turning.playing ? turning.pause() : turning.play()) }, "Play");
   const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": "Crank angle", onkeydown: byKey, oninput: (event) => hold(Number(event.currentTarget.value)) });
   const told = h("output", { class: "number angle" });
+  const where = h("output", { class: "number where" });
   const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.currentTarget.value)]) },
     turning.paces.map((one, n) => h("option", { value: n, selected: one === turning.pace }, one.title)));
   const forces = h("input", { type: "checkbox", onchange: showForces });
-  const legend = h("ul", { class: "legend forces", hidden: true }, ARROWS.map(({ name, title }) => h("li", { class: name }, title)));
+  const sizes = ARROWS.map(() => h("span", { class: "number" }));
+  const legend = h("ul", { class: "legend forces", hidden: true }, ARROWS.map(({ name, title }, n) => h("li", { class: name }, `${title} `, sizes[n])));
   const largest = h("span", { class: "quiet" });
   fill(
     place,
     drawn,
-    h("div", { class: "row controls" }, toggle, h("label", { class: "crank-angle" }, h("span", {}, "Crank angle"), angle), told,
-      h("label", {}, "Speed ", pace), h("label", {}, forces, " Forces"), largest),
+    h("div", { class: "row controls" }, h("label", {}, "Speed ", pace), h("label", {}, forces, " Forces"), largest),
     legend,
     h("p", { class: "quiet hint" }, "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."),
   );
+
+  fill(strip, toggle, h("label", { class: "crank-angle" }, h("span", {}, "Crank angle"), angle), told, where);
 
   /** @param {number} to */
   function hold(to) {
@@ -60,7 +63,14 @@ export function stage(place, turning) {
     legend.toggleAttribute("hidden", !forces.checked);
     for (const one of drawings) one.forces(forces.checked);
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
-    fill(largest, forces.checked ? `longest arrow ${withUnit(greatest, "N", 3)}` : "");
+    fill(largest, forces.checked ? scaleOf(greatest) : "");
+    showSizes(turning.angle);
+  }
+
+  /** Write the forces of the first mechanism; those too small for an arrow are dots, and have a number all the same. @param {number} at */
+  function showSizes(at) {
+    if (!forces.checked || !machines.length) return;
+    ARROWS.forEach((arrow, n) => (sizes[n].textContent = withUnit(forceAt(arrow, machines[0].curves, at), "N", 4)));
   }
 
   /** @param {Page.Machine[]} shown */
@@ -100,8 +110,10 @@ export function stage(place, turning) {
     angle.value = String(at);
     const words = `${Math.round(at) % 360}°`;
     if (told.textContent !== words) told.textContent = words;
-    if (playing) return;
     const position = between(machines[0].curves.slider_position_mm, at);
+    where.textContent = `slider at ${withUnit(position, "mm", 4)}`;
+    showSizes(at);
+    if (playing) return;
     angle.setAttribute("aria-valuetext", `${words}, slider at ${withUnit(position, "mm", 4)}`);
   }
 

@@ -1,10 +1,12 @@
 /** Forces as arrows: of the frame on the crank, crank on rod, rod on slider, guide on slider, and the load. */
 
 import { between } from "../charts/cycle.js";
-import { svg } from "../lib/dom.js";
+import { h, svg } from "../lib/dom.js";
+import { fromShown, inShown, withUnit } from "../lib/numbers.js";
 
 const LONGEST = 110; // pixels, of the greatest force over the turn
-const SHORTEST = 3;
+const SHORTEST = 3; // less is a dot
+const DOT = 2.5;
 const HEAD = 7;
 
 /**
@@ -27,6 +29,23 @@ export function largestForce(curves) {
     for (let n = 0; n < (x ?? y ?? []).length; n += 1) greatest = Math.max(greatest, Math.hypot(x?.[n] ?? 0, y?.[n] ?? 0));
   }
   return greatest;
+}
+
+/** Return the size of a force at a crank angle, N; null where friction leaves it undetermined. @param {(typeof ARROWS)[0]} arrow @param {Api.Curves} curves @param {number} angle */
+export function forceAt({ along }, curves, angle) {
+  const parts = along.flatMap((key) => (key && curves[key] ? [between(curves[key], angle)] : []));
+  return parts.some((part) => part === null) ? null : Math.hypot(...parts.map(Number));
+}
+
+/** Return the scale of arrows of which the longest is so many N: a bar of a round force. @param {number} greatest */
+export function scaleOf(greatest) {
+  const shown = inShown(greatest, "N");
+  if (!(shown > 0)) return "no force acts";
+  const power = 10 ** Math.floor(Math.log10(shown));
+  const round = fromShown(power * (shown / power >= 5 ? 5 : shown / power >= 2 ? 2 : 1), "N");
+  const bar = h("span", { class: "force-scale", "aria-hidden": "true" });
+  bar.style.width = `${((LONGEST * round) / greatest).toFixed(1)}px`;
+  return h("span", {}, bar, ` ${withUnit(round, "N", 3)}; a dot: too small for an arrow`);
 }
 
 /** Return {node, size(curves, view, largest), move(pivot, pin, slider, angle)}: all arrows in one group. */
@@ -56,7 +75,8 @@ export function arrows() {
 /** @param {Page.Point} from @param {number} right @param {number} down */
 function arrow([x, y], right, down) {
   const size = Math.hypot(right, down);
-  if (size < SHORTEST) return "M0 0";
+  if (!(size > 0)) return "M0 0";
+  if (size < SHORTEST) return `M${(x - DOT).toFixed(1)} ${y.toFixed(1)}a${DOT} ${DOT} 0 1 0 ${2 * DOT} 0a${DOT} ${DOT} 0 1 0 ${-2 * DOT} 0`;
   const [tip, turn] = [[x + right, y + down], Math.atan2(down, right)];
   const head = Math.min(HEAD, size);
   /** @param {number} by */

@@ -2,7 +2,7 @@
 
 import { between } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
-import { text } from "../lib/numbers.js";
+import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { fitted, frameOf, reachOf } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
@@ -50,7 +50,7 @@ export function drawing(place, { label }) {
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1, written: !options.small }));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
-    parts.size({ linkage, view, block: own.block, link });
+    parts.size({ linkage, view, block: own.block, link, written: !options.small, crossed: (between(motion.slider_position_mm, 90) ?? 0) < 0 });
     parts.forces.size(motion, view, options.largest_force);
     turn(angle);
   }
@@ -117,7 +117,8 @@ function movingParts() {
   const pin = () => svg("circle", { class: "pin" });
   const [crank, rod, block] = [svg("path", { class: "link crank" }), svg("path", { class: "link rod" }), svg("rect", { class: "slider", rx: 2 })];
   const pins = [pin(), pin(), pin()];
-  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, pins[0], pins[1]), svg("g", {}, rod, pins[2]), svg("g", {}, block)];
+  const length = svg("text", { class: "length", "text-anchor": "middle" });
+  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, pins[0], pins[1]), svg("g", {}, rod, pins[2], length), svg("g", {}, block)];
   const normal = svg("path", { class: "transmission normal" });
   const arc = svg("path", { class: "transmission" });
   const value = svg("text", { class: "transmission" });
@@ -129,8 +130,8 @@ function movingParts() {
   return {
     nodes: [sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
-    /** @param {{ linkage: Page.Lengths, view: View, block: number, link: number }} given */
-    size({ linkage, view, block: height, link }) {
+    /** @param {{ linkage: Page.Lengths, view: View, block: number, link: number, written: boolean, crossed: boolean }} given */
+    size({ linkage, view, block: height, link, written, crossed }) {
       const size = height * view.unit;
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
@@ -138,6 +139,10 @@ function movingParts() {
       for (const one of pins) measure(one, { r: Math.max(2.5, 0.28 * link) });
       measure(pins[1], { cx: linkage.crank_mm * view.unit });
       measure(pins[2], { cx: linkage.rod_mm * view.unit });
+      const long = linkage.rod_mm * view.unit;
+      length.textContent = written && long > 110 ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
+      // Along the rod, which never stands on its head: on the crossed branch it points the other way.
+      length.setAttribute("transform", `translate(${long / 2} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`);
       const line = view.y(linkage.offset_mm);
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
       radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));

@@ -32,6 +32,8 @@ export function scenery({ linkage, centres, view, block, link, direction, writte
     ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
     rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
+    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * block * view.unit + 16)),
+    written && crankOf(view, r, e),
     bearing(x(0), y(0), link),
   ];
 }
@@ -86,6 +88,30 @@ function offset(view, e, x, written) {
     // Beside the line, not over it to the right: there the crank passes.
     !written || view.width < 330 ? null : svg("text", { transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`, "text-anchor": "middle" }, `offset ${withUnit(e, "mm", 4)}`),
   );
+}
+
+/** Dimension the stroke, outside of the guide. @param {View} view @param {number[]} ends @param {number} y */
+function strokeOf(view, ends, y) {
+  const [from, to] = ends.map(view.x).sort((a, b) => a - b);
+  const words = `stroke ${withUnit(Math.abs(ends[1] - ends[0]), "mm", 4)}`;
+  const room = to - from > 90;
+  const heads = `M${from + 6} ${y - 3}L${from} ${y}L${from + 6} ${y + 3}M${to - 6} ${y - 3}L${to} ${y}L${to - 6} ${y + 3}`;
+  return svg("g", { class: "dimension stroke" }, svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),
+    !room && to + 92 > view.width ? null : svg("text", { x: room ? (from + to) / 2 : to + 6, y: room ? y - 4 : y + 4, "text-anchor": room ? "middle" : "start" }, words));
+}
+
+/** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e */
+function crankOf(view, r, e) {
+  const radius = view.unit * r;
+  if (radius < 45) return null;
+  const down = e < 0 ? -1 : 1;
+  const turn = 0.35 * Math.PI; // from the line of centres, outward and away from the slider line
+  const [x, y] = [view.x(0) + radius * Math.cos(turn), view.y(0) + down * radius * Math.sin(turn)];
+  const side = Math.atan2(y - view.y(0), x - view.x(0));
+  /** @param {number} by */
+  const wing = (by) => `${(x - 7 * Math.cos(side + by)).toFixed(1)} ${(y - 7 * Math.sin(side + by)).toFixed(1)}`;
+  return svg("g", { class: "dimension radius" }, svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
+    svg("text", { x: x + 8, y: y + (down > 0 ? 6 : 2) }, `crank ${withUnit(r, "mm", 4)}`));
 }
 
 /** @param {number} x @param {number} y @param {number} link */

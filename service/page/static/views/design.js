@@ -1,11 +1,10 @@
 /** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
 
-import { curveCharts } from "../charts/curves.js";
 import { analyses } from "../design/analyses.js";
 import { besideOf, cycleOf, lengthsOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
-import { panelsOf } from "../design/panels.js";
+import { overCycle } from "../design/over_cycle.js";
 import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
 import { loadFront } from "../design/surroundings.js";
@@ -48,11 +47,13 @@ export async function show(place, { parts, query, signal }) {
   };
   const places = Object.fromEntries(["objectives", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics", "analyses"].map((name) => [name, h("section", { class: name })]));
   const files = takeAway(job, number, { signal });
+  const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
   fill(place, top(shared), files.node, places.objectives,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), h("h2", {}, "Over the cycle"), places.curves, places["way-back"], places.numbers, places.topics, places.analyses);
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), strip, places.curves, places["way-back"], places.numbers, places.topics, places.analyses);
   for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
-  const machines = stage(places.stage, angle);
-  const charts = curveCharts(places.curves, hold);
+  const machines = stage(places.stage, strip, angle);
+  let over = query.get("over") ?? "";
+  const charts = overCycle(places.curves, { path, rpm: requirements.speed_rpm, over, turned: hold, told: (now) => { over = now; keepAll(); } });
   angle.listen(charts.turn);
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
   signal.addEventListener("abort", () => clearTimeout(later), { once: true });
@@ -61,6 +62,9 @@ export async function show(place, { parts, query, signal }) {
   let changed = null; // the answer to "what if"
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
+  /** @type {Page.Lengths | null} */
+  let kept = startOf(query); // of the changed design
+  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, ...kept });
   const further = analyses(places.analyses, { job, number, drawn: DRAWN, signal });
   const draw = () => {
     const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
@@ -68,7 +72,7 @@ export async function show(place, { parts, query, signal }) {
     machines.show(moving);
     machines.fade(false);
     const series = asked ? [asked, main, ...others] : moving;
-    charts.show(series, panelsOf(main.curveColumns, series));
+    charts.show(series);
     legend(places.curves, series);
     return () => {
       further.show(changed && lengthsOf(changed.design));
@@ -83,8 +87,9 @@ export async function show(place, { parts, query, signal }) {
       changed = answer;
       clearTimeout(later);
       later = setTimeout(draw(), SOON); // the tables, once the length rests
-      files.show(lengths ?? null);
-      keep({ beside: others.map((one) => one.number).join(","), ...(lengths ?? {}) });
+      kept = lengths ?? null;
+      for (const each of [files.show, charts.of]) each(kept);
+      keepAll();
     },
     refused: () => machines.fade(true),
   });

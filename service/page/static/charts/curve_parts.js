@@ -1,0 +1,90 @@
+/** The parts of a chart of curves: axes, dead centres, lines, least and greatest values, and what it says in words. */
+
+import { svg } from "../lib/dom.js";
+import { text, withUnit } from "../lib/numbers.js";
+import { extremes } from "./cycle.js";
+
+/**
+ * @import { Across } from "./across.js"
+ * @import { Drawn, Shown } from "./curves.js"
+ */
+
+export const ROOM = { left: 52, right: 12, top: 18, bottom: 22 };
+const QUARTERS = [0, 90, 180, 270, 360];
+
+/** @typedef {{ x: Page.Scale, y: Page.Scale, across: Across, height: number }} Pen Scales of a chart, and what it is drawn over. */
+
+/** @param {Pen} pen @param {number} width */
+export function axes({ x, y, across, height }, width) {
+  const turn = across.unit === "°";
+  const ticks = turn ? QUARTERS : x.ticks;
+  return svg(
+    "g",
+    { class: "axes" },
+    y.ticks.map((tick) => [
+      svg("line", { class: tick === 0 ? "zero" : "grid", x1: ROOM.left, x2: width - ROOM.right, y1: y.at(tick), y2: y.at(tick) }),
+      svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
+    ]),
+    ticks.map((tick, n) => svg("text", { x: x.at(tick), y: height - 6, "text-anchor": !turn && x.at(tick) > width - 3 * ROOM.right ? "end" : "middle" }, turn ? `${tick}°` : n === ticks.length - 1 ? `${x.text(tick)} ${across.unit}` : x.text(tick))),
+  );
+}
+
+/** @param {Pen} pen @param {Shown | undefined} first */
+export function centreLines({ x, across, height }, first) {
+  if (!first) return [];
+  return first.centres.map((angle, n) => {
+    const at = x.at(across.place(first, angle) ?? NaN);
+    const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
+    return svg("g", { class: "centre" },
+      svg("line", { x1: at, x2: at, y1: ROOM.top, y2: height - ROOM.bottom }),
+      svg("text", { x: at, y: ROOM.top - 4, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, n ? "outer" : "inner"));
+  });
+}
+
+/** @param {Drawn} one @param {Pen} pen */
+export function line(one, { x, y, across }) {
+  const { values, series } = one;
+  let path = "";
+  let pen = "M";
+  for (const { x: at, n } of across.path(one, values.length)) {
+    const value = values[n];
+    if (value === null || Number.isNaN(at)) {
+      pen = "M";
+      continue;
+    }
+    path += `${pen}${x.at(at).toFixed(1)} ${y.at(value).toFixed(1)}`;
+    pen = "L";
+  }
+  return svg("path", { class: "curve", "data-series": series, d: path });
+}
+
+/** @param {Drawn} one @param {Pen} pen */
+export function peaks(one, { x, y, across }) {
+  const { values, series } = one;
+  const found = extremes(values);
+  if (!found || found.low.value === found.high.value) return null;
+  return /** @type {const} */ (["low", "high"]).map((end) => {
+    const { angle, value } = found[end];
+    const at = x.at(across.place(one, angle) ?? NaN);
+    const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
+    const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
+    return svg("g", { class: "peak" },
+      svg("circle", { cx: at, cy: y.at(value), r: 2.5, "data-series": series }),
+      svg("text", { x: at, y: y.at(value) + (end === "low" ? 12 : -5), "text-anchor": anchor }, text(value, "", 4)));
+  });
+}
+
+/**
+ * Return a sentence for a curve: its least and greatest value, and where.
+ * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Across} across
+ */
+export function summary(words, unit, series, key, across) {
+  const each = series.map(({ name, curves }) => {
+    const found = extremes(curves[key]);
+    if (!found) return `${name}: not defined`;
+    /** @param {{ value: number, angle: number }} given */
+    const at = ({ value, angle }) => `${withUnit(value, unit, 4)} at ${text(angle, "", 4)}°`;
+    return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
+  });
+  return `${words} over the ${across.title}. ${each.join(". ")}.`;
+}

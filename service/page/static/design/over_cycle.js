@@ -1,0 +1,58 @@
+/** The curves of a design: over crank angle, time or the way of the slider, three of them large, and as CSV. */
+
+import { acrossOf, OVER } from "../charts/across.js";
+import { curveCharts } from "../charts/curves.js";
+import { address } from "../lib/api.js";
+import { h } from "../lib/dom.js";
+import { apiSystem } from "../lib/numbers.js";
+import { panelsOf } from "./panels.js";
+
+const KEPT = "large curves";
+const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // unless the reader has chosen others
+
+/**
+ * Put the curves into `place`; turned: of the charts. told(over): the reader chose what they are over. Returns
+ * - show(series): each {name, series, curves, curveColumns, centres}, the first in front. - of(lengths): of a changed design, for the
+ *   file; null for the design itself. - turn, close: of the charts.
+ * @param {HTMLElement} place
+ * @param {{ path: string, rpm: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} given
+ */
+export function overCycle(place, { path, rpm, over, turned, told }) {
+  const choices = OVER.filter(({ name }) => name !== "time" || rpm !== 0);
+  let chosen = choices.some(({ name }) => name === over) ? over : "angle";
+  const choice = h("select", { name: "over", onchange: ({ currentTarget }) => {
+    chosen = currentTarget.value;
+    draw();
+    told(chosen === "angle" ? "" : chosen);
+  } }, choices.map(({ name, title }) => h("option", { value: name, selected: name === chosen }, title)));
+  const file = h("a", { class: "button", download: "", title: "A row for each degree, all curves" }, "Curves as CSV");
+  place.append(h("div", { class: "row spread" }, h("h2", {}, "Over the cycle"), h("label", {}, "Over ", choice), file));
+  const charts = curveCharts(place, turned, { large: largeKept(), told: (keys) => localStorage.setItem(KEPT, keys.join()) });
+  /** @type {Page.Machine[]} */
+  let shown = [];
+  const draw = () => charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm)); // in the units of now
+  /** @type {Page.Lengths | null} */
+  let lengths = null;
+  const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));
+  link();
+  return {
+    /** @param {Page.Machine[]} series */
+    show(series) {
+      shown = series;
+      draw();
+      link();
+    },
+    /** @param {Page.Lengths | null} other */
+    of(other) {
+      lengths = other;
+      link();
+    },
+    turn: charts.turn,
+    close: charts.close,
+  };
+}
+
+function largeKept() {
+  const kept = (localStorage.getItem(KEPT) ?? "").split(",").filter(Boolean);
+  return kept.length ? kept : LARGE;
+}
