@@ -108,7 +108,7 @@ DAMPING = _kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 
 _DRAG = per("lbf s^2/in^2", _INCH**2 / _LBF), per("N s^2/m^2")
 QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
 _PRESSURE = face("psi", _INCH**2 / _LBF), face("MPa", 1e-6)
-PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "207 GPa", 1e15, *_PRESSURE)
+PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
 _RUBBED = face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), face("MPa m/s", 1e-6)
 PRESSURE_SPEED = _kind(
     "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_RUBBED, "MPa m/s"

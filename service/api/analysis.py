@@ -282,7 +282,7 @@ def _with_topics(
     """Return the record of a design with its topics, ready for JSON, and notes."""
     with SIMULATING.turn() if topics else nullcontext():
         analysed = analysis_of(row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient)
-    return finite(analysed.record()), analysed.notes
+    return finite(analysed.record()), analysed.notes + analysed.refused
 
 
 def over(seconds: float) -> Callable[[], bool]:

@@ -80,7 +80,8 @@ def analyse(
 
     Without JOB it has no masses, loads and tolerances: motion and proportions only. Without --speed, nothing that
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
-    repeated. With --design, a run stands in place of JOB, and the design has its dimensions.
+    repeated. With --design, a run stands in place of JOB, and the design has its dimensions. Of topics that the design
+    does not have the reason is given once everything else is shown; the exit code is then 2.
     """
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
@@ -90,8 +91,6 @@ def analyse(
     own = () if problem is None else problem.own
     row = numbers_of(mechanism, linkage, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
-    if cycle is not None:
-        _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     with Interruption() as interruption:
         found = analysis_of(
             row,
@@ -102,15 +101,17 @@ def analyse(
             options=options,
             notes=notes,
             cancelled=interruption.asked,
-            lenient=ALL in (show or ()),
+            lenient=True,
         )
+    if cycle is not None:
+        _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
     if json:
         record = record_in(found.record(), units)
         give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
         screen = console()
-        show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units))
+        show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
@@ -119,12 +120,14 @@ def analyse(
         for topic in found.topics:
             screen.print()
             topic.show(screen, found.found[topic.name])
-    for note in found.notes:
+    for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
     if figures is not None and not interruption.asked():
         _draw(problem, mechanism, linkage, row, found.topics, figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
+    if found.refused and ALL not in (show or ()):
+        raise InputError("; ".join(found.refused))
 
 
 def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesign:

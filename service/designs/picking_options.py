@@ -106,7 +106,7 @@ def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
         kind = kind_for(wanted.unit)
         if kind.unit and plain_number(value) is not None:
             raise InputError(f"must be {kind.name} with its unit, or a share of the range; got {value}")
-        return to_si(value, kind, sign="zero or more") * per_si(wanted.unit), 0.0
+        return to_si(value, kind, sign="zero or more", plain=False) * per_si(wanted.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
 

@@ -127,7 +127,7 @@ def _number(text: str, column: Column, value: str) -> float:
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain
     try:
-        return to_si(value, kind_for(column.unit)) * column.factor
+        return to_si(value, kind_for(column.unit), plain=False) * column.factor
     except InputError as error:
         raise InputError(f"the value in {text.strip()!r} {error}") from None
 

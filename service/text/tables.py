@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
+    from ...objectives.quantity import Quantity
     from ..designs.requirements import JudgedRule
 
 ROWS = 15
@@ -56,16 +57,20 @@ def show_front(
         screen.print(f" {';  '.join(notes)}", style="dim")
 
 
-def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None) -> None:
-    """Write all quantities of one design, one a line; those without a value are left out."""
+def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None, own: Sequence[Quantity] = ()) -> None:
+    """Write all quantities of one design, one a line; those without a value are left out.
+
+    own: quantities of its job, whose titles and units say more than their columns' keys.
+    """
+    known = {of.field: of for of in own}
     rows = table("", ">", "")
     for key in only or row:
         value = row[key]
         if value is None or (isinstance(value, float) and math.isnan(value)):
             continue
-        column = find_column(key, row)
+        column, of = find_column(key, row), known.get(key)
         text = value if isinstance(value, str) else f"{value:.6g}"
-        rows.add_row(column.title, text, column.unit)
+        rows.add_row(of.title if of else column.title, text, of.unit.symbol if of else column.unit)
     print_table(screen, rows)
 
 

@@ -19,12 +19,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Analysis:
-    """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why."""
+    """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why.
+
+    refused: topics that the design does not have, each with the reason.
+    """
 
     row: Row
     found: dict[str, dict[str, Any]]
     topics: tuple[TopicOfDesign, ...]
     notes: list[str]
+    refused: list[str]
 
     def record(self) -> dict[str, Any]:
         """Return all numbers of the design and of its topics, for JSON."""
@@ -54,21 +58,21 @@ def analysis_of(
     """Return the analysis of one design.
 
     row: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these. cancelled: asked
-    now and then; when it says so, the topics left are left out. lenient: a topic that this design does not have is a
-    note, not an error.
+    now and then; when it says so, the topics left are left out. lenient: a topic that this design does not have is
+    left out, not an error.
     """
     design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
     design += tuple(more)
     found: dict[str, dict[str, Any]] = {}
-    said = list(notes)
+    said, refused = list(notes), list[str]()
     for topic in design:
         if cancelled():
-            said.append(f"interrupted; left out: {', '.join(t.name for t in design if t.name not in found)}")
+            said.append(f"interrupted; left out: {', '.join(t.name for t in design[len(found) + len(refused) :])}")
             break
         try:
             found[topic.name] = topic.numbers(cancelled)
         except InputError as error:
             if not lenient:
                 raise
-            said.append(f"{topic.name}: {error}")
-    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said)
+            refused.append(f"{topic.name}: {error}")
+    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said, refused)

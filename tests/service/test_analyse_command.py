@@ -146,3 +146,24 @@ def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Co
         assert row[key] is not None
     assert titles["peak_torque_Nm"] in shown
     assert "--show: static_forces, friction, motor" in shown
+
+
+def test_topics_that_a_design_does_not_have_leave_the_others_and_the_cycle(tmp_path: Path, command: Command) -> None:
+    job, cycle = fronts.job_file(tmp_path), tmp_path / "cycle.csv"
+    wanted = ("--show", "start_up,balance,clearance", "--cycle", str(cycle))
+    done = command("analyse", job, *FEEDER, *wanted, "--json")
+    assert done.exit_code == 2
+    assert "balance" in json.loads(done.stdout)
+    assert not {"start_up", "clearance"} & set(json.loads(done.stdout))
+    assert done.stderr.count("start_up: ") == done.stderr.count("clearance: ") == 1
+    assert cycle.is_file()
+
+
+def test_a_quantity_of_the_job_in_an_unusual_unit_has_its_title_and_unit(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text().replace(
+        "[variables]", '[quantity.work]\nformula = "stroke * peak_slider_speed"\n\n[variables]'
+    )
+    job.write_text(text)
+    shown = command("analyse", job, *FEEDER).stdout
+    assert "m^2" in next(line for line in shown.splitlines() if line.lstrip().startswith("work"))
