@@ -36,21 +36,8 @@ _MORE_MEMORY = (
 
 
 _COMMANDS = (
-    *(
-        "optimise",
-        "analyse",
-        "inverse",
-        "swing",
-        "sweep",
-        "allocate",
-        "balance",
-        "sections",
-        "certify",
-        "compare",
-        "like",
-        "round",
-        "wish",
-    ),
+    *("optimise", "analyse", "inverse", "swing", "sweep", "allocate", "balance", "sections"),
+    *("certify", "compare", "like", "round", "wish"),
     *("check", "schema", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
 )

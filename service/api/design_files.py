@@ -111,7 +111,7 @@ def export_cycle(shown: ShownDep, units: UnitsAsked = "metric") -> Response:
 def _report(shown: ShownDesign, store: Store, units: System) -> Report:
     """Return the report of a design, with what the store keeps besides the result."""
     from ..report.design_report import design_report
-    from ..report.subject import subject_of
+    from ..report.subject import Subject
 
     found = shown.found
     job = found.job.id
@@ -120,14 +120,14 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
         json.loads(store.artefact(job, name).content) if name in kept else None
         for name in ("versions.json", "certificate.json")
     )
-    subject = subject_of(
+    subject = Subject(
         found.problem,
         found.result,
         shown.number,
         run=found.job.run,
         versions=versions or {},
         certificate=certificate,
-        front=found.front,
+        known=found.front,
         changed=shown.variation(),
         system=units,
     )

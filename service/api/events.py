@@ -199,7 +199,7 @@ async def list_events(
 def _page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:
     position = min(after, store.job(number).events)
     found = store.events(number, after=position, limit=limit)
-    return {"events": [_shown(event) for event in found], "last": found[-1].number if found else position}
+    return {"events": [event.record() for event in found], "last": found[-1].number if found else position}
 
 
 async def _lines(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:
@@ -208,10 +208,5 @@ async def _lines(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:
         if event is None:
             yield b": still there\n\n"
         else:
-            data = json.dumps(_shown(event), separators=(",", ":"))
+            data = json.dumps(event.record(), separators=(",", ":"))
             yield format_sse_event(data_str=data, event=event.kind, id=str(event.number))
-
-
-def _shown(event: Event) -> dict[str, Any]:
-    """Return an event as `EventShown` has it."""
-    return {"number": event.number, "at": event.at, "kind": event.kind, "data": event.data}

@@ -9,9 +9,9 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ..designs.selection import value_of
-from ..designs.turning import require_turning
 from ..text.options import Dimensions, Figures, JobFile, Json
 from ..text.screen import answer, say, write_figure
+from .job_or_run import turning_problem
 
 
 def allocate(
@@ -30,12 +30,10 @@ def allocate(
     At every crank angle of the part of the stroke that [tolerances] counts. What has no cost in [costs] keeps its
     tolerance, and takes its part of the limit; so do the clearances.
     """
-    from ...optimise.job import load_job
     from ...optimise.sizing import tolerance_allocation as convex
     from ..topics.allocation import analysis
 
-    problem = load_job(job)
-    require_turning(problem, "allocate")
+    problem = turning_problem(job, "allocate")
     if problem.costs is None:
         raise InputError(
             "an allocation needs what the tolerances cost; got a job without [costs]; "

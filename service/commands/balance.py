@@ -9,9 +9,9 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, MASS
-from ..designs.turning import require_turning
 from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, given_value
 from ..text.screen import answer, say, write_figure
+from .job_or_run import turning_problem
 
 if TYPE_CHECKING:
     from ...optimise.sizing.counterweight import RodSpace
@@ -36,12 +36,10 @@ def balance(
 
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
-    from ...optimise.job import load_job
     from ...optimise.sizing import counterweight as balancing
     from ..topics.counterweight import analysis
 
-    problem = load_job(job)
-    require_turning(problem, "balance")
+    problem = turning_problem(job, "balance")
     linkage, mechanism = size.linkage(problem), problem.mechanism
     given = partial(given_value, sign="positive")
     at = given("--radius", radius, LENGTH) or mechanism.counterweight.radius or float(linkage.crank)

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...model.errors import RunError
 from ..designs.columns import DIMENSIONS
 from ..runs.result import Result, Row, csv_text, json_text, rows_of
 from ..runs.run_folder import write_file
-from ..runs.stored_runs import job_file
+from ..runs.stored_runs import problem_of
 from ..text.options import Json, Run, Runs
 from ..text.screen import answer, waiting
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
@@ -43,13 +42,8 @@ def certify(
     them by more than epsilon. Keeps certificate.json, and the added designs as certificate.csv, in the run's folder.
     Exit code 4 if the budget does not suffice; Ctrl-C gives what is proven so far.
     """
-    from ...optimise.job import load_job
-
     folder, result = run_of(run, runs)
-    job = job_file(folder)
-    if job is None:
-        raise RunError(f"a run has a file job.toml or job.json; {folder} has none; name another folder")
-    problem = load_job(job)
+    problem = problem_of(folder, result)
     if not result.designs:
         _nothing_feasible(result, problem, seconds, json=json)
     import numpy as np

@@ -58,6 +58,15 @@ def machine_of(
     return Machine(mechanism, Linkage(crank, rod, offset, mechanism.branch), problem)
 
 
+def turning_problem(job: Path, command: str) -> Problem:
+    """Return the problem of a job file. Raises `InputError` for a crank that swings, in the words of a command."""
+    from ...optimise.job import load_job
+
+    problem = load_job(job)
+    require_turning(problem, command)
+    return problem
+
+
 def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
     """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job."""
     if job is None:

@@ -10,16 +10,14 @@ import typer
 
 from ...model.errors import InputError
 from ..designs.columns import DIMENSIONS, find_column
-from ..designs.picking_options import minimised_values, require_alone
 from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
 from ..runs.result import Result, Row, json_text, rows_of
-from ..runs.stored_runs import problem_of
 from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import answer, give, waiting
 from ..text.tables import print_table, table
 from .ending import end_without_design
-from .run_choice import run_of
+from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -50,17 +48,16 @@ def like(
     It is Pareto-optimal for the run's job with the conditions added, and of those designs the nearest, objectives by
     their range over the run's front. Nothing is saved.
     """
+    from ...optimise.front.hypervolume import scaling
     from ...optimise.questions.like import distance
     from ...optimise.questions.like import like as nearest
 
-    folder, result = run_of(run, runs)
-    require_alone(number, result, run, others=False)
-    problem = replace(problem_of(folder, result), name=result.name)
+    folder, result, front = front_of_run(run, runs, number)
+    problem = replace(front.problem, name=result.name)
     row = result.designs[number - 1]
     constraints, ranges = _added(where, row, problem)
     with waiting("looking for it"):
-        values, span = _objectives(result, problem)
-        given = values[number - 1]
+        given, span = front.values[number - 1], scaling(front.values)[1]
         found = nearest(problem, row, given, span, constraints, ranges)
     if not len(found):
         if json:
@@ -71,17 +68,6 @@ def like(
     record = record_in(_record(str(folder), number, found, apart, row, after), units)
     rows = row_in(row, units), row_in(after, units)
     answer(json, record, lambda screen: _show(screen, result_in(result, units), number, where, apart, *rows))
-
-
-def _objectives(result: Result, problem: Problem) -> tuple[Any, Any]:
-    """Return the objectives (n, m) of a run as minimised, SI, and their ranges (m,)."""
-    import numpy as np
-
-    from ...optimise.front.hypervolume import scaling
-
-    factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
-    values = minimised_values(result) / factors
-    return values, scaling(values)[1]
 
 
 def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:

@@ -44,11 +44,11 @@ def report(
         from ..report.design_report import design_report
         from ..report.html import html_file
         from ..report.pdf import pdf_file
-        from ..report.subject import subject_of
+        from ..report.subject import Subject
 
         versions, certificate = _kept(folder / "versions.json") or {}, _kept(folder / "certificate.json")
         kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
-        subject = subject_of(problem_of(folder, result), result, number, run=folder.name, **kept)
+        subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
         if measured is not None:
             design = subject.design
             samples = read_measured(text_of(measured), design.mechanism, design.linkage)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..designs.turning import require_turning
 from ..text.options import Dimensions, JobFile, Json
 from ..text.screen import answer, waiting
 from ..text.tables import table
+from .job_or_run import turning_problem
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,11 +30,10 @@ def sections(
     puts on them, their own mass included. What JOB says of the links' masses is not used. Dimensions that JOB fixes
     need not be repeated.
     """
-    from ...optimise.job import load_job, load_sections
+    from ...optimise.job import load_sections
     from ...optimise.sizing.sections import size_sections
 
-    problem = load_job(job)
-    require_turning(problem, "sections")
+    problem = turning_problem(job, "sections")
     material, limits = load_sections(job)
     linkage = size.linkage(problem)
     with waiting("sizing the sections"):

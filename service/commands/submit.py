@@ -164,7 +164,7 @@ def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
     if json:
         from ..store.serialisation import text_of
 
-        yield lambda event: give(f"{text_of({key: getattr(event, key) for key in ('number', 'at', 'kind', 'data')})}\n")
+        yield lambda event: give(f"{text_of(event.record())}\n")
         return
     from ...optimise.front.progress import Progress
 

@@ -13,11 +13,11 @@ from ...objectives.kinds import ANGULAR_SPEED, LENGTH, System, shown_in
 from ..designs.columns import key_in
 from ..designs.selection import value_of
 from ..designs.shown_units import rows_in
-from ..designs.turning import require_turning
 from ..runs.result import Row, rows_of
 from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option
 from ..text.screen import answer, say, write_figure
 from ..text.tables import print_table, table
+from .job_or_run import turning_problem
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -50,10 +50,8 @@ def sweep(
     import numpy as np
 
     from ...objectives.tables.sweep import sweep as all_rows
-    from ...optimise.job import load_job
 
-    problem = load_job(job)
-    require_turning(problem, "sweep")
+    problem = turning_problem(job, "sweep")
     axes = [parse_axis(text) for text in over]
     if len(axes) > 2:
         raise InputError(f"a sweep is over one or two parameters; got {len(axes)} --over; leave out some")

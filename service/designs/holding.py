@@ -56,16 +56,9 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
 
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
     """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
-    misses, slopes, sizes = [], [], []
-    for constraint in equal:
-        target = float(constraint.lower or 0.0)
-        found = design.part.quantity(constraint.quantity).evaluate(
-            design.part.mechanism, values[None, :], gradients=True
-        )
-        misses.append(found.values[0] - target)
-        slopes.append(np.full(len(values), np.nan) if found.gradients is None else found.gradients[0])
-        sizes.append(max(abs(target), 1e-6))
-    return np.array(misses), np.array(slopes), np.array(sizes)
+    targets = np.array([constraint.lower or 0.0 for constraint in equal])
+    found, slopes = design.part.evaluate(values[None], [constraint.quantity for constraint in equal], gradients=True)
+    return found[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
 def _turns(values: Array) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 from typing import Any
 
 from ...objectives.kinds import System
@@ -18,25 +19,40 @@ from ..runs.result import Result, Row
 
 @dataclass(frozen=True)
 class Subject:
-    """One design of a run. number: of the design, from 1. run: what the run is called.
+    """One design of a run. metric: the result as it is kept. number: of the design, from 1. run: what it is called.
 
-    result: in the units of the system.
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
-    changed: the design with other lengths than it has in the front; None for the design as it is. measured: curves to
-    put beside those of the design.
+    known: the front of the result, where there is one already. changed: the design with other lengths than it has in
+    the front; None for the design as it is. system: of the units of the report. measured: curves to put beside those of
+    the design.
     """
 
-    result: Result
-    number: int
-    run: str
     problem: Problem
-    front: ParetoFront
-    design: StoredDesign
+    metric: Result
+    number: int
+    _: KW_ONLY
+    run: str
     versions: Mapping[str, str]
     certificate: Mapping[str, Any] | None = None
+    known: ParetoFront | None = None
     changed: Variation | None = None
     system: System = "metric"
     measured: Measured | None = None
+
+    @cached_property
+    def result(self) -> Result:
+        """The result in the units of the system."""
+        return result_in(self.metric, self.system)
+
+    @cached_property
+    def front(self) -> ParetoFront:
+        """The front with its problem."""
+        return self.known or front_of(self.problem, self.metric)
+
+    @cached_property
+    def design(self) -> StoredDesign:
+        """The machine and the linkage. Raises `RunError` for a design that does not belong to the problem."""
+        return self.changed.design if self.changed else stored_design(self.problem, self.metric, self.number)
 
     @property
     def row(self) -> Row:
@@ -52,36 +68,3 @@ class Subject:
     def name(self) -> str:
         """The design among the others."""
         return f"{self.label} of {len(self.result.designs)}" if self.changed is None else self.label
-
-
-def subject_of(
-    problem: Problem,
-    result: Result,
-    number: int,
-    *,
-    run: str,
-    versions: Mapping[str, str],
-    certificate: Mapping[str, Any] | None = None,
-    front: ParetoFront | None = None,
-    changed: Variation | None = None,
-    system: System = "metric",
-) -> Subject:
-    """Return the subject of a report.
-
-    front: of the result, where there is one already. changed: the design with other lengths, if it has others. system:
-    of the units of the report.
-
-    Raises `RunError` for a design that does not belong to the problem.
-    """
-    return Subject(
-        result=result_in(result, system),
-        number=number,
-        run=run,
-        problem=problem,
-        front=front_of(problem, result) if front is None else front,
-        design=stored_design(problem, result, number) if changed is None else changed.design,
-        versions=versions,
-        certificate=certificate,
-        changed=changed,
-        system=system,
-    )

@@ -136,6 +136,10 @@ class Event:
         """Return an event from its row."""
         return cls(**{**row._mapping, "data": json.loads(row.data)})
 
+    def record(self) -> dict[str, Any]:
+        """Return the event as JSON."""
+        return {"number": self.number, "at": self.at, "kind": self.kind, "data": self.data}
+
 
 @dataclass(frozen=True, kw_only=True)
 class News:

@@ -16,7 +16,7 @@ from slidercrank.service.motion.player_page import player_page
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture
 from slidercrank.service.report.html import html_file
-from slidercrank.service.report.subject import subject_of
+from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
 from tests.service.page.accessibility import findings
@@ -70,7 +70,7 @@ def test_the_page_stands_still_for_who_wants_no_motion(browser: Browser, tmp_pat
 
 def test_the_files_are_accessible_and_as_wide_as_the_window(browser: Browser, tmp_path: Path) -> None:
     found = fronts.front(fronts.FOUR[:2], designs=3)
-    report = design_report(subject_of(found.problem, result_of(found, "kept"), 1, run="kept", versions={}))
+    report = design_report(Subject(found.problem, result_of(found, "kept"), 1, run="kept", versions={}))
     # Of the figures one will do: axe takes half a minute for all their lines.
     pictures = [block for section in report.sections for block in section.blocks if isinstance(block, Picture)]
     drawing = next(picture for picture in pictures if picture.title.startswith("The linkage"))

@@ -18,7 +18,7 @@ from slidercrank.service.report.document import Paragraph, Picture, Section, Tab
 from slidercrank.service.report.html import html_file
 from slidercrank.service.report.measured_section import measured_section
 from slidercrank.service.report.pages import pages
-from slidercrank.service.report.subject import Subject, subject_of
+from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.topics.measured.analysis import numbers
 from tests.service import fronts
@@ -29,7 +29,7 @@ from tests.service.conftest import Command
 def subject() -> Subject:
     """Return a design of a front made without a search."""
     found = fronts.front(fronts.FOUR[:2], designs=4)
-    return subject_of(found.problem, result_of(found, "kept"), 2, run="kept", versions={})
+    return Subject(found.problem, result_of(found, "kept"), 2, run="kept", versions={})
 
 
 def samples(subject: Subject) -> Measured:

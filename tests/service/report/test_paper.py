@@ -17,7 +17,7 @@ from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture
 from slidercrank.service.report.pages import HEIGHT, Inset, pages
 from slidercrank.service.report.pdf import pdf_file
-from slidercrank.service.report.subject import subject_of
+from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
 
@@ -33,7 +33,7 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
     """Return each figure of a report with its place and its picture on paper (h, w, 3), 0 to 1."""
     front = fronts.front(designs=20)
     result = result_of(front, "kept")
-    report = design_report(subject_of(front.problem, result, 3, run="kept", versions={}), made=0.0)
+    report = design_report(Subject(front.problem, result, 3, run="kept", versions={}), made=0.0)
     paper = pypdfium2.PdfDocument(pdf_file(report))
     titles = [block.title for section in report.sections for block in section.blocks if isinstance(block, Picture)]
     found: dict[str, tuple[Figure, Inset, Image]] = {}

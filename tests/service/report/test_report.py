@@ -24,7 +24,7 @@ from slidercrank.service.report.document import Facts, Paragraph, Report, Sectio
 from slidercrank.service.report.html import html_file
 from slidercrank.service.report.pages import HEIGHT, WIDTH, Page, pages
 from slidercrank.service.report.pdf import pdf_file
-from slidercrank.service.report.subject import Subject, subject_of
+from slidercrank.service.report.subject import Subject
 from slidercrank.service.report.text_lines import wrapped
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
@@ -50,7 +50,7 @@ def subject() -> Subject:
     found = fronts.front(fronts.FOUR[:2], designs=6)
     found = replace(found, problem=replace(found.problem, name=NAME))
     result = result_of(found, "kept")
-    return subject_of(found.problem, result, NUMBER, run="kept", versions={"numpy": "1.2.3"}, certificate=CERTIFICATE)
+    return Subject(found.problem, result, NUMBER, run="kept", versions={"numpy": "1.2.3"}, certificate=CERTIFICATE)
 
 
 @cache
@@ -148,7 +148,7 @@ def test_it_says_what_was_asked_how_it_was_found_and_how_good_it_is() -> None:
 
 def test_a_rule_that_is_not_met_is_said() -> None:
     rows = [{**row, "slack_least_transmission_angle_deg": -1.0} for row in subject().result.designs]
-    broken = replace(subject(), result=replace(subject().result, designs=rows))
+    broken = replace(subject(), metric=replace(subject().metric, designs=rows))
     said = texts(design_report(broken))
     assert "Not all requirements are met: see below." in said
     assert "not met" in said
@@ -158,7 +158,9 @@ def test_without_certificate_and_tolerances_it_says_so_or_leaves_out() -> None:
     found = subject()
     part = found.design.part
     part = replace(part, mechanism=replace(part.mechanism, tolerances=type(part.mechanism.tolerances)()))
-    plain = design_report(replace(found, certificate=None, versions={}, design=replace(found.design, part=part)))
+    bare = replace(found, certificate=None, versions={})
+    vars(bare)["design"] = replace(found.design, part=part)  # as if the job had none
+    plain = design_report(bare)
     assert any(text.startswith("No certificate") for text in texts(plain))
     assert "not recorded" in texts(plain)
     assert "Tolerances" not in [section.title for section in plain.sections]
@@ -283,7 +285,7 @@ def test_no_word_of_a_table_is_broken() -> None:
     below = found.dimensions * (1.0, 1.0, -1.0)  # signs are a letter more
     shown = {"offset_mm": -found.columns["offset_mm"], "slack_least_transmission_angle_deg": np.full(6, -1.5e-14)}
     result = result_of(replace(found, columns=found.columns | shown, dimensions=below), "kept")
-    of = subject_of(replace(found.problem, offset=Range(lower=-0.15, upper=0.0)), result, 2, run="kept", versions={})
+    of = Subject(replace(found.problem, offset=Range(lower=-0.15, upper=0.0)), result, 2, run="kept", versions={})
     sections = [
         replace(part, blocks=tuple(block for block in part.blocks if isinstance(block, Table)))
         for part in design_report(of, made=0.0).sections
