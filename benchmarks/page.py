@@ -25,7 +25,7 @@ from .service_process import service
 DESIGNS = 10_000
 MOST_FIRST = 1000.0  # ms
 MOST_BRUSH = 50.0  # ms
-MOST_WEIGHT = 150.0  # kB
+MOST_WEIGHT = 250.0  # kB, of which the typeface is 48
 REPEATS = 5
 
 # Moves the pointer along an axis and back, a tenth of it at a time; a step ends after the frame that it caused.

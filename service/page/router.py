@@ -1,4 +1,4 @@
-"""The page and its files: HTML, style, modules."""
+"""The page and its files: HTML, style, modules, font."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ POLICY = "; ".join(
         "script-src 'self'",
         "style-src 'self'",
         "img-src 'self' data: blob:",
+        "font-src 'self'",
         "connect-src 'self'",
         "base-uri 'none'",
         "form-action 'none'",
@@ -34,7 +35,9 @@ _TYPES = {
     ".js": "text/javascript; charset=utf-8",
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".woff2": "font/woff2",
 }
+_COMPRESSED = (".woff2",)
 
 
 @router.get("/")
@@ -51,11 +54,11 @@ async def fetch_page_file(request: Request, name: str) -> Response:
 
 @dataclass(frozen=True)
 class _File:
-    """A file of the page, as it is and compressed. tag: another one for another content."""
+    """A file of the page. compressed: None where that saves nothing. tag: another one for another content."""
 
     media_type: str
     content: bytes
-    compressed: bytes
+    compressed: bytes | None
     tag: str
 
 
@@ -67,7 +70,7 @@ def _answer(request: Request, name: str) -> Response:
     headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
 
     def answer() -> Response:
-        if "gzip" in request.headers.get("accept-encoding", ""):
+        if file.compressed is not None and "gzip" in request.headers.get("accept-encoding", ""):
             return Response(file.compressed, media_type=file.media_type, headers={"Content-Encoding": "gzip"})
         return Response(file.content, media_type=file.media_type)
 
@@ -97,15 +100,18 @@ def files_of(folder: Path) -> dict[str, _File]:
 
     The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
     """
-    paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
-    texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}
+    paths = sorted(path for path in folder.rglob("*") if path.suffix in _TYPES)
+    contents = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+    texts = {name: content.decode() for name, content in contents.items() if not name.endswith(_COMPRESSED)}
     styles = {name: text for name, text in texts.items() if name.endswith(".css")}
     joined = {"app.js": joined_modules(texts, "app.js"), "style.css": joined_styles(styles)}
-    return {name: _file(Path(name).suffix, text.encode()) for name, text in {**texts, **joined}.items()}
+    made = {name: text.encode() for name, text in joined.items()}
+    return {name: _file(Path(name).suffix, content) for name, content in {**contents, **made}.items()}
 
 
 def _file(kind: str, content: bytes) -> _File:
-    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), f'W/"{tag_of(content)}"')
+    compressed = None if kind in _COMPRESSED else gzip.compress(content, mtime=0)
+    return _File(_TYPES[kind], content, compressed, f'W/"{tag_of(content)}"')
 
 
 _FILES = files_of(Path(__file__).parent / "static")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from urllib.parse import urlsplit
 
 import httpx
+import pytest
 from playwright.sync_api import expect
 
 from slidercrank.service.api.settings import Settings
@@ -17,7 +19,7 @@ from tests.service.page.conftest import Open
 
 def test_every_file_comes_with_a_policy_that_allows_nothing_from_elsewhere(store: Store) -> None:
     with served(store) as address, httpx.Client(base_url=address) as client:
-        for name in ("", "page/app.js", "page/style.css", "page/icon.svg"):
+        for name in ("", "page/app.js", "page/style.css", "page/icon.svg", "page/fonts/inter.woff2"):
             response = client.get(f"/{name}")
             assert response.status_code == 200, name
             policy = response.headers["content-security-policy"]
@@ -32,6 +34,30 @@ def test_nothing_but_the_files_of_the_page_is_served(store: Store) -> None:
     with served(store) as address, httpx.Client(base_url=address) as client:
         for name in ("router.py", "../router.py", "..%2Frouter.py", "%2Fetc%2Fpasswd", "style", "", "app.js%00"):
             assert client.get(f"/page/{name}").status_code in (400, 404), name
+
+
+def test_the_page_weighs_less_than_250_kB_and_brings_its_own_typeface(open_page: Open, store: Store) -> None:
+    page = open_page(store)
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+    assert page.evaluate("document.fonts.ready.then(() => document.fonts.check('16px Inter'))")
+    loaded = page.evaluate(
+        "[...document.fonts].filter(({ status }) => status === 'loaded').map(({ family }) => family)"
+    )
+    assert loaded == ["Inter"]
+    weight = page.evaluate(
+        "[...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]"
+        ".filter(({ name }) => !name.includes('/api/')).reduce((sum, one) => sum + one.encodedBodySize, 0)"
+    )
+    assert 100_000 < weight < 250_000
+
+
+def test_the_licence_of_the_typeface_lies_beside_it(pytestconfig: pytest.Config) -> None:
+    fonts = pytestconfig.rootpath / "service/page/static/fonts"
+    assert {file.name for file in fonts.iterdir()} == {"inter.woff2", "LICENSE.txt"}
+    assert "SIL OPEN FONT LICENSE Version 1.1" in (fonts / "LICENSE.txt").read_text(encoding="utf-8")
+    with (pytestconfig.rootpath / "pyproject.toml").open("rb") as file:
+        project = tomllib.load(file)["project"]
+    assert "service/page/static/fonts/LICENSE.txt" in project["license-files"]
 
 
 def test_without_the_token_a_browser_is_told_where_it_is(open_page: Open, store: Store) -> None:

@@ -13,7 +13,7 @@ export function wordTicks(words) {
  */
 export function drawAxes(context, { x, y, area, width, height, ink }) {
   const [right, bottom] = [width - area.right, height - area.bottom];
-  context.font = "12px system-ui, sans-serif";
+  context.font = "12px Inter, system-ui, sans-serif";
   context.strokeStyle = ink.line;
   context.fillStyle = ink.quiet;
   context.lineWidth = 1;

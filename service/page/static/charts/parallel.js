@@ -138,7 +138,7 @@ export function parallel(chart) {
     stack.clear(OVER);
     const context = contexts[OVER];
     const { ink, axes, across, scales, heights, height } = view;
-    context.font = "12px system-ui, sans-serif";
+    context.font = "12px Inter, system-ui, sans-serif";
     context.textBaseline = "middle";
     axes.forEach(({ key }, axis) => {
       const x = across[axis];
@@ -183,7 +183,7 @@ export function parallel(chart) {
   function drawValues(context, row) {
     const { ink, axes, across, heights, height } = view;
     context.textAlign = "right";
-    context.font = "600 12px system-ui, sans-serif";
+    context.font = "600 12px Inter, system-ui, sans-serif";
     axes.forEach(({ key }, axis) => {
       const y = heights[row * axes.length + axis];
       if (y < 0) return;

@@ -172,7 +172,7 @@ export function scatter(chart) {
    * @param {{ start: number, end: number, y: number }[]} written
    */
   function write(context, name, x, y, ink, written) {
-    context.font = "12px system-ui, sans-serif";
+    context.font = "12px Inter, system-ui, sans-serif";
     const left = x > view.width * 0.7;
     const { width } = context.measureText(name);
     const start = left ? x - 9 - width : x + 9;

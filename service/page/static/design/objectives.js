@@ -5,6 +5,9 @@ import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
 
+const KEY = 4; // digits of a key figure; all of them are there when pointed at
+const ALL = 12;
+
 /**
  * Return a number that is the smaller the better a value of an objective is.
  * @param {Api.Row[string] | undefined} value @param {Pick<Api.Objective, "sense" | "target">} objective
@@ -39,7 +42,7 @@ export function showObjectives(place, { objectives, front, designs, names }) {
     const bar = h("span", { class: "share" }, part);
     part.style.width = `${100 * share}%`;
     return h("div", { class: "panel objective" }, helpLink({ key: objective.column, title: objective.title }, names), h("span", { class: "quiet sense" }, sense(objective)),
-      h("strong", { "data-key": objective.column, "data-value": String(value) }, withUnit(value, objective.unit)),
+      h("strong", { "data-key": objective.column, "data-value": String(value), title: withUnit(value, objective.unit, ALL) }, withUnit(value, objective.unit, KEY)),
       bar, h("span", { class: "quiet" }, better === 0 ? "best of the front" : `${better} of ${front.length} designs are better`));
   }));
 }
