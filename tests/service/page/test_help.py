@@ -32,6 +32,13 @@ def test_a_quantity_has_a_page_by_its_name_and_by_its_column(open_page: Open, st
     expect(page.get_by_role("img", name="Picture: peak torque")).to_be_visible()
     expect(page.locator("dl")).to_contain_text("docs/theory.md, section 8. Dynamics")
     expect(page).to_have_title("peak torque · slidercrank")
+    assert page.locator(".formula math").count() >= 2
+    assert page.locator(".formula mfrac").evaluate("node => node.getBoundingClientRect().height") > 20  # it is set
+    page.evaluate("location.hash = '#/help/transmission_angle'")
+    page.locator("dl").get_by_role("link", name="offset").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("offset")
+    page.evaluate("location.hash = '#/help/peak_torque'")
+    expect(page.get_by_role("heading", level=1)).to_have_text("peak torque")
     require_accessible(page)
     page.evaluate("location.hash = '#/help/stroke_mm'")
     expect(page.get_by_role("heading", level=1)).to_have_text("stroke")

@@ -1,6 +1,7 @@
 /** Elements in one expression: h("button", {type: "button", onclick: act}, "Start"). */
 
 const SVG = "http://www.w3.org/2000/svg";
+const MATHML = "http://www.w3.org/1998/Math/MathML";
 
 /**
  * Return an HTML element. Attributes that are null or false are left out; on... are listeners; children are nodes or text.
@@ -24,6 +25,11 @@ export function h(tag, attributes = {}, ...children) {
  */
 export function svg(tag, attributes = {}, ...children) {
   return dress(document.createElementNS(SVG, tag), attributes, children);
+}
+
+/** Return an element of MathML, in the same way. @param {string} tag @param {Dom.Attributes} attributes @param {...Dom.Child} children */
+export function mathml(tag, attributes = {}, ...children) {
+  return dress(document.createElementNS(MATHML, tag), attributes, children);
 }
 
 /** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */

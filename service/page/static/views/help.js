@@ -1,5 +1,6 @@
 /** Help: how it works, and every quantity with a sentence, a picture, its formula and where it comes from. */
 
+import { formula, symbolsOf } from "../help/formula.js";
 import { picture } from "../help/picture.js";
 import { keep } from "../lib/address.js";
 import { get } from "../lib/api.js";
@@ -77,6 +78,7 @@ function one(place, quantity, quantities) {
   const unit = unitOf(quantity.unit);
   /** @param {string} term @param {Dom.Child} text */
   const row = (term, text) => [h("dt", {}, term), h("dd", {}, text)];
+  const symbols = symbolsOf(quantity.formula, quantities);
   const alike = quantities.filter((other) => other.picture === quantity.picture && other.name !== quantity.name);
   fill(
     place,
@@ -91,7 +93,8 @@ function one(place, quantity, quantities) {
       h(
         "dl",
         { class: "terms" },
-        row("formula", h("code", {}, quantity.formula)),
+        row("formula", formula(quantity.formula)),
+        symbols.length ? row("with", symbols.map(([symbol, meaning, name], place) => [place ? ", " : "", symbol, " ", name && name !== quantity.name ? h("a", { href: `#/help/${name}` }, meaning) : meaning])) : null,
         row("unit", unit || "none, a ratio"),
         row("in job files", h("code", {}, quantity.name)),
         row("in tables and JSON", h("code", {}, quantity.column)),
