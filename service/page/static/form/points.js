@@ -1,7 +1,8 @@
-/** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit. */
+/** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit; and the curve that they are. */
 
 import { h } from "../lib/dom.js";
 import { unitSelect } from "./controls.js";
+import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
 import { idOf, written } from "./path.js";
 import { convert, factorsOf, join, split } from "./units.js";
@@ -36,19 +37,38 @@ export function points(form, path, columns, why) {
     });
     columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));
   };
-  text.addEventListener("input", write);
+  const picture = curve({
+    read: () => {
+      const { rows: cells, wrong } = pointsOf(text.value, []);
+      const numbers = cells.map(([x, y]) => /** @type {Page.Point} */ ([Number(x), Number(y)]));
+      return wrong || !numbers.flat().every(Number.isFinite) ? null : numbers;
+    },
+    write: (numbers) => {
+      text.value = numbers.map((row) => row.join("\t")).join("\n");
+      write();
+    },
+    titles: () => columns.map(({ label }, n) => (units[n]?.value ? `${label}, ${units[n]?.value}` : label)),
+    centres: () => centresOf(form.said, columns[0], form.at([...path, "measured_from"]) ?? form.at([...path, "head"]), units[0]?.value ?? ""),
+  });
+  text.addEventListener("input", () => {
+    write();
+    picture.draw();
+  });
   units.forEach((select, n) => select?.addEventListener("change", () => {
     const { rows: before } = pointsOf(text.value, []);
     for (const row of before) row[n] = convert(row[n], select.dataset.from ?? select.value, select.value, columns[n].kind);
     text.value = before.map((row) => row.join("\t")).join("\n");
     select.dataset.from = select.value;
     write();
+    picture.draw();
   }));
   const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, `${label} in`), units[n]]);
   const made = field(form, [...path, columns[0].key], "points, one a line", [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
   const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
+  made.querySelector(".field-controls")?.append(picture.node);
   made.append(error);
-  form.register({ path: [...path, columns[1].key], key: written([...path, columns[1].key]), node: made, controls: [units[1] ?? text], error });
+  picture.draw();
+  form.register({ path: [...path, columns[1].key], key: written([...path, columns[1].key]), node: made, controls: [units[1] ?? text], error, tell: picture.draw });
   return made;
 }
 

@@ -14,17 +14,18 @@ import { requirement } from "./requirement.js";
 import { words } from "./schema.js";
 import { solving } from "./solving.js";
 import { strength, strengthGiven } from "./strength.js";
+import { targetMotion, wantedGiven } from "./target_motion.js";
 import { varying, varyingNames } from "./varying.js";
 
 const LINE = 90; // characters of what a group has
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion", "choice"]);
+const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion", "choice", "target_motion", "drive", "costs"]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"]))),
+    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"])), more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
@@ -33,7 +34,7 @@ export function sections(form) {
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"])), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form))),
+    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"])), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form)), more(["Motor and flywheel, for the start and the running", has(form, "drive")], byschema(form, ["drive"], { label: "drive" }))),
     section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
@@ -148,6 +149,7 @@ function tolerances(form) {
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
     more(["Clearances, and where the position matters", has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke")], byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
+    more(["Costs of tolerances, for those of least cost", has(form, "costs")], byschema(form, ["costs"], { label: "costs" })),
   ];
 }
 
