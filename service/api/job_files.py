@@ -15,6 +15,7 @@ from pydantic import BaseModel, Field
 
 from ...optimise.problem.problem import Problem
 from .. import presets
+from ..presets.designs import DESIGNS
 from .job_requests import EXAMPLE, TOML, Asked, asked_for, given_problem
 from .problems import problem_responses
 from .settings import SettingsDep
@@ -23,13 +24,24 @@ from .throttle import READING
 router = APIRouter(tags=["jobs"])
 
 
+class PresetDesign(BaseModel):
+    """A linkage of the front of a shipped job, near its knee. from_deg, to_deg: of a crank that swings."""
+
+    crank_mm: float = Field(examples=[37.62])
+    rod_mm: float = Field(examples=[101.71])
+    offset_mm: float = Field(examples=[31.78])
+    from_deg: float | None = Field(examples=[None])
+    to_deg: float | None = Field(examples=[None])
+
+
 class PresetModel(BaseModel):
-    """A shipped job. name: as in an address of the page."""
+    """A shipped job. name: as in an address of the page. design: to show of what kind its machine is."""
 
     name: str = Field(examples=["feeder"])
     title: str = Field(examples=["Feeder with rod = 3.2 offset"])
     sentence: str = Field(examples=["Quick-return feeder, 80 to 90 mm of stroke at 2400 rpm."])
     job: dict[str, Any] = Field(description="its tables", examples=[EXAMPLE])
+    design: PresetDesign
 
 
 class PresetList(BaseModel):
@@ -96,7 +108,13 @@ def _presets() -> PresetList:
         jobs = {file.stem: read_job(file) for file in folder.glob("*.toml")}
     return PresetList(
         presets=[
-            PresetModel(name=name, title=job["name"], sentence=job.get("description", ""), job=job)
+            PresetModel(
+                name=name,
+                title=job["name"],
+                sentence=job.get("description", ""),
+                job=job,
+                design=PresetDesign(**DESIGNS[name]._asdict()),
+            )
             for name, job in sorted(jobs.items())
         ]
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -13,8 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from slidercrank.model.errors import JobError
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.objectives.registry import FACTS, QUANTITIES
-from slidercrank.optimise.job import read_job
+from slidercrank.optimise.job import load_job, read_job
 from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
@@ -40,6 +42,27 @@ def test_presets_are_the_shipped_jobs(shared: httpx.Client, pytestconfig: pytest
     for preset in presets:
         assert (preset["title"], preset["sentence"]) == (preset["job"]["name"], preset["job"]["description"])
         assert shared.post("/check", json={"job": preset["job"]}).status_code == 200
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_design_that_shows_a_shipped_job_is_one_of_its_ranges_and_moves_as_asked(
+    shared: httpx.Client, pytestconfig: pytest.Config, name: str
+) -> None:
+    problem = load_job(pytestconfig.rootpath / "runs" / f"{name}.toml")
+    presets = shared.get("/presets").json()["presets"]
+    (shown,) = (preset["design"] for preset in presets if preset["name"] == name)
+    lengths = [shown[f"{part}_mm"] / 1e3 for part in ("crank", "rod", "offset")]
+    for length, ends in zip(lengths, (problem.crank, problem.rod, problem.offset), strict=True):
+        assert ends.lower - 1e-9 <= length <= ends.upper + 1e-9
+    if shown["from_deg"] is not None:
+        motion = tomllib.loads((pytestconfig.rootpath / "runs" / f"{name}.toml").read_text())["motion"]
+        assert (f"{shown['from_deg']:g} deg", f"{shown['to_deg']:g} deg") == (motion["from"], motion["to"])
+        return
+    linkage = Linkage(*lengths)
+    for rule in problem.constraints:
+        value = {"stroke": linkage.stroke, "rod_to_offset": abs(lengths[1] / lengths[2])}.get(str(rule.quantity))
+        if value is not None:
+            assert 0.999 * (rule.lower or 0.0) <= float(value) <= 1.001 * (rule.upper or math.inf)
 
 
 @pytest.mark.parametrize("name", SHIPPED)

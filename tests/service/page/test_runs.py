@@ -30,9 +30,19 @@ def run(page: Page, name: str) -> object:
 def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> None:
     page = open_page(store)
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+    machines = page.get_by_role("navigation", name="Shipped machines").get_by_role("link")
+    expect(machines).to_have_count(5)
     require_accessible(page)
+    rods = page.locator(".machine-picture .moving g:nth-child(2)")
+    turned = "nodes => nodes.map(node => node.getAttribute('transform'))"
+    before = rods.evaluate_all(turned)
+    page.wait_for_timeout(300)
+    assert all(one != other for one, other in zip(before, rods.evaluate_all(turned), strict=True))  # all five move
     page.get_by_role("link", name="New run").last.click()
     expect(page).to_have_url(re.compile(r"#/new$"))
+    page.go_back()
+    machines.filter(has_text="Vibrating sieve").click()
+    expect(page).to_have_url(re.compile(r"#/new\?preset=sieve$"))
 
 
 def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
@@ -80,11 +90,14 @@ def test_a_run_is_cancelled_and_resumed_from_the_list(open_page: Open, store: St
 def test_deleting_asks_first(open_page: Open, store: Store) -> None:
     put_in(store, result(), TABLES)
     page = open_page(store)
+    page.get_by_label("More for run 1").click()
     page.get_by_role("button", name="Delete run 1").click()
     expect(page.get_by_role("dialog", name="Delete run 1?")).to_be_visible()
     require_accessible(page)
     page.get_by_role("button", name="Keep it").click()
     expect(page.get_by_role("listitem")).to_have_count(1)
+    expect(page.get_by_label("More for run 1")).to_be_focused()
+    page.get_by_label("More for run 1").press("Enter")
     page.get_by_role("button", name="Delete run 1").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()

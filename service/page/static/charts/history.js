@@ -6,7 +6,7 @@ import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 200];
-const AREA = { left: 64, right: 14, top: 12, bottom: 40 };
+const AREA = { left: 76, right: 14, top: 12, bottom: 40 };
 
 /**
  * Return a picture of points [[round, value], ...] under a heading.

@@ -6,7 +6,7 @@ import { headed } from "../front/columns.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 340];
-const AREA = { left: 64, right: 14, top: 12, bottom: 46 };
+const AREA = { left: 76, right: 14, top: 12, bottom: 46 };
 /** @type {((x: number, y: number) => SVGElement)[]} */
 const SHAPES = [
   (x, y) => svg("circle", { cx: x, cy: y, r: 3.6 }),
@@ -17,15 +17,17 @@ const SHAPES = [
 
 /**
  * Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape.
+ * held: ranges of the axes in the units that are shown, where they are not those of the points.
  * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
+ * @param {[Page.Range, Page.Range] | null} held
  */
-export function points(series, x, y, label) {
+export function points(series, x, y, label, held = null) {
   const drawn = series.map((one) => one.points.filter(isPoint));
   const places = drawn.flat();
   /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
   const axis = (index, column, start, end) => {
     const values = places.map((point) => inShown(point[index], column.unit));
-    const { low, high } = range(values);
+    const { low, high } = held?.[index] ?? range(values);
     return scale(low, high, start, end);
   };
   const across = axis(0, x, AREA.left, WIDTH - AREA.right);
@@ -36,7 +38,7 @@ export function points(series, x, y, label) {
     across.ticks.map((tick) => [svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }), svg("text", { x: across.at(tick), y: bottom + 18, "text-anchor": "middle" }, across.text(tick))]),
     up.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick))]),
     svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, headed(x)),
-    svg("text", { class: "title", x: 14, y: middle, transform: `rotate(-90 14 ${middle})`, "text-anchor": "middle" }, headed(y)),
+    svg("text", { class: "title", x: 17, y: middle, transform: `rotate(-90 17 ${middle})`, "text-anchor": "middle" }, headed(y)),
     drawn.map((own, index) => svg("g", { class: `series-${1 + (index % 6)}` }, own
       .map(([a, b]) => SHAPES[index % SHAPES.length](round(across.at(inShown(a, x.unit))), round(up.at(inShown(b, y.unit))))))));
 }

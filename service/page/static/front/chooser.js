@@ -1,6 +1,7 @@
 /** Choice of the shown quantities: a list of ticks that opens. */
 
 import { h } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 
 /**
  * Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order.
@@ -19,17 +20,7 @@ export function chooser(heading, columns, chosen, choose) {
     const wanted = find.value.trim().toLowerCase();
     for (const { label } of ticks) label.hidden = !label.textContent.toLowerCase().includes(wanted);
   } });
-  const summary = h("summary", { class: "button" }, heading);
-  const node = h("details", { class: "chooser", ontoggle: () => {
+  return menu(heading, h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)), { opened: () => {
     for (const { tick } of ticks) tick.checked = chosen().includes(tick.value);
-  } }, summary, h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)));
-  node.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || !node.open) return;
-    node.open = false;
-    summary.focus();
-  });
-  node.addEventListener("focusout", (event) => {
-    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget)) node.open = false;
-  });
-  return node;
+  } });
 }

@@ -1,21 +1,22 @@
-/** Actions on a job: cancel, resume, clone, delete. */
+/** Actions on a job: finish, resume, clone; and behind a button of its own, delete. */
 
 import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 import { say, sayProblem } from "../lib/notices.js";
 import { ENDED } from "./states.js";
 
 /**
- * Return the buttons of a job. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
+ * Return the buttons of a job. A search that runs is finished with what it has found, and can go on later. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
  * whoever deleted it.
- * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed
+ * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed @param {{ primary?: boolean }} looks primary: of the view of this job
  */
-export function actions(job, changed) {
+export function actions(job, changed, { primary = false } = {}) {
   const of = `run ${job.id}, ${job.name}`;
   /** @param {string} label @param {"cancel" | "resume"} path @param {string} told */
   const act = (label, path, told) =>
-    h("button", { type: "button", "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
+    h("button", { type: "button", class: primary ? "primary" : null, "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
       const now = await post(`jobs/${job.id}/${path}`);
       say(told);
       changed(now);
@@ -23,7 +24,10 @@ export function actions(job, changed) {
   /** @param {{ currentTarget: HTMLButtonElement }} event */
   const gone = async (event) => {
     const button = event.currentTarget;
-    if (!(await confirmed(`Delete run ${job.id}?`, `“${job.name}” and everything it found will be gone for good.`, "Delete"))) return;
+    if (!(await confirmed(`Delete run ${job.id}?`, `“${job.name}” and everything it found will be gone for good.`, "Delete"))) {
+      button.closest("details")?.querySelector("summary")?.focus();
+      return;
+    }
     await run(button, async () => {
       await remove(`jobs/${job.id}`);
       say(`Run ${job.id} was deleted.`);
@@ -46,10 +50,12 @@ export function actions(job, changed) {
   };
   const ended = ENDED.includes(job.state);
   return [
-    !ended && !job.cancel_asked && act("Cancel", "cancel", `Run ${job.id} ends with what it has found.`),
+    !ended && !job.cancel_asked && (job.state === "running"
+      ? act("Finish now", "cancel", `Run ${job.id} ends with what it has found; it can go on from there later.`)
+      : act("Cancel", "cancel", `Run ${job.id} does not begin.`)),
     ["cancelled", "failed"].includes(job.state) && act("Resume", "resume", `Run ${job.id} goes on.`),
     h("a", { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${of}` }, "Clone"),
-    ended && h("button", { type: "button", class: "danger", "data-act": "delete", "aria-label": `Delete ${of}`, onclick: gone }, "Delete"),
+    ended && menu("…", h("div", { class: "chooser-list panel narrow" }, h("button", { type: "button", class: "danger", "data-act": "delete", "aria-label": `Delete ${of}`, onclick: gone }, "Delete this run")), { name: `More for ${of}`, act: "more" }),
   ].filter(Boolean);
 }
 

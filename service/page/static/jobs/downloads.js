@@ -2,6 +2,7 @@
 
 import { address, get, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 import { apiSystem } from "../lib/numbers.js";
 
 /** @type {Record<string, string>} */
@@ -31,12 +32,12 @@ export function downloads(job, { designs, signal }) {
     h("h2", {}, "Files of the job"), files,
     designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;
-  const summary = h("summary", { class: "button" }, "Download");
-  const node = h("details", { class: "chooser", ontoggle: async () => {
-    if (!node.open || asked) return;
+  const node = menu("Download", list, { opened: () => {
+    if (asked) return;
     asked = true;
-    await Promise.all([listFiles(), designs && listFigures()]);
-  } }, summary, list);
+    listFiles();
+    if (designs) listFigures();
+  } });
 
   async function listFiles() {
     try {
@@ -60,10 +61,5 @@ export function downloads(job, { designs, signal }) {
     }
   }
 
-  node.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || !node.open) return;
-    node.open = false;
-    summary.focus();
-  });
   return node;
 }

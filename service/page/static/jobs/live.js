@@ -2,11 +2,14 @@
 
 import { history } from "../charts/history.js";
 import { points } from "../charts/points.js";
+import { steady } from "../charts/steady.js";
 import { columnOf } from "../front/columns.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
-import { grouped } from "../lib/numbers.js";
+import { grouped, inShown, unitOf } from "../lib/numbers.js";
+import { growth } from "./growth.js";
+import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
 import { clock, duration } from "./times.js";
 
@@ -26,6 +29,8 @@ const AT_LEAST = 5000; // ms that this takes at least
 export function watch(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
   const figures = h("dl", { class: "figures" });
+  const course = stages();
+  const extent = steady();
   const lost = h("p", { class: "lost", role: "status", hidden: true }, "The connection to the service was lost. The page goes on when it is back.");
   const curve = h("div");
   const front = h("div");
@@ -58,8 +63,8 @@ export function watch(place, job, { signal, changed }) {
 
   fill(place,
     lost,
-    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), bar, figures, why),
-    h("div", { class: "columns" },
+    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), figures, bar, course.node, why),
+    h("div", { class: "growing" },
       h("section", { class: "panel", "aria-labelledby": "so-far-title" }, h("h2", { id: "so-far-title" }, "Front so far"), pickers, front),
       h("section", { class: "panel", "aria-labelledby": "history-title" }, h("h2", { id: "history-title" }, "Hypervolume of the front"), curve)),
     h("section", { class: "panel", "aria-labelledby": "log-title" }, h("h2", { id: "log-title" }, "Log"), log));
@@ -69,6 +74,7 @@ export function watch(place, job, { signal, changed }) {
     if (event.kind === "progress") {
       const data = /** @type {Api.Progress} */ (event.data);
       if (!data.steps) grow(data);
+      course.told(data);
       why.hidden = true;
       clearTimeout(silent);
       silent = setTimeout(explain, LONG);
@@ -100,23 +106,22 @@ export function watch(place, job, { signal, changed }) {
 
   /** @param {Api.Progress} data @param {boolean} running */
   function stand(data, running = true) {
-    const steps = data.steps ?? 0; // a long stage between two rounds, of which nobody knows how long it takes
-    bar.max = steps || data.rounds;
-    bar.value = steps ? data.step : data.round;
+    bar.max = data.rounds;
+    bar.value = data.round;
     const each = (data.seconds ?? 0) / data.round;
-    const left = running && !steps && data.round > 1 && data.round < data.rounds ? each * (data.rounds - data.round) : null;
+    const left = running && !data.steps && data.round > 1 && data.round < data.rounds ? each * (data.rounds - data.round) : null;
     clearTimeout(stale);
     show(left);
     if (left !== null) stale = setTimeout(show, Math.max(AT_LEAST, 1000 * STALE * each), null);
 
     /** @param {number | null} left */
     function show(left) {
+      const gained = growth(rounds.map(({ hypervolume }) => hypervolume));
       const shown = [
-        ["stage", data.stage],
-        steps ? ["done", `${grouped(data.step)} of ${grouped(steps)}`] : ["round", `${data.round} of ${data.rounds}`],
+        ["round", `${data.round} of ${data.rounds}`],
         ["evaluated", grouped(data.evaluations)],
         ["feasible", grouped(data.feasible)],
-        ["hypervolume", data.hypervolume === null ? "–" : data.hypervolume.toFixed(4)],
+        [gained && gained.rounds > 1 ? `gained in the last ${gained.rounds} rounds` : "gained in the last round", gained?.text ?? "–"],
         ["so far", duration(data.seconds ?? 0)],
         ["left of the rounds", left === null ? "–" : `about ${duration(left)}`],
       ];
@@ -175,7 +180,12 @@ export function watch(place, job, { signal, changed }) {
       return;
     }
     const shown = found.points.map((point) => [point[axes.x], point[axes.y]]);
-    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`));
+    /** @param {"x" | "y"} name @param {0 | 1} place */
+    const held = (name, place) => {
+      const { title, unit } = columns[axes[name]];
+      return extent(`${title} ${unitOf(unit)}`, shown.map((point) => (typeof point[place] === "number" ? inShown(point[place], unit) : null)));
+    };
+    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`, [held("x", 0), held("y", 1)]));
   }
 
   /** @param {string} state */
@@ -197,6 +207,7 @@ export function watch(place, job, { signal, changed }) {
   signal.addEventListener("abort", rest);
   noFront(job.state);
   if (job.progress) {
+    course.told(job.progress);
     stand(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));

@@ -6,7 +6,7 @@ import { h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
 import { actions } from "./actions.js";
 import { badge } from "./states.js";
-import { ago } from "./times.js";
+import { moment } from "./times.js";
 
 /**
  * Return a run as an item of the list. picture: its front; compare(number, yes): it is ticked or not; changed(): something was done with it.
@@ -20,7 +20,7 @@ export function runRow(job, { picture, chosen, compare, changed }) {
       h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`)),
     h("div", { class: "what" },
       h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
-      h("div", { class: "quiet" }, `run ${job.id} · `, ago(job.finished ?? job.started ?? job.submitted)),
+      h("div", { class: "quiet" }, `run ${job.id} · `, moment(job)),
       badge(job)),
     picture,
     h("div", { class: "found" }, standing(job)),

@@ -2,10 +2,17 @@
 
 import { h } from "../lib/dom.js";
 
-/** @type {[string, number][]} */
-const STEPS = [["day", 86_400], ["hour", 3600], ["minute", 60]];
+const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
-/** Return how long ago a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
+/** Return when a job ended, or since when it runs or waits, in words: exact when pointed at. @param {Api.JobRow} job */
+export function moment({ state, submitted, started, finished }) {
+  if (state === "running" && started) return ["begun ", ago(started)];
+  if (!finished) return ["asked for ", ago(submitted)];
+  return [ago(finished), started && finished > started ? `, after ${duration(finished - started)}` : null];
+}
+
+/** Return when a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
 export function ago(seconds) {
   const date = new Date(1000 * seconds);
   /** @param {{ currentTarget: HTMLElement }} event */
@@ -13,16 +20,22 @@ export function ago(seconds) {
     // Only then: a browser takes 50 ms to make itself ready to write dates.
     event.currentTarget.title = date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "medium" });
   };
-  return h("time", { datetime: date.toISOString(), onpointerenter: exact }, agoText(seconds));
+  return h("time", { datetime: date.toISOString(), onpointerenter: exact }, agoText(date, new Date()));
 }
 
-/** @param {number} seconds */
-function agoText(seconds) {
-  const passed = Math.max(0, Date.now() / 1000 - seconds);
-  const [unit, length] = STEPS.find(([, length]) => passed >= length) ?? ["second", 1];
-  if (unit === "second") return passed < 10 ? "just now" : "less than a minute ago";
-  const count = Math.round(passed / length);
-  return `${count} ${unit}${count === 1 ? "" : "s"} ago`;
+/**
+ * Return a time as one would say it now: within the hour how long ago, later the time of the day, on other days the day.
+ * @param {Date} date @param {Date} now
+ */
+export function agoText(date, now) {
+  const passed = (now.getTime() - date.getTime()) / 1000;
+  if (passed < MINUTE) return "just now";
+  if (passed < HOUR) return Math.round(passed / MINUTE) === 1 ? "1 minute ago" : `${Math.round(passed / MINUTE)} minutes ago`;
+  const time = [date.getHours(), date.getMinutes()].map((part) => String(part).padStart(2, "0")).join(":");
+  if (date.toDateString() === now.toDateString()) return `today ${time}`;
+  if (date.toDateString() === new Date(now.getTime() - 1000 * DAY).toDateString()) return `yesterday ${time}`;
+  const day = `${date.getDate()} ${MONTHS[date.getMonth()]}`;
+  return date.getFullYear() === now.getFullYear() ? `${day} ${time}` : `${day} ${date.getFullYear()}`;
 }
 
 /** Return the time of the day of an event. @param {number} seconds */

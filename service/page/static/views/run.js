@@ -2,7 +2,7 @@ import { actions } from "../jobs/actions.js";
 import { downloads } from "../jobs/downloads.js";
 import { outcome } from "../jobs/outcome.js";
 import { badge, ENDED } from "../jobs/states.js";
-import { ago, duration } from "../jobs/times.js";
+import { ago, duration, moment } from "../jobs/times.js";
 import { get, isAbort, Problem, statusOf } from "../lib/api.js";
 import { go, link, read } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
@@ -44,7 +44,7 @@ export async function show(place, { parts, signal }) {
     asked?.catch(() => {}); // who waits for it says so
     const held = focused(head);
     drawHead(job);
-    if (held) first(head, "button, a")?.focus();
+    if (held) first(head, "button, summary, a")?.focus();
     if (watched) return;
     if (live) {
       const { watch } = await import("../jobs/live.js");
@@ -66,8 +66,8 @@ export async function show(place, { parts, signal }) {
     const { summary } = job;
     const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
-      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", ago(job.finished ?? job.started ?? job.submitted), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
-      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now))), downloads(job, { designs: Boolean(summary?.designs), signal })));
+      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
+      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), signal })));
   }
 
   function gone() {

@@ -1,6 +1,7 @@
 import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { keep, link } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
+import { gallery } from "../jobs/gallery.js";
 import { STATES, stateWord } from "../jobs/states.js";
 import { pictures } from "../jobs/pictures.js";
 import { runRow } from "../jobs/row.js";
@@ -106,6 +107,8 @@ export async function show(place, { query, signal }) {
     place.classList.toggle("empty", empty);
     search.hidden = empty;
     welcome.hidden = !empty;
+    first(place, "h1")?.replaceChildren(empty ? "No runs yet" : title);
+    if (empty) machines.begin();
     said.textContent = page.jobs.length || empty ? "" : asked.before ? "There are no older runs." : "No run is like this; change the name or the state.";
     const { next } = page;
     fill(pages,
@@ -113,10 +116,11 @@ export async function show(place, { query, signal }) {
       next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"));
   }
 
-  const welcome = h("section", { class: "panel welcome", hidden: true },
-    h("h2", {}, "No runs yet"),
-    h("p", {}, "Describe what the mechanism must do and what may vary; the search then finds the designs that are worth having."),
-    h("p", {}, h("a", { class: "button primary", href: "#/new" }, "New run")));
+  const machines = gallery(signal);
+  const welcome = h("section", { class: "welcome", hidden: true },
+    h("p", { class: "lead" }, "Say what a slider-crank must do and what may vary: the search finds the designs that are worth having, and proves how good they are."),
+    h("p", { class: "row" }, h("a", { class: "button primary", href: "#/new" }, "New run"), h("span", { class: "quiet" }, "from nothing, or begin with a machine that ships:")),
+    machines.node);
   await new Promise((ready) => {
     fill(place, h("div", { class: "row spread" }, h("h1", {}, title), h("a", { class: "button primary", href: "#/new" }, "New run")), search, welcome, list, said, pages);
     showComparing();

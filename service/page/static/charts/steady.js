@@ -1,0 +1,24 @@
+/** Ranges of axes that stand still while what they show grows. */
+
+import { range } from "./scale.js";
+
+const AHEAD = 0.2; // of the range, which is left free on the side where it had to grow
+
+/**
+ * Return a function that gives the range of an axis for values: it holds all that it has held before, and grows by steps.
+ * @returns {(key: string, values: Iterable<Api.Row[string]>) => Page.Range}
+ */
+export function steady() {
+  /** @type {Map<string, Page.Range>} */
+  const held = new Map();
+  return (key, values) => {
+    const { low, high } = range(values, 0);
+    const before = held.get(key);
+    if (before && before.low <= low && high <= before.high) return before;
+    const [least, most] = [Math.min(low, before?.low ?? low), Math.max(high, before?.high ?? high)];
+    const ahead = AHEAD * (most - least);
+    const now = { low: !before || low < before.low ? least - ahead : least, high: !before || high > before.high ? most + ahead : most };
+    held.set(key, now);
+    return now;
+  };
+}

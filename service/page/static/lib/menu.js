@@ -1,0 +1,31 @@
+/** Things behind a button: a list that opens below it, and closes by Escape, by a click elsewhere, and as the focus leaves it. */
+
+import { h } from "./dom.js";
+
+/**
+ * Return a menu. title: of its button, "…" for what is dangerous or rare; name: what the button is called where the title does not say it;
+ * content: what opens; opened(): called when it does.
+ * @param {string} title @param {Dom.Child} content
+ * @param {{ name?: string, opened?: () => void, act?: string }} given act: what the button is called in a list that is drawn anew
+ */
+export function menu(title, content, { name, opened, act } = {}) {
+  const summary = h("summary", { class: "button", "aria-label": name, "data-act": act }, title);
+  const node = h("details", { class: "chooser", ontoggle: () => {
+    if (node.open) opened?.();
+    if (node.open) document.addEventListener("pointerdown", elsewhere);
+    else document.removeEventListener("pointerdown", elsewhere);
+  } }, summary, content);
+  /** @param {PointerEvent} event */
+  const elsewhere = (event) => {
+    if (!(event.target instanceof Node && node.isConnected && node.contains(event.target))) node.open = false;
+  };
+  node.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !node.open) return;
+    node.open = false;
+    summary.focus();
+  });
+  node.addEventListener("focusout", (event) => {
+    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget)) node.open = false;
+  });
+  return node;
+}
