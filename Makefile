@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test test-slow test-all test-rounding lint check docs benchmark pictures requests faults clean
+.PHONY: run test test-slow test-all test-rounding lint check docs benchmark pictures screens requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed
@@ -57,6 +57,10 @@ benchmark: $(VENV)/.installed-benchmark
 # The pictures of README and docs, on a quiet machine: their times are seen.
 pictures: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks.pictures
+
+# Every view of the page on four screens, light and dark, into docs/screens, to be looked at one by one.
+screens: $(VENV)/.installed-test
+	$(BIN)/python -m benchmarks.screens
 
 # Requests made from the description of the API: about twenty minutes.
 requests: $(VENV)/.installed-test

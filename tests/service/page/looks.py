@@ -1,0 +1,20 @@
+"""Measurements of a view as it stands: width, clipped text, text over other text, and the size of what is clicked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+LEAST_TARGET = 24
+"""Least size of what is clicked, px, or room around it (WCAG 2.2, 2.5.8)."""
+
+_SCRIPT = (
+    (Path(__file__).parent / "static/looks.mjs").read_text(encoding="utf-8").replace("export function", "function")
+)
+
+
+def faults(page: Page) -> dict[str, list[str]]:
+    """Faults of a view: "wider" than the window; text "clipped", or "over" other text; "small" targets."""
+    found: dict[str, list[str]] = page.evaluate(f"(least) => {{ {_SCRIPT} return measured(least); }}", LEAST_TARGET)
+    return found

@@ -1,0 +1,66 @@
+"""Every view on every width of screen: nothing wider than the window, clipped, over other text, or too small to hit."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from slidercrank.service.store import Store
+from tests.service import fronts
+from tests.service.api.fixed_front import Solved, served
+from tests.service.page.accessibility import findings
+from tests.service.page.conftest import watch
+from tests.service.page.every_view import HEIGHTS, WIDTHS, View, fill
+from tests.service.page.looks import faults
+
+VIEWS = ("runs", "new_run", "live", "no_solution", "front", "design", "designs", "compare", "help", "quantity")
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory, solved: Solved) -> Iterator[tuple[str, dict[str, View]]]:
+    """Return the address of a service, and its views by name."""
+    other = replace(solved.result, name="Sieve, other seed", seed=2)
+    with Store(tmp_path_factory.mktemp("looks") / "store.db") as store:
+        views = fill(store, (solved.result, other), tomllib.loads(fronts.JOB))
+        with served(store) as address:
+            yield address, {view.name: view for view in views}
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_a_view_is_whole_and_legible_on_every_screen(
+    browser: Browser, shown: tuple[str, dict[str, View]], name: str
+) -> None:
+    address, views = shown
+    wrong: list[str] = []
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    page = context.new_page()
+    watch(page, address, wrong)
+    views[name].open(page, f"{address}/")
+    found: dict[str, object] = {}
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": HEIGHTS[width]})
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        if worst := faults(page):
+            found[f"{width} px"] = worst
+    page.set_viewport_size({"width": 1280, "height": 900})
+    if broken := findings(page):
+        found["light"] = broken
+    page.emulate_media(color_scheme="dark")
+    if broken := findings(page, ("color-contrast", "link-in-text-block")):
+        found["dark"] = broken
+    context.close()
+    assert not found, json.dumps(found, indent=1)
+    assert wrong == []
+
+
+def test_every_view_is_measured(shown: tuple[str, dict[str, View]], pytestconfig: pytest.Config) -> None:
+    _, views = shown
+    assert tuple(views) == VIEWS
+    files = {file.stem for file in Path(pytestconfig.rootpath, "service/page/static/views").glob("*.js")}
+    assert files == {"runs", "new_run", "run", "design", "compare", "help"}
