@@ -18,7 +18,7 @@ from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
 from .from_slider import CrankSolution, crank_solutions
 from .picture import Pose, figure, svg
-from .values import Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
+from .values import DIMENSIONS, Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ class Linkage:
         values = dimensions(crank, rod, offset)
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
-        for name, value in zip(("crank", "rod", "offset"), values, strict=True):
+        for name, value in zip(DIMENSIONS, values, strict=True):
             value = value.copy()
             value.flags.writeable = False
             object.__setattr__(self, name, value[()])
@@ -249,7 +249,7 @@ class Linkage:
     @property
     def label(self) -> str:
         """Dimensions of one linkage in words, mm."""
-        sizes = (f"{name} {1e3 * float(getattr(self, name).real):.6g} mm" for name in ("crank", "rod", "offset"))
+        sizes = (f"{name} {1e3 * float(getattr(self, name).real):.6g} mm" for name in DIMENSIONS)
         return ", ".join(sizes) + ("" if self.branch == "open" else ", crossed")
 
     def _pose(self, crank_angle: float) -> Pose:

@@ -11,6 +11,9 @@ from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..kinematics.in_line import in_line
 
+DIMENSIONS = ("crank", "rod", "offset")
+"""Names of the three dimensions, in the order of a design's numbers."""
+
 
 @dataclass(frozen=True)
 class Kinematics:
@@ -55,7 +58,7 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
     Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
     """
     values = []
-    for name, given in (("crank", crank), ("rod", rod), ("offset", offset)):
+    for name, given in zip(DIMENSIONS, (crank, rod, offset), strict=True):
         value = numbers(given, name)
         if not np.all(np.isfinite(value)):
             raise InputError(f"{name} must be finite; got {given!r}")

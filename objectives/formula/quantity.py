@@ -10,6 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ...model.machine.varying import Varying, number_at
@@ -21,7 +22,6 @@ from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
 _GOLDEN = 0.6180339887498949  # labels of parts are added in proportions that hardly ever meet
-_DIMENSIONS = ("crank", "rod", "offset")
 _LONGEST_KEY = 60
 _WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
 
@@ -121,7 +121,7 @@ class FormulaQuantity(Quantity):
     def _numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
         """Yield name, values (n,) and place in a design of dimensions and varying numbers; no place of a fixed one."""
         for name in self.dimensions:
-            place = _DIMENSIONS.index(name)
+            place = DIMENSIONS.index(name)
             yield name, designs[:, place].astype(np.float64), place
         places = {item.name: 3 + place for place, item in enumerate(mechanism.varying)}
         for item in self.varying:

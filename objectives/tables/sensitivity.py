@@ -13,13 +13,13 @@ import pandas as pd
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
 from ...model.linkage.linkage import Linkage
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.sources import limits
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 
-DIMENSIONS = ("crank", "rod", "offset")
 _TIE = 1e-9  # of a quantity: pieces that differ by less are equal
 _ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
 _TIP = 1e-6  # of the rod, a small offset at which a quantity that vanishes without offset is far above rounding

@@ -13,13 +13,13 @@ import pandas as pd
 
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from ..registry import quantity
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
 MOST = 1_000_000
-_LENGTHS = ("crank", "rod", "offset")
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ def sweep(
         if name == "speed":
             speeds = grid[:, n]
         else:
-            designs[:, _LENGTHS.index(name)] = grid[:, n]
+            designs[:, DIMENSIONS.index(name)] = grid[:, n]
     reasons = [_reason(design, mechanism) for design in designs]
-    columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(_LENGTHS)}
+    columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(DIMENSIONS)}
     columns["speed_rpm"] = speeds * 30.0 / math.pi
     turns = np.array([not reason for reason in reasons])
     for item in quantities:

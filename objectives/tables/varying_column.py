@@ -1,12 +1,14 @@
-"""Column of a varying number of a machine in tables and JSON, and its unit there."""
+"""Columns of a design's numbers in tables and JSON, and their units there."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
-from ..kinds import KINDS, Face
+from ..kinds import KINDS, LENGTH, Face
 
 
 def varying_column(varying: Varying) -> tuple[str, Face]:
@@ -18,3 +20,9 @@ def varying_column(varying: Varying) -> tuple[str, Face]:
     unit = next(kind.metric for kind in KINDS if kind.unit == unit_of(varying.paths[0]))
     name = re.sub("[^a-z0-9]+", "_", varying.name.removeprefix("mechanism.").lower()).strip("_")
     return name + unit.suffix, unit
+
+
+def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, Face]]:
+    """Return key and unit of every number of a design by name: crank, rod, offset, and those that vary besides."""
+    lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
+    return lengths | {item.name: varying_column(item) for item in varying}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ..problem.problem import Problem
 from .missing import require
@@ -35,7 +36,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
         quantities = list(dict.fromkeys(asked))
     names = list(quantities)
     varying = problem.mechanism.varying
-    inputs = dict.fromkeys(("crank", "rod", "offset"), "m")
+    inputs = dict.fromkeys(DIMENSIONS, "m")
     inputs |= {re.sub(r"[^A-Za-z0-9]+", "_", item.name).strip("_"): unit_of(item.paths[0]) for item in varying}
     ranges = [problem.crank, problem.rod, problem.offset]
     starts = [0.5 * (ends.lower + ends.upper) for ends in ranges]

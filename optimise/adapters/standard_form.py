@@ -201,8 +201,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
     asked = constraints_of(problem)
     sheet = _sheet(problem) if eliminate else None
     if sheet is None:
-        names: tuple[str, ...] = ("crank", "rod", "offset", *(item.name for item in problem.mechanism.varying))
-        ranges = [problem.crank, problem.rod, problem.offset, *problem.mechanism.varying]
+        names, ranges = tuple(problem.ranges), problem.ranges.values()
         lower, upper = (np.array([getattr(item, end) for item in ranges], np.float64) for end in ("lower", "upper"))
         side = problem.slow_side()
         if side is not None:

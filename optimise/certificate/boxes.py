@@ -12,6 +12,7 @@ from ...model.arrays import Array, Mask, Whole
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
@@ -19,7 +20,6 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
 from ..problem.violation import constraints_of
 from ..search.candidates import Table
-from ..search.elimination import UNKNOWNS
 from ..search.evaluation import Evaluator
 from .cycle import Curve, best_angles
 from .enclosure import Enclosure, beside, coordinate
@@ -196,7 +196,7 @@ class Boxes:
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
     """Return the ends of a computed dimension from its range, and from r + |e| <= lean l if known."""
-    others = [known[other].ends() for other in UNKNOWNS if other != name and other in known]
+    others = [known[other].ends() for other in DIMENSIONS if other != name and other in known]
     slack = _SLACK * bounds.upper
     low, high = np.full_like(others[0][0], bounds.lower - slack), np.full_like(others[0][0], bounds.upper + slack)
     if len(others) < 2:

@@ -8,15 +8,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...objectives.quantity import Array
-from ...objectives.robust.quantity import RobustQuantity
+from ...model.arrays import Array
 from ..front.hypervolume import Stand, unheard
 from ..problem.problem import Problem, Variant
-from ..problem.requirements import Constraint, Range
-from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
+from ..problem.requirements import Range
+from ..problem.robust import asks_robust
+from ..problem.violation import (
+    FEASIBLE,
+    all_minimised,
+    clearly_turning,
+    constraints_of,
+    costly,
+    greatest_violation,
+)
 
 _AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two questions whether to end
-DIMENSIONS = ("crank", "rod", "offset")
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Axes:
         """Return the axes of a problem without choices; a fixed number has its one value."""
         given = {item.name: item for item in part.discrete}
         found: list[Array | None] = []
-        for name, ends in ranges_of(part).items():
+        for name, ends in part.ranges.items():
             if ends.fixed:
                 found.append(np.array([ends.lower]))
             elif name in given:
@@ -85,8 +91,7 @@ class Judged:
     @classmethod
     def none(cls, part: Problem) -> Judged:
         """Return no designs."""
-        width = 3 + len(part.mechanism.varying)
-        return cls(part, np.zeros((0, width)), np.zeros((0, len(part.objectives))), 0, None, np.inf)
+        return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
     def with_(self, other: Judged) -> Judged:
         """Return both."""
@@ -101,25 +106,13 @@ class Judged:
         )
 
 
-def ranges_of(part: Problem) -> dict[str, Range]:
-    """Return the ranges of a design's numbers by name, in their order."""
-    lengths: dict[str, Range] = {name: getattr(part, name) for name in DIMENSIONS}
-    return lengths | {item.name: Range(lower=item.lower, upper=item.upper) for item in part.mechanism.varying}
-
-
-def robust(problem: Problem) -> bool:
-    """Return whether anything that is asked is robust, which takes a hundred times as long."""
-    names = {item.quantity for item in problem.objectives} | {item.quantity for item in problem.every_constraint}
-    return any(isinstance(problem.quantity(name), RobustQuantity) for name in names)
-
-
 def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) -> Judged:
     """Return all combinations of a whole variant, judged. stand: asked after some thousands.
 
     dimensions_only: judge by what needs no cycle, and compute no objectives.
     """
     found = Judged.none(axes.part)
-    step = _AT_ONCE_ROBUST if robust(axes.part) and not dimensions_only else _AT_ONCE
+    step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
     for begin in range(0, axes.count, step):
         stand(begin, axes.count)
         found = found.with_(judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only))
@@ -128,19 +121,17 @@ def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) 
 
 def judged(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
     """Return which designs (n, 3 + v) keep every requirement, with their objectives."""
-    crank, rod, offset = designs.T[:3]
-    turning = designs[(crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod)]
+    turning = designs[clearly_turning(designs)]
     constraints = constraints_of(part)
     slow = [item for item in constraints if costly(part.quantity(item.quantity))]
-    worst = _violation(part, turning, [item for item in constraints if item not in slow])
+    worst = greatest_violation(part, turning, [item for item in constraints if item not in slow])
     kept = np.flatnonzero(worst <= FEASIBLE)
     if slow and not dimensions_only:
-        worst[kept] = np.maximum(worst[kept], _violation(part, turning[kept], slow))
+        worst[kept] = np.maximum(worst[kept], greatest_violation(part, turning[kept], slow))
         kept = kept[worst[kept] <= FEASIBLE]
     values = np.zeros((len(kept), len(part.objectives)))
     if len(kept) and not dimensions_only:
-        found = part.evaluate(turning[kept])
-        values = np.stack([minimised(of, found[:, j]) for j, of in enumerate(part.objectives)], axis=1)
+        values = all_minimised(part, part.evaluate(turning[kept]))
     had = np.isfinite(values).all(axis=1)
     nearest = int(np.argmin(worst)) if len(worst) and np.isfinite(worst).any() else None
     return Judged(
@@ -151,17 +142,6 @@ def judged(part: Problem, designs: Array, *, dimensions_only: bool = False) -> J
         None if nearest is None else turning[nearest],
         np.inf if nearest is None else float(worst[nearest]),
     )
-
-
-def _violation(part: Problem, designs: Array, constraints: Sequence[Constraint]) -> Array:
-    """Return the greatest relative violation (n,), zero where all hold."""
-    worst = np.zeros(len(designs))
-    if not (len(designs) and constraints):
-        return worst
-    held = part.evaluate(designs, [item.quantity for item in constraints])
-    for column, item in enumerate(constraints):
-        worst = np.maximum(worst, violated_by(item, held[:, column]))
-    return worst
 
 
 def neighbours(axes: Axes, designs: Array, most: int) -> Array:

@@ -12,15 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...objectives.quantity import Array
+from ...model.arrays import Array
+from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.answer import Answer
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import Stand, choose
 from ..front.rounded import written
 from ..problem.problem import Problem
-from .combinations import Axes, Judged, every, judged, neighbours, robust, with_values
-from .words import columns_by_name, found_in_words, missed_in_words
+from ..problem.robust import asks_robust
+from .combinations import Axes, Judged, every, judged, neighbours, with_values
+from .words import found_in_words, missed_in_words
 
 MOST, _MOST_ROBUST = 1_000_000, 1 << 13
 """Combinations that are designs, all judged; robust quantities take a hundred times as long."""
@@ -40,7 +42,7 @@ def discrete_front(
     """
     axes = [Axes.of(part) for part in problem.parts()]
     whole, count = all(each.whole for each in axes), sum(each.count for each in axes)
-    most = (_MOST_ROBUST if robust(problem) else MOST) if whole else SOLVED
+    most = (_MOST_ROBUST if asks_robust(problem) else MOST) if whole else SOLVED
     exact = count <= most
     found: Judged | None = None
     chosen: Chosen = []
@@ -125,9 +127,10 @@ def _fewest(chosen: Chosen) -> Chosen:
 def _told(problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, answer: Answer) -> ParetoFront:
     """Return the front of combinations as one of the problem that states them."""
     columns = dict(front.columns)
-    for place, (name, (column, factor)) in enumerate(columns_by_name(problem).items()):
+    for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):
-            columns[column] = np.array([written(value) for value in (front.dimensions[:, place] * factor).tolist()])
+            shown = front.dimensions[:, place] * unit.factor
+            columns[column] = np.array([written(value) for value in shown.tolist()])
     # A design of discrete values is one of the continuous problem too.
     best = front.values.min(axis=0, initial=np.inf).tolist()
     least = tuple(min(one, other) for one, other in zip(answer.continuous, best, strict=False))

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.errors import JobError
+from ...model.linkage.values import DIMENSIONS
 from ..problem.problem import Problem
-from .combinations import DIMENSIONS, Axes, Judged, every
+from .combinations import Axes, Judged, every
 from .words import missed_in_words
 
 MOST = 200_000

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from ...objectives.tables.varying_column import varying_column
+from ...model.linkage.values import DIMENSIONS
+from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.front import ParetoFront
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of, violated_by
-from .combinations import DIMENSIONS, Judged
-
-
-def columns_by_name(problem: Problem) -> dict[str, tuple[str, float]]:
-    """Return the column of each number of a design, with the factor from SI to its unit."""
-    more = {item.name: varying_column(item) for item in problem.mechanism.varying}
-    lengths = {name: (f"{name}_mm", 1e3) for name in DIMENSIONS}
-    return lengths | {name: (column, unit.factor) for name, (column, unit) in more.items()}
+from .combinations import Judged
 
 
 def rules_in_words(problem: Problem) -> str:
@@ -54,10 +48,10 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
     if found.nearest is None:
         return f"{none} turns fully with every quantity that is asked; give smaller steps or wider ranges"
     told_of = {*DIMENSIONS, *(item.name for item in problem.discrete)}
-    columns = columns_by_name(found.part).items()
+    columns = columns_of_numbers(found.part.mechanism.varying).items()
     sizes = ", ".join(
-        f"{name} {value * factor:.6g} {column.rpartition('_')[2]}"
-        for (name, (column, factor)), value in zip(columns, found.nearest.tolist(), strict=True)
+        f"{name} {value * unit.factor:.6g} {column.rpartition('_')[2]}"
+        for (name, (column, unit)), value in zip(columns, found.nearest.tolist(), strict=True)
         if name in told_of
     )
     worst, told, remedy = 0.0, "", ""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE, violated_by
@@ -97,9 +97,8 @@ class Rounded:
     @property
     def names(self) -> dict[str, tuple[str, float]]:
         """The column of each number of a design, with the factor from SI to its unit."""
-        more = {item.name: varying_column(item) for item in self.problem.mechanism.varying}
-        lengths = {name: (f"{name}_mm", 1e3) for name in ("crank", "rod", "offset")}
-        return lengths | {name: (column, unit.factor) for name, (column, unit) in more.items()}
+        columns = columns_of_numbers(self.problem.mechanism.varying)
+        return {name: (column, unit.factor) for name, (column, unit) in columns.items()}
 
     @cached_property
     def columns(self) -> dict[str, Array]:

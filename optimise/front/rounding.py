@@ -16,18 +16,17 @@ import numpy as np
 
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
-from ...objectives.kinds import LENGTH
-from ...objectives.robust.quantity import RobustQuantity
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.tables.evaluate import moving
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
-from ..problem.requirements import Constraint
-from ..problem.violation import FEASIBLE, constraints_of, costly, minimised, violated_by
+from ..problem.requirements import Constraint, Range
+from ..problem.robust import asks_robust
+from ..problem.violation import FEASIBLE, all_minimised, clearly_turning, constraints_of, costly, greatest_violation
 from .constant import spread
 from .dominance import nondominated
 from .rounded import Rounded
 
-LENGTHS = ("crank", "rod", "offset")
 REACHES = (16, 32)
 """Multiples of a step on either side of the design that are looked at, the next ones where none before met all."""
 _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
@@ -51,9 +50,9 @@ def rounded(
     """
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
-    ranges = _ranges(part)
+    ranges = part.ranges
     steps = _steps(to, ranges)
-    moved = {name: step for name, step in steps.items() if ranges[name][0] < ranges[name][1]}
+    moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
     told = [*notes, *_stays(given, ranges, steps)]
     own = {item.name: item.rule for item in part.discrete if item.name in moved}
     moved = {name: step for name, step in moved.items() if name not in own}
@@ -101,16 +100,14 @@ class _Search:
         given: Array,
         span: Array,
         steps: Mapping[str, float],
-        ranges: Mapping[str, tuple[float, float]],
+        ranges: Mapping[str, Range],
     ) -> None:
         self.part, self.given, self.span, self.steps, self.ranges = part, given, span, steps, ranges
         self.constraints = constraints_of(part)
         self.quick = [item for item in self.constraints if not costly(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
-        names = [item.quantity for item in part.objectives] + [item.quantity for item in self.constraints]
-        robust = any(isinstance(part.quantity(name), RobustQuantity) for name in names)
-        self.most = _MOST_ROBUST if robust else _MOST
-        self.before = self._minimised(self.values(given[None]))[0]
+        self.most = _MOST_ROBUST if asks_robust(part) else _MOST
+        self.before = all_minimised(part, self.values(given[None]))[0]
         self.reach, self.judged, self.kept = 0, 0, 0
         self._ladders(1)  # refuses steps without a multiple
 
@@ -118,9 +115,9 @@ class _Search:
         """Return the best designs (n, 3 + v) of the least window where some keep all; else the nearest."""
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
-            short = self._violation(designs, self.quick)
+            short = greatest_violation(self.part, designs, self.quick)
             kept = designs[short <= FEASIBLE]
-            kept = kept[self._violation(kept, self.slow) <= FEASIBLE]
+            kept = kept[greatest_violation(self.part, kept, self.slow) <= FEASIBLE]
             values = self.values(kept)
             had = ~np.isnan(values).any(axis=1)
             if had.any():
@@ -134,7 +131,7 @@ class _Search:
 
     def losses(self, values: Array) -> Array:
         """Return by how much objectives (n, m) are worse than the design's, in units of `span`."""
-        now = self._minimised(values)
+        now = all_minimised(self.part, values)
         with np.errstate(invalid="ignore"):
             lost = np.where(now == self.before, 0.0, now - self.before) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
@@ -145,10 +142,6 @@ class _Search:
             return np.zeros((len(designs), len(constraints)))
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
 
-    def _minimised(self, values: Array) -> Array:
-        columns = [minimised(wanted, values[:, j]) for j, wanted in enumerate(self.part.objectives)]
-        return np.asarray(np.stack(columns, axis=1))
-
     def _ladders(self, reach: int) -> list[list[float]]:
         """Return for each number of a design the values that it may take."""
         ladders = [[float(value)] for value in self.given]
@@ -158,7 +151,7 @@ class _Search:
         return ladders
 
     def _multiples(self, name: str, value: float, reach: int) -> list[float]:
-        step, (lower, upper) = self.steps[name], self.ranges[name]
+        step, lower, upper = self.steps[name], self.ranges[name].lower, self.ranges[name].upper
         place = value / step
         on = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
         low, high = (round(place), round(place)) if on else (math.floor(place), math.ceil(place))
@@ -177,9 +170,7 @@ class _Search:
 
     def _told(self, name: str, value: float) -> str:
         """Return a number of a design in its shown unit."""
-        unit = LENGTH.metric
-        for item in self.part.mechanism.varying:
-            unit = varying_column(item)[1] if item.name == name else unit
+        unit = columns_of_numbers(self.part.mechanism.varying)[name][1]
         return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
 
     def _reaches(self) -> list[int]:
@@ -201,17 +192,7 @@ class _Search:
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
             return np.asarray(designs[moving(self.part.mechanism, self.part.motion, designs)])
-        crank, rod, offset = designs.T[:3]
-        # Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
-        return np.asarray(designs[(crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod)])
-
-    def _violation(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
-        """Return the greatest relative violation (n,) of some constraints, 0 where they hold."""
-        found = np.zeros(len(designs))
-        held = self.held(designs, constraints)
-        for column, constraint in enumerate(constraints):
-            found = np.maximum(found, violated_by(constraint, held[:, column]))
-        return found
+        return np.asarray(designs[clearly_turning(designs)])
 
     def _order(self, designs: Array, losses: Array) -> Whole:
         """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
@@ -225,7 +206,7 @@ class _Search:
         order = self._order(designs, losses)
         if losses.shape[1] == 1:  # one dominates all others: the next best are worth to be known
             return designs[order]
-        free = nondominated(self._minimised(values)[order])
+        free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
     def _nearest(self, designs: Array, short: Array) -> Array:
@@ -236,7 +217,7 @@ class _Search:
             rows = order[begin : begin + _NEAREST]
             if len(missed) == _NEAREST and missed[-1] <= short[rows[0]]:
                 break  # what closed forms tell is less than all
-            worst = np.maximum(short[rows], self._violation(designs[rows], self.slow))
+            worst = np.maximum(short[rows], greatest_violation(self.part, designs[rows], self.slow))
             taken, missed = np.concatenate([taken, rows]), np.concatenate([missed, worst])
             best = np.argsort(missed, kind="stable")[:_NEAREST]
             taken, missed = taken[best], missed[best]
@@ -254,17 +235,9 @@ class _Search:
         return np.asarray(designs[found])
 
 
-def _ranges(part: Problem) -> dict[str, tuple[float, float]]:
-    """Return the ranges of a design's numbers by name, in their order."""
-    lengths = {name: getattr(part, name) for name in LENGTHS}
-    return {name: (item.lower, item.upper) for name, item in lengths.items()} | {
-        item.name: (item.lower, item.upper) for item in part.mechanism.varying
-    }
-
-
-def _steps(to: float | Mapping[str, float], ranges: Mapping[str, tuple[float, float]]) -> dict[str, float]:
+def _steps(to: float | Mapping[str, float], ranges: Mapping[str, Range]) -> dict[str, float]:
     """Return the step of each number that is to be rounded."""
-    steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(LENGTHS, to)
+    steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(DIMENSIONS, to)
     if not steps:
         raise InputError("say what to round: a step for all lengths, or one by name")
     for name, step in steps.items():
@@ -272,21 +245,22 @@ def _steps(to: float | Mapping[str, float], ranges: Mapping[str, tuple[float, fl
             raise InputError(f"a step is for one of {', '.join(ranges)}; got {name!r}; name one of them")
         if isinstance(step, bool) or not isinstance(step, Real) or not (math.isfinite(step) and step > 0.0):
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
-        if step < _SMALLEST * max(abs(end) for end in ranges[name]):
+        size = max(abs(ranges[name].lower), abs(ranges[name].upper))
+        if step < _SMALLEST * size:
             raise InputError(
                 f"the step of {name} must be {_SMALLEST:g} of its range's greatest number or more; got {step:g} of "
-                f"{max(abs(end) for end in ranges[name]):g} (SI); give a greater one"
+                f"{size:g} (SI); give a greater one"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 
 
-def _stays(given: Array, ranges: Mapping[str, tuple[float, float]], steps: Mapping[str, float]) -> list[str]:
+def _stays(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
     """Return in words what stays as it is though it is no multiple of a step."""
     told = []
-    for value, (name, (lower, upper)) in zip(given.tolist(), ranges.items(), strict=True):
+    for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):
         if name not in steps:
             told.append(f"{name} has no step and stays as it is")
-        elif lower == upper:
+        elif ends.fixed:
             place = value / steps[name]
             if abs(place - round(place)) > FEASIBLE * max(1.0, abs(place)):
                 told.append(f"{name} is fixed in this job and stays, though it is no multiple of the step")

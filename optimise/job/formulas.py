@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ...model.errors import InputError, JobError
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...objectives.formula.expression import ARGUMENTS, Name, Node, names_in, text_of
@@ -24,7 +25,6 @@ from ..problem.requirements import Range
 from .dimensions import kind_of_formula
 from .units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
 
-DIMENSIONS = ("crank", "rod", "offset")
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3
 _MOST_NAMES = 12  # of a message

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from ...model.errors import InputError, JobError
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import TIME, Kind, kind_in
 from ...objectives.own.quantity import (
@@ -24,7 +25,7 @@ from ...objectives.own.quantity import (
 )
 from ...objectives.registry import FACTS
 from . import formulas
-from .formulas import DIMENSIONS, words_of
+from .formulas import words_of
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .units import kind_for, per_si, shown

@@ -27,10 +27,11 @@ from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.linkage import SlowStroke
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
 from ..problem.requirements import SENSES, Constraint, Objective, Word
-from .formulas import DIMENSIONS, Formulas, is_formula
+from .formulas import Formulas, is_formula
 from .messages import key_of
 from .units import closest, shown
 from .values import Part, Physical, optional, required

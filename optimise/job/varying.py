@@ -17,13 +17,14 @@ from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.linkage import SlowStroke
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from .formulas import DIMENSIONS, Formulas
+from .formulas import Formulas
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job

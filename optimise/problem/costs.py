@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...model.errors import InputError
+from ...model.linkage.values import DIMENSIONS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,5 +75,5 @@ class Costs:
         return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
 
 
-NAMES = ("crank", "rod", "offset", "crank_angle")
+NAMES = (*DIMENSIONS, "crank_angle")
 """Sources whose tolerance can be chosen, in the order of `model.tolerance.sources.SOURCES`."""

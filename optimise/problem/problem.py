@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ...model.checks import keep_tuples
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage, SlowStroke
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
@@ -119,7 +120,7 @@ class Problem:
 
     def __post_init__(self) -> None:
         keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "discrete")
-        require_known(self.discrete, ["crank", "rod", "offset", *(item.name for item in self.mechanism.varying)])
+        require_known(self.discrete, [*self.ranges])
         if self.motion is not None:
             self._take(self.motion)
         else:
@@ -127,7 +128,7 @@ class Problem:
                 require_no_winding(own.mechanism)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
-            if item.name in ("crank", "rod", "offset"):
+            if item.name in DIMENSIONS:
                 raise InputError(
                     f"a number that varies besides the dimensions needs a name of its own; got {item.name!r}"
                 )
@@ -196,7 +197,7 @@ class Problem:
             picture = Linkage(sizes[0], sizes[1], sizes[2], self.mechanism.branch)._repr_html_() or ""
         except InputError:  # the middle of the ranges need not be a linkage
             picture = ""
-        rows = [(name, getattr(self, name)) for name in ("crank", "rod", "offset")]
+        rows = [(name, self.ranges[name]) for name in DIMENSIONS]
         ranges = "".join(f"<li>{name}: {1e3 * r.lower:g} to {1e3 * r.upper:g} mm</li>" for name, r in rows)
         asked = "".join(f"<li>{escape(_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints)
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{asked}</ul></div>"
@@ -272,6 +273,12 @@ class Problem:
                 f"a design of a problem with choices ({', '.join(self.choices)}) is one of an option; got the problem "
                 f"of all {len(self.variants)}; take one of problem.parts()"
             )
+
+    @property
+    def ranges(self) -> dict[str, Range]:
+        """The ranges of a design's numbers by name, in their order."""
+        lengths: dict[str, Range] = {name: getattr(self, name) for name in DIMENSIONS}
+        return lengths | {item.name: Range(lower=item.lower, upper=item.upper) for item in self.mechanism.varying}
 
     @property
     def every_constraint(self) -> tuple[Constraint, ...]:

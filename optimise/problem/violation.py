@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ...model.arrays import Array, Mask
 from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
-from ...objectives.quantity import Array, Quantity
+from ...objectives.quantity import Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
@@ -62,6 +65,11 @@ def minimised(objective: Objective, values: Array) -> Array:
     return values
 
 
+def all_minimised(problem: Problem, values: Array) -> Array:
+    """Return the objectives (n, m) of a problem as they are minimised."""
+    return np.stack([minimised(of, values[:, column]) for column, of in enumerate(problem.objectives)], axis=1)
+
+
 def sides(constraint: Constraint) -> list[Side]:
     """Return the sides of a constraint that are not open."""
     bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
@@ -74,6 +82,25 @@ def violated_by(constraint: Constraint, values: Array) -> Array:
     for side in sides(constraint):
         violation = np.maximum(violation, excess(values, *side))
     return np.where(np.isnan(values), np.inf, violation)
+
+
+def greatest_violation(problem: Problem, designs: Array, constraints: Sequence[Constraint]) -> Array:
+    """Return the greatest relative violation (n,) of some constraints by designs (n, 3 + v), zero where all hold."""
+    worst = np.zeros(len(designs))
+    if len(designs) and constraints:
+        held = problem.evaluate(designs, [item.quantity for item in constraints])
+        for column, item in enumerate(constraints):
+            worst = np.maximum(worst, violated_by(item, held[:, column]))
+    return worst
+
+
+def clearly_turning(designs: Array) -> Mask:
+    """Return which designs (n, 3 + v) turn fully by more than rounding.
+
+    Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
+    """
+    crank, rod, offset = designs.T[:3]
+    return np.asarray((crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod))
 
 
 def excess(values: Array, side: float, bound: float, scale: float) -> Array:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
+from ...model.linkage.values import DIMENSIONS
 from ..front.dominance import beating
 from ..front.front import ParetoFront
 from ..front.hypervolume import scaling
@@ -28,7 +29,7 @@ from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE
 from ..search.assemble import assemble, empty
 from ..search.candidates import Finished
-from ..search.elimination import UNKNOWNS, sheets
+from ..search.elimination import sheets
 from ..search.evaluation import Evaluator
 from ..search.recorded import polish
 from ..search.sampling import generator
@@ -105,7 +106,7 @@ def extended(
 ) -> tuple[Problem, str | None]:
     """Return the problem with added requirements, merged with its own; what leaves nothing is said, and left out."""
     held = {constraint.quantity: constraint for constraint in problem.constraints}
-    dimensions = {name: getattr(problem, name) for name in UNKNOWNS}
+    dimensions = {name: getattr(problem, name) for name in DIMENSIONS}
     contradictions = []
     for added in constraints:
         own = held.get(added.quantity)
@@ -160,7 +161,7 @@ def _require_new(
         of = problem.quantity(item.quantity)
         columns.append((of.field, of.unit.factor, (item.lower, item.upper)))
     for name, ends in ranges.items():
-        if name not in UNKNOWNS:
+        if name not in DIMENSIONS:
             raise InputError(f"a range is that of crank, rod or offset; got {name!r}; name one of them")
         if ends[0] is not None and ends[1] is not None and ends[0] > ends[1]:
             raise InputError(

@@ -19,6 +19,7 @@ from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.linear import Linear
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.time_ratio import TIME_RATIO
@@ -27,7 +28,6 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
 
-UNKNOWNS = ("crank", "rod", "offset")
 _LINEAR = "linear: "
 """How the origin of a rule of linear equalities begins."""
 ZERO = 1e-300
@@ -79,7 +79,7 @@ class Sheet:
     steps: tuple[Rule, ...]
     eliminated: tuple[str, ...]
     remaining: tuple[Constraint, ...]
-    names: tuple[str, ...] = UNKNOWNS
+    names: tuple[str, ...] = DIMENSIONS
     variant: int = 0
 
     def dimensions(self, u: Any) -> Any:
@@ -166,31 +166,29 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
 
 
 def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
-    bounds = {"crank": problem.crank, "rod": problem.rod, "offset": offset}
+    bounds = problem.ranges | {"offset": offset}
     wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
     equations: dict[str, Linear] = {}
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
     rules = _rules({name: value for name, value in wanted.items() if name not in equations}) if eliminate else []
-    fixed = tuple(name for name in UNKNOWNS if bounds[name].fixed)
+    fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
     solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
-    numbers = {item.name for item in problem.mechanism.varying}
+    more = [*bounds][len(DIMENSIONS) :]
     best: tuple[tuple[int, int, bool], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
             for block in solved:
-                for steps in _ways({*free, *fixed, *numbers}, [*rules, *_linear(block)]):
+                for steps in _ways({*free, *fixed, *more}, [*rules, *_linear(block)]):
                     used = _fulfilled(steps, block)
                     score = (len(wanted) - len(used), size, not used.issuperset(block.origins))
                     if best is None or score < best[0]:
                         best = (score, free, steps, used)
     assert best is not None  # all unknowns free always works
     _, free, steps, used = best
-    more = {item.name: Range(lower=item.lower, upper=item.upper) for item in problem.mechanism.varying}
-    free = (*free, *(name for name, ends in more.items() if not ends.fixed))
-    bounds |= more
+    free = (*free, *(name for name in more if not bounds[name].fixed))
     return Sheet(
         sign=sign,
         free=free,
@@ -200,7 +198,7 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
         steps=steps,
         eliminated=tuple(name for name in wanted if name in used),
         remaining=tuple(c for c in problem.constraints if c.quantity not in used),
-        names=(*UNKNOWNS, *more),
+        names=tuple(bounds),
         variant=variant,
     )
 
@@ -211,7 +209,7 @@ def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> I
     Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
     them alone, which completes the pair.
     """
-    if known.issuperset(UNKNOWNS):
+    if known.issuperset(DIMENSIONS):
         yield steps
     spent = {step.origin for step in steps}
     for rule in rules:

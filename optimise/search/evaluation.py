@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...model.arrays import Mask, Whole
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.quantity import Array, Pieces
 from ...objectives.tables.evaluate import moving
 from ..engine.chunks import Chunked, Shared
@@ -15,7 +16,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import Objective, Range
 from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
 from .checkpoints import Arrays, Checkpoints, Numbers
-from .elimination import UNKNOWNS, Sheet
+from .elimination import Sheet
 from .judging import exactly, joined, quickly
 from .pieces import Rows
 
@@ -44,7 +45,7 @@ class Evaluator:
         self.dimension = len(sheet.free)
         remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
         self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
-        self.computed = tuple(name for name in UNKNOWNS if any(step.target == name for step in sheet.steps))
+        self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
         self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
@@ -108,7 +109,7 @@ class Evaluator:
         violation[~turns] = np.inf
         for name in self.computed:
             # A linear rule may give an offset of the other sign, which is of the other sheet.
-            value = dimensions[:, UNKNOWNS.index(name)] * (self.sheet.sign if name == "offset" else 1.0)
+            value = dimensions[:, DIMENSIONS.index(name)] * (self.sheet.sign if name == "offset" else 1.0)
             for side in _range_sides(self.sheet.bounds[name]):
                 violation = np.fmax(violation, excess(value, *side))
         rows = np.flatnonzero(turns)
@@ -148,7 +149,7 @@ class Evaluator:
             own = pieces[constraint.quantity]
             parts += [(index, _beyond(_held(own, side[0]), *side)) for side in sides(constraint)]
         for index, name in enumerate(self.computed, len(self.constraints)):
-            column = UNKNOWNS.index(name)
+            column = DIMENSIONS.index(name)
             sign = self.sheet.sign if name == "offset" else 1.0
             value = sign * dimensions[:, column : column + 1]
             own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))

@@ -16,12 +16,13 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.problem.violation import FEASIBLE, constraints_of
-from ...optimise.search.elimination import UNKNOWNS, Sheet, sheets
+from ...optimise.search.elimination import Sheet, sheets
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
@@ -196,7 +197,7 @@ def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
                 designs = other.dimensions(first_samples(_ON_EDGE, len(other.free), 1, place))[:, :3]
                 designs = designs[_turns(designs) & _inside(problem, designs)]
                 if other.sign == sheet.sign and len(designs):
-                    columns = [np.abs(designs[:, UNKNOWNS.index(free)]) for free in sheet.free]
+                    columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in sheet.free]
                     points = (np.stack(columns, axis=1) - sheet.lower) / (sheet.upper - sheet.lower)
                     yield np.clip(points, 0.0, 1.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism, Tolerance
@@ -18,7 +19,7 @@ from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
-from ...optimise.search.elimination import UNKNOWNS, sheets
+from ...optimise.search.elimination import sheets
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
@@ -36,7 +37,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
-            *(f"{name} {_lengths(problem, name)}" for name in UNKNOWNS),
+            *(f"{name} {_lengths(problem, name)}" for name in DIMENSIONS),
             *(_varying(item) for item in problem.mechanism.varying),
             *(f"{item.name} {item.rule}: {len(item.values)} values" for item in problem.discrete),
             *_choices(problem),
@@ -152,7 +153,7 @@ def _friction(friction: Friction) -> list[str]:
 
 def _tolerances(mechanism: Mechanism) -> list[str]:
     tolerances = mechanism.tolerances
-    lines = [f"{name} {text}" for name in UNKNOWNS if (text := _tolerance(getattr(tolerances, name)))]
+    lines = [f"{name} {text}" for name in DIMENSIONS if (text := _tolerance(getattr(tolerances, name)))]
     if tolerances.crank_angle.absolute:
         lines.append(f"crank angle {math.degrees(tolerances.crank_angle.absolute):.6g} deg")
     for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):

@@ -12,10 +12,11 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.linkage.values import DIMENSIONS
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
-from slidercrank.objectives.tables.sensitivity import DIMENSIONS, sensitivity
+from slidercrank.objectives.tables.sensitivity import sensitivity
 from tests.model.cases import MACHINES, SMOOTH, TOLERANCES, random_designs
 
 DESIGNS = random_designs(5, seed=41, least_margin=0.1)

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from slidercrank.model.linkage.values import DIMENSIONS
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import UNKNOWNS, Sheet, sheets
+from slidercrank.optimise.search.elimination import Sheet, sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import CLOSED, Array
 from tests.optimise.problems import Bounds, Ends, degrees, problem
 
 REQUIREMENTS = ("stroke", "rod_to_offset", "rod_to_crank", "time_ratio", "transmission_angle")
-DIMENSIONS = ("crank", "rod", "offset")
 BASE = np.array([0.071, 0.193, 0.052])
 """The design that the requirements are taken from, so that all of them can be met at once."""
 BOX = {"crank": (0.02, 0.2), "rod": (0.06, 0.6), "offset": (0.001, 0.2)}
@@ -51,7 +51,7 @@ def held(names: tuple[str, ...], offset: tuple[float, float]) -> Problem:
 
 def own_point(sheet: Sheet) -> Array:
     """Return the base design in the coordinates of a sheet."""
-    values = np.array([BASE[UNKNOWNS.index(name)] for name in sheet.free])
+    values = np.array([BASE[DIMENSIONS.index(name)] for name in sheet.free])
     return np.asarray(((values - sheet.lower) / (sheet.upper - sheet.lower))[None])
 
 

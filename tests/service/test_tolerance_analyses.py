@@ -18,13 +18,14 @@ from rich.console import Console
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.linkage.values import DIMENSIONS
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
-from slidercrank.objectives.tables.sensitivity import DIMENSIONS, sensitivity
+from slidercrank.objectives.tables.sensitivity import sensitivity
 from slidercrank.service.topics.discovery import TOPICS
 from slidercrank.service.topics.sensitivity import analysis as sensitivity_analysis
 from slidercrank.service.topics.sensitivity.figure import tornado_figure, tornado_rows

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from ....model.linkage.linkage import Linkage
+from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
 from ....objectives.registry import QUANTITIES
-from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
+from ....objectives.tables.sensitivity import sensitivity
 from ...runs.result import finite, rows_of
 from ...text.tables import print_table, table
 from ..peaks import row_of

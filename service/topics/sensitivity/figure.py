@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....model.linkage.linkage import Linkage
+from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
-from ....objectives.tables.sensitivity import DIMENSIONS, sensitivity
+from ....objectives.tables.sensitivity import sensitivity
 from ...figures.numerals import shown
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
 from ..peaks import row_of
