@@ -15,13 +15,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...model.errors import InputError, JobError
 from ...objectives.registry import FACTS, QUANTITIES
+from .beside import beside
 from .messages import key_of
 from .units import closest, shown, to_si
 
@@ -80,11 +81,8 @@ def _filled(part: Any, place: int, folder: Path, own: frozenset[str]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
     if not isinstance(file, str) or "option" in part:  # the model refuses both
         return part
-    key = key_of(["choice", place, "file"])
-    if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
-        raise JobError(f"{key}: must lie beside the job file; got {shown(file)}; copy it there")
-    name = f"{key}: {shown(file)}"
-    options, rows = options_of(_text(folder / file, name), name, own)
+    path, name = beside(folder, key_of(["choice", place, "file"]), file)
+    options, rows = options_of(_text(path, name), name, own)
     return {name: value for name, value in part.items() if name != "file"} | {"option": options, "rows": rows}
 
 

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping
 from itertools import pairwise
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field
 
 from ...model.errors import InputError, JobError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
+from .beside import beside, table_of
 from .units import shown
 from .values import Angle, AngularSpeed, Checked, Number, optional
 
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
 """First line of a file of speeds."""
-_LARGEST = 1_000_000  # bytes
 _MOST = 1000
 _OFF = 1e-3  # share by which the mean of a table may differ from the speed
 
@@ -89,32 +88,8 @@ def with_speeds(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     file, job = speeds_file(data), dict(data)
     if file is None:
         return job
-    name = f"mechanism.speed_profile.file: {shown(file)}"
-    if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
-        raise JobError(f"mechanism.speed_profile.file: must lie beside the job file; got {shown(file)}; copy it there")
-    columns = _read(folder / file, name)
-    try:
-        angles, speeds = _points(*columns)
-    except InputError as error:
-        raise JobError(f"{name}: {error}") from None
-    profile = {"crank_angles": [f"{angle!r} deg" for angle in angles], "speeds": [f"{speed!r} rpm" for speed in speeds]}
-    return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
-
-
-def _read(path: Path, name: str) -> tuple[str, list[float], list[float]]:
-    """Return the name of the first column, and the values of both."""
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise JobError(f"{name} must have at most 1 MB; is it the right file?")
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            header, *lines = [[cell.strip() for cell in line] for line in csv.reader(file, strict=True) if line] or [[]]
-    except OSError as error:
-        raise JobError(f"{name} cannot be read: {error.strerror}; put it beside the job file") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise JobError(f"{name} must be a CSV file, text with commas; got: {error}; save it as CSV") from None
-    if tuple(header) not in HEADERS:
-        choice = " or ".join(",".join(one) for one in HEADERS)
-        raise JobError(f"{name} must begin with the line {choice}; got {shown(','.join(header))}")
+    path, name = beside(folder, "mechanism.speed_profile.file", file)
+    (of, _), lines = table_of(path, name, HEADERS)
     values: list[tuple[float, float]] = []
     for number, line in enumerate(lines, start=2):
         try:
@@ -122,7 +97,12 @@ def _read(path: Path, name: str) -> tuple[str, list[float], list[float]]:
         except ValueError:
             raise JobError(f"{name} must have two numbers a line; got {','.join(line)!r} in line {number}") from None
         values.append((at, speed))
-    return header[0], [at for at, _ in values], [speed for _, speed in values]
+    try:
+        angles, speeds = _points(of, [at for at, _ in values], [speed for _, speed in values])
+    except InputError as error:
+        raise JobError(f"{name}: {error}") from None
+    profile = {"crank_angles": [f"{angle!r} deg" for angle in angles], "speeds": [f"{speed!r} rpm" for speed in speeds]}
+    return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
 
 
 def _points(of: str, at: list[float], speeds: list[float]) -> tuple[list[float], list[float]]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field, WrapValidator
@@ -12,13 +11,13 @@ from pydantic import Field, WrapValidator
 from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
+from .beside import beside, table_of
 from .loads import increasing
 from .units import shown
 from .values import Angle, Checked, Length, Part, optional
 
-HEADER = ["crank_angle_deg", "position_mm"]
+HEADER = ("crank_angle_deg", "position_mm")
 """First line of a file of points."""
-_LARGEST = 1_000_000  # bytes
 _MOST = 1000
 
 
@@ -84,26 +83,14 @@ def with_points(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     file, job = points_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job
-    if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
-        raise JobError(f"target_motion.file: must lie beside the job file; got {shown(file)}; copy it there")
-    angles, positions = _read(folder / file, f"target_motion.file: {shown(file)}")
-    rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
-    return {**job, "target_motion": {**rest, "crank_angles": angles, "positions": positions}}
-
-
-def _read(path: Path, name: str) -> tuple[list[str], list[str]]:
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise JobError(f"{name} must have at most 1 MB; is it the right file?")
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            header, *lines = [[cell.strip() for cell in line] for line in csv.reader(file, strict=True) if line] or [[]]
-    except OSError as error:
-        raise JobError(f"{name} cannot be read: {error.strerror}; put it beside the job file") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise JobError(f"{name} must be a CSV file, text with commas; got: {error}; save it as CSV") from None
-    if header != HEADER:
-        raise JobError(f"{name} must begin with the line {','.join(HEADER)}; got {shown(','.join(header))}")
+    path, name = beside(folder, "target_motion.file", file)
+    _, lines = table_of(path, name, [HEADER])
     for number, line in enumerate(lines, start=2):
         if len(line) != 2:
             raise JobError(f"{name} must have two values a line; got {len(line)} in line {number}; correct it")
-    return [f"{angle} deg" for angle, _ in lines], [f"{position} mm" for _, position in lines]
+    points = {
+        "crank_angles": [f"{angle} deg" for angle, _ in lines],
+        "positions": [f"{position} mm" for _, position in lines],
+    }
+    rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
+    return {**job, "target_motion": rest | points}
