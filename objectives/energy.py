@@ -77,7 +77,7 @@ class FrictionLoss(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class Efficiency(Quantity):
-    """U / (U + H) for the work U done against the load and the friction heat H of a cycle.
+    """U / (U + H), of the work U done against the load and the friction heat H.
 
     NaN for a design whose load takes no net work, which has none; -inf where friction locks.
     """

@@ -79,7 +79,7 @@ def _kind(
     metric: Face | None = None,
     usual: str = "",
 ) -> Kind:
-    """Return a kind of its units in a form, with commas between; shown in the SI unit, the first, if not said."""
+    """Return a kind by the units of a form, separated by commas; shown in the first, SI, unless said."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
     return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual)

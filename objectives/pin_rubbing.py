@@ -26,7 +26,9 @@ _RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDE
 
 @dataclass(frozen=True, kw_only=True)
 class PinRubbing(OfBars):
-    """A factor over twice the bearing's length b times the mean of |F| |d psi / d theta|, psi the turning in the pin.
+    """A factor over twice the bearing's length b times the mean of |F| |d psi / d theta|.
+
+    psi: the turning in the pin.
 
     p = F / (D b) and a rubbing speed of D/2 |d psi / dt|: the pin's diameter D cancels.
     """
@@ -56,7 +58,7 @@ def _speed(mechanism: Mechanism) -> Formula:
 
 
 def _worn(mechanism: Mechanism) -> Formula:
-    """Return K times the crank angle of a million cycles; the rest of K F s / A is in `PinRubbing`."""
+    """Return K times the crank angle of a million cycles; `PinRubbing` has the rest of K F s / A."""
     assert mechanism.strength is not None
     rate = mechanism.strength.wear_coefficient or math.nan
     return lambda number: rate * _CYCLES * cycle_turns(mechanism) * 2.0 * math.pi + 0.0 * number(Raw.CRANK)

@@ -45,7 +45,9 @@ def remembered(
 def remembered_batch(
     function: Callable[Concatenate[Mechanism, Array, Given], Answer],
 ) -> Callable[Concatenate[Mechanism, Array, Given], Answer]:
-    """Keep what a function says of the last few batches of designs (n, 3 + k): several quantities ask for the same.
+    """Keep the answers of a function for the last few batches of designs (n, 3 + k).
+
+    Several quantities ask for the same.
 
     Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
     """

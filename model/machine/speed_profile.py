@@ -194,7 +194,7 @@ Profile = Harmonics | SpeedTable
 
 
 def _over_time(ratio: Callable[[Array], Array], ends: Array) -> float:
-    """Return one over the mean of 1 / p, by panels of Gauss between ends that are halved until it settles."""
+    """Return one over the mean of 1 / p, by panels of Gauss whose number is doubled until it settles."""
     nodes, weights = np.polynomial.legendre.leggauss(16)
     found, before = math.nan, math.inf
     while not abs(found - before) <= _SETTLED * abs(found) and len(ends) < _PANELS:

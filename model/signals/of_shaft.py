@@ -1,4 +1,4 @@
-"""Peaks and averages of a machine that is followed as a shaft: which curves add up, which are of one cylinder.
+"""Peaks and averages of a machine that is followed as a shaft: of sums, and of one cylinder.
 
 Torque and power, moving inertia, shaking force, moment and rocking couple are of all cylinders together. Forces of the
 joints and the slider's motion are of the cylinder that has the most, its crank angle counted from its own slider line;
@@ -40,7 +40,7 @@ _STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
 
 
 def apart(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
-    """Return the machines of one crank at constant speed whose highest peak is that of the shaft; none if none are."""
+    """Return machines of one crank at constant speed whose highest peak is that of the shaft, if any."""
     if kind in _GEOMETRY:
         return (alone(mechanism),)
     banked = any(own.bank for own in cylinders_of(mechanism))
@@ -121,7 +121,7 @@ def averages_of_shaft(
 def _means(
     mechanism: Mechanism, kinds: Sequence[int], designs: Array, members: tuple[int, ...], gradients: bool
 ) -> tuple[Array, Array, Array | None, Array | None]:
-    """Return mean and root mean square (n, c) of curves, NaN where friction locks, and derivatives (n, c, 3 + k)."""
+    """Return mean and root mean square (n, c) of curves, NaN where friction locks. With derivatives (n, c, 3 + k)."""
     shape = len(designs), len(kinds)
     mean, rms = np.empty(shape), np.empty(shape)
     slopes = np.empty((2, *shape, designs.shape[1])) if gradients else None

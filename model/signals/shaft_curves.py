@@ -1,4 +1,4 @@
-"""Curves of a crankshaft: of all its cylinders together, or of one of them, at a constant speed or along a profile.
+"""Curves of a crankshaft: of all its cylinders or of one, at a constant speed or along a profile.
 
 Each cylinder is a single crank at the angle theta + lead, seen in axes that turn with its bank. Speed and acceleration
 of the shaft are w p and w^2 p p' of the profile p at the shaft's own angle, a constant acceleration added. Every curve
@@ -57,7 +57,7 @@ class Axes(NamedTuple):
 
 
 class Items(NamedTuple):
-    """What is asked for, p times: design, shaft angle in the segment that is entered, angles, their rates, half.
+    """Arguments of p evaluations: design, shaft angle in the segment that is entered, angles, their rates, half.
 
     row, inside: (p,). angle: (p, k), rad. rate: (p, v), of the angle by each number of the design, where derivatives
     are wanted. half: (p, m), of a cycle of two turns that each cylinder is in.

@@ -1,4 +1,4 @@
-"""Work on the load, and size of each joint's force times the speed of its rubbing, as means over crank angle.
+"""Work on the load, and force of each joint times the speed of its rubbing, as means over crank angle.
 
 Of one turn, per radian and in the sense of rotation, with phi' = d phi / d theta:
 

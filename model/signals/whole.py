@@ -1,4 +1,4 @@
-"""What the cylinders of a crankshaft leave together, whatever its dimensions."""
+"""Curves that the cylinders of a crankshaft leave together, whatever its dimensions."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class Profile:
 
 
 class PeriodicTurn:
-    """Terms of the equation of motion on the nodes of a cycle, of a turn or two, in the order of the crank's passage.
+    """Terms of the equation of motion on the nodes of a cycle, in the order of the crank's passage.
 
     angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
     cuts: crank angles, rad, at which panels end besides.

@@ -1,4 +1,4 @@
-"""Formulas of a job that may be incomplete: the unit of each, or the mistake in it, and the names they may have."""
+"""Formulas of a job that may be incomplete: unit of each, or the mistake in it, and possible names."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ class _Kinds:
 
 
 def _kind_of(given: object) -> Kind | None:
-    """Return the kind of the first value with a unit in a range, in choices or in a table of values."""
+    """Return the kind of the first value with a unit in a range, choices or a table of values."""
     if isinstance(given, Mapping):
         return next((kind for item in given.values() if (kind := _kind_of(item))), None)
     if isinstance(given, list | tuple):

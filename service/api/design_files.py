@@ -103,7 +103,7 @@ def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric")
 
 @router.get("/cycle.csv", **of_type("text/csv"))
 def export_cycle(shown: ShownDep, units: UnitsAsked = "metric") -> Response:
-    """Give the curves of a design as a table, a row for each degree of the crank: what `export --cycle` writes."""
+    """Give the curves of a design as a table, a row for each degree of the crank, as `export --cycle`."""
     content = cycle_csv(shown.design.mechanism, shown.design.linkage, units)
     return _file(shown, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 

@@ -128,7 +128,7 @@ def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
 
 @router.post("/catalogue")
 def read_catalogue(given: CatalogueText) -> CatalogueModel:
-    """Give the options of a catalogue that is sent as a table; rows that others beat in everything are left out."""
+    """Give the options of a catalogue that is sent as a table, without rows that others beat in everything."""
     from ...optimise.job.catalogue import options_of
 
     with READING:

@@ -59,7 +59,7 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
-    """Return the options of an endpoint that gives JSON with an ETag, or says that it is the same as before."""
+    """Return the options of an endpoint that gives JSON with an ETag, or 304 to who has it."""
     same = {"description": "They are those of the ETag in If-None-Match"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 

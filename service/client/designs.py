@@ -1,4 +1,4 @@
-"""What a client asks of single designs: their numbers, questions about them, and those that people keep."""
+"""Single designs for a client: their numbers, questions about them, and those that people keep."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 
 class SwingAsked(TypedDict, total=False):
-    """A swing, as the API asks for it: start_deg and end_deg are needed; law is slow and driver crank if left out.
+    """A swing, as the API asks for it.
+
+    start_deg and end_deg are needed; the law is slow and the crank drives if left out.
 
     duration_s: of one way, for a law other than slow. actuator_tolerance_mm: how far the driven slider may be off.
     """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Machine(NamedTuple):
-    """A machine and a linkage that the command line names, and the problem of the job or run; None without one."""
+    """A machine and a linkage that the command line names, and the problem of job or run, if any."""
 
     mechanism: Mechanism
     linkage: Linkage
@@ -37,7 +37,7 @@ def machine_of(
     put: Sequence[str] = (),
     turning: bool = False,
 ) -> Machine:
-    """Return what a command is about: dimensions, of a job if there is one, or a design of a run in its place.
+    """Return the machine of dimensions, with a job if there is one, or of a design of a run.
 
     command: that asks, for messages. put: numbers of the job at other values. turning: whether a crank that swings is
     refused. Without a job nothing has mass.

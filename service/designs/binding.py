@@ -73,7 +73,7 @@ def binding_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) 
 
 
 def widened(problem: Problem, tables: Mapping[str, Any], wanted: Sequence[tuple[str, Side, float]]) -> dict[str, Any]:
-    """Return the tables of a job with other limits, each given by its place, its side and a value in its unit.
+    """Return the tables of a job with other limits, each by its place, side and value in its unit.
 
     Raises `InputError` for a limit that the job does not have, or that another number cannot take the place of.
     """
@@ -146,7 +146,7 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
 
 
 def _ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
-    """Return what varies: its place in [variables], column, title, unit, and both ends in that unit."""
+    """Return the variables: place in [variables], column, title, unit, and both ends in that unit."""
     found = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
     for item in part.mechanism.varying:
         key, face = varying_column(item)
@@ -160,7 +160,7 @@ def _sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]
 
 
 def _place(table: Any, path: str) -> tuple[Any, str]:
-    """Return the table that holds what is at a path, and its key there: a path may be one key in quotes."""
+    """Return the table that a path leads into, and the key there; a key may be in quotes."""
     while path not in table and "." in path:
         step, _, rest = path.partition(".")
         table, path = table.get(step, {}), rest

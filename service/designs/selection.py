@@ -47,7 +47,7 @@ class Condition:
     formula: RowFormula | None = None
 
     def cell(self, row: Row) -> Cell:
-        """Return what the condition compares of a design."""
+        """Return the cell or value of a design that the condition compares."""
         return row[self.column.key] if self.formula is None else self.formula.of(row)
 
     def holds(self, row: Row) -> bool:

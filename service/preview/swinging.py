@@ -50,7 +50,7 @@ class PossibleSwing:
 
 
 def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> PossibleSwing | None:
-    """Return the values that the ranges of a job allow; None while they or its swing cannot be read, or of a turn.
+    """Return the values that the ranges of a job allow; None of a turn, and while something cannot be read.
 
     whole: the problem of the whole job, if it is valid. Of several options the first one counts.
     """
@@ -108,7 +108,7 @@ def _possible(
 
 
 def positions(angle: float | Array, sign: float, designs: Array) -> Array:
-    """Return the slider's place (n,), m, of designs (n, 3) at a crank angle, rad; NaN where one does not close."""
+    """Return the slider's place (n,), m, of designs (n, 3) at a crank angle; NaN where one does not close."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore", divide="ignore"):
         closes = np.abs(e - r * np.sin(angle)) < l

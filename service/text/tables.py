@@ -114,7 +114,7 @@ def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
 
 
 def told(numbers: Mapping[str, Any], key: str, remark: str = "") -> Line:
-    """Return the line of one of an analysis' numbers: name and unit as its key says, and the crank angle of a peak."""
+    """Return the line of a number: name and unit by its key, and the crank angle of a peak."""
     name, unit, _ = split_unit(key)
     at = numbers.get(f"{name}_angle_deg")
     remarks = [*([] if at is None else [f"at {at:.2f} deg"]), *([remark] if remark else [])]

@@ -49,7 +49,7 @@ class _Collecting(Console):
 
 
 def told(topic: TopicOfDesign, numbers: dict[str, Any]) -> Sequence[Block]:
-    """Return what the topic's text says of its numbers."""
+    """Return the text of a topic on its numbers, as sentences and tables."""
     screen = _Collecting()
     topic.show(screen, numbers)
     return screen.blocks

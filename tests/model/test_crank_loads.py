@@ -112,7 +112,7 @@ def test_the_mean_torque_moves_with_a_torque_that_varies_by_minus_itself() -> No
 
 
 def test_work_over_a_turn() -> None:
-    """A table of no mean torque takes none, and the mean is then zero exactly; a resistance takes 2 pi of it."""
+    """A table of no mean torque takes exactly zero energy; a resistance takes 2 pi of it."""
     still = replace(STROKES, acceleration=0.0, loads=())
     even = CrankTable(angles=(0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi), forces=(0.0, 7.0, 0.0, -7.0))
     assert not works_over_a_turn(loaded(still, even))

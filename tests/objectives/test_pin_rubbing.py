@@ -44,7 +44,7 @@ def test_they_are_sums_of_force_times_turning_over_many_angles(rubbing: bool) ->
 
 
 def test_a_pivot_under_a_weight_wears_as_archard_says() -> None:
-    """By hand: a crank of mass m at a crawl, W = m g, p = W / (D b), a million turns of pi D."""
+    """Worked by hand: a crank of mass m at a crawl, a million turns of pi D."""
     crank = Bar(width=0.03, depth=0.02, density=7850.0)
     machine = Mechanism(speed=1e-6, crank=crank, gravity=(0.0, -9.81), strength=STRENGTH)
     weight, d = 9.81 * crank.mass(0.1), STRENGTH.crank_pivot

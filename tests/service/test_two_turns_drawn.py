@@ -1,4 +1,4 @@
-"""Figures of a cycle of two turns: every curve from 0 to 720 deg, the second turn as the model has it."""
+"""Figures of a cycle of two turns: every curve from 0 to 720 deg, as the model has it."""
 
 from __future__ import annotations
 

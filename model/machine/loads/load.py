@@ -139,7 +139,7 @@ class Load:
 
     @property
     def cycle_datum(self) -> str:
-        """What a cycle of two turns counts from: zero crank angle or a dead centre."""
+        """Zero of a cycle of two turns: zero crank angle or a dead centre."""
         return str(getattr(self, "datum", "zero crank angle"))
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
@@ -179,7 +179,7 @@ class Load:
 
 
 def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
-    """Return what builds a load from the values of its table. fields: of the load, by keys that differ."""
+    """Return the function that builds a load from the values of its table. fields: of the load, by keys that differ."""
     return lambda **given: kind(**{fields.get(key, key): value for key, value in given.items()})
 
 

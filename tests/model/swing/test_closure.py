@@ -1,4 +1,4 @@
-"""Which of many designs pass a swing, against each one alone."""
+"""Designs that pass a swing: many at once against each one alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits on which designs rest, over the API: counted by hand, widened in a copy that knows where it came from."""
+"""Limits on which designs rest, over the API: counted by hand, widened in a copy with its origin."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Curves of a design: over time and the way of the slider, large and small, as CSV; forces with scale and number."""
+"""Curves of a design over time and the way of the slider, as CSV; forces with scale and number."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jobs that go through the form and stay what they are, word for word, though every field of them is touched."""
+"""Jobs that go through the form, every field touched, and stay the same word for word."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from tests.service.page.conftest import watch
 def opened(
     browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Page, str, str]]:
-    """Return a page, the address of its service and of the job in the API; nothing may go wrong on the page."""
+    """Return a page without errors, the address of its service and that of the job in the API."""
     wrong: list[str] = []
     path = tmp_path_factory.mktemp("kept") / "store.db"
     back_up(solved.store, path)

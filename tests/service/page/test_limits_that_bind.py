@@ -1,4 +1,4 @@
-"""Limits that bind: said beside the front, widened by a run of its own, the front before behind the new one."""
+"""Limits that bind: said beside the front, widened by a new run over the front before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Round numbers in the view of a design: those of the API, applied by one click, wrong steps said at their fields."""
+"""Round numbers in the view of a design: applied by one click, wrong steps said at their fields."""
 
 from __future__ import annotations
 

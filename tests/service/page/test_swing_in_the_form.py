@@ -1,4 +1,4 @@
-"""A swing in the form of a new run: its fields, its two ends in the sketch, and what it does not have."""
+"""A swing in the form of a new run: its fields, its two ends in the sketch."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choosing by wishing beside the front: the numbers of the API, on the charts, in a link, again from the history."""
+"""Wishes beside the front: the numbers of the API, on the charts, in a link, from the history."""
 
 from __future__ import annotations
 
