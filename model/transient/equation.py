@@ -107,10 +107,11 @@ def _terms(
 
 
 class Span:
-    """A part of the cycle on which every term is smooth: from `low` to `high`, rad."""
+    """A part of the cycle on which every term is smooth: from `low` to `high`, rad, turning one way, +1 or -1."""
 
     low: float
     high: float
+    way: float
 
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad."""
@@ -121,16 +122,28 @@ class Equation:
     """An equation of motion over a cycle of the crank.
 
     direction: +1 or -1, the way the motor turns it. period: crank angle of the cycle, rad. dead_centres: (k,), rad.
+    breakpoints: (n,), ascending, within a cycle from 0, rad. lead: of the first cylinder's crank over the angle, rad.
     crowds: whether its curves are steep where those of one linkage are (`segments.crowding`).
     """
 
     direction: float
     period: float = TURN
     dead_centres: Array
+    breakpoints: Array
+    lead: float = 0.0
     crowds: bool = True
+
+    def stretch(self, index: int, way: float) -> Span:
+        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond the cycle."""
+        raise NotImplementedError
 
     def turn(self, way: float) -> list[Span]:
         """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or not."""
+        order = range(len(self.breakpoints))
+        return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
+
+    def height_energy(self, crank_angle: Array) -> Array:
+        """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""
         raise NotImplementedError
 
     def inertia(self, crank_angle: Array) -> Array:
@@ -212,11 +225,6 @@ class CrankEquation(Equation):
             high = float(self.breakpoints[0]) + TURN if last else float(self.breakpoints[index + 1])
             self._stretches[index, way] = Stretch(self, low, high, way)
         return self._stretches[index, way]
-
-    def turn(self, way: float) -> list[Span]:
-        """Return the stretches of one turn in the order in which the crank passes them, counter-clockwise or not."""
-        order = range(len(self.breakpoints))
-        return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
 
     def inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia, kg m^2, from the kinetic energy of the bodies; shape of the crank angle."""

@@ -24,8 +24,10 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
-from .equation import NEAREST, TURN, CrankEquation, Stretch
+from ..machine.two_turns import cycle_turns
+from .equation import NEAREST, TURN, Span
 from .record import Recorder, Transient, Verdict
+from .shaft import equation_of
 
 _EPS = 1e-12
 
@@ -80,7 +82,8 @@ def simulate(
     """Return the motion of one fully turning linkage under a motor.
 
     drive: the mechanism's own if None. The motor turns the crank the way the sign of the mechanism's speed says.
-    duration: greatest time, s. turns: ends after so many turns either way, if given. steady: ends when, a turn later
+    Several cylinders move as one shaft, and a cycle of two turns counts from the first at angles below 360 deg.
+    duration: greatest time, s. turns: ends after so many turns either way, if given. steady: ends when, a cycle later
     at the same crank angle, the speed is the same but for this share. tolerance: relative, of the integration.
     samples: points of the result for each turn, at least. progress: called after every stretch. cancelled: asked
     as often; what was found so far is returned then.
@@ -100,9 +103,10 @@ def simulate(
             made = round((run.angle - start.angle) / TURN)
             if turns is not None and abs(made) >= turns:
                 verdict = "turns done"
-            elif steady is not None and made != passed:
-                verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
-            before, passed = run.speed, made
+            if run.at_cycle:
+                if verdict is None and steady is not None and made != passed:
+                    verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
+                before, passed = run.speed, made
         if verdict is None and cancelled is not None and cancelled():
             verdict = "cancelled"
         if verdict is not None:
@@ -123,7 +127,10 @@ def _require(duration: float, turns: int | None, steady: float | None, tolerance
 
 
 class _Run:
-    """A simulation under way. The crank angle is kept within a turn: `index` of the stretch, `local`, and `turn`."""
+    """A simulation under way. The crank angle is kept within a cycle: `index` of the stretch, `local`, and `turn`.
+
+    marks: breakpoints a whole number of turns from the start.
+    """
 
     def __init__(
         self,
@@ -135,20 +142,24 @@ class _Run:
         tolerance: float,
         samples: int,
     ) -> None:
-        self.equation = CrankEquation(mechanism, linkage, marks=(start.angle,))
+        marks = tuple(start.angle + turn * TURN for turn in range(cycle_turns(mechanism)))
+        self.equation = equation_of(mechanism, linkage, marks=marks)
+        self.period = self.equation.period
         self.equation.require_inertia(drive.inertia)
         self.drive, self.duration, self.tolerance = drive, duration, tolerance
         self.slowest, self.fastest = sorted(self.equation.direction * end for end in speed_range(drive))
         breakpoints = self.equation.breakpoints
         first = float(breakpoints[0])
-        self.local = first + (start.angle - first) % TURN
-        self.turn = round((start.angle - self.local) / TURN)
-        gaps = np.abs((breakpoints - self.local + math.pi) % TURN - math.pi)
+        self.local = first + (start.angle - first) % self.period
+        self.turn = round((start.angle - self.local) / self.period)
+        gaps = np.abs((breakpoints - self.local + math.pi) % self.period - math.pi)
         self.mark = int(np.argmin(gaps))  # the start is a breakpoint, or as good as one
+        later = np.abs((breakpoints - self.local - TURN + math.pi) % self.period - math.pi)
+        self.marks = {self.mark, int(np.argmin(later))}
         self.index = self.mark
-        if self.local > first + TURN - 2.0 * NEAREST:
+        if self.local > first + self.period - 2.0 * NEAREST:
             self.turn, self.local = self.turn + 1, first
-        self.time, self.speed, self.at_mark = 0.0, start.speed, True
+        self.time, self.speed, self.at_mark, self.at_cycle = 0.0, start.speed, True, True
         self.works = np.zeros(2)
         self.turned_back: list[float] = []
         self.scale = self._speed_scale(mechanism.speed)
@@ -172,7 +183,7 @@ class _Run:
     @property
     def angle(self) -> float:
         """The crank angle, rad, turns counted."""
-        return self.local + TURN * self.turn
+        return self.local + self.period * self.turn
 
     def advance(self) -> Verdict | None:
         """Go on to the end of the stretch, to standstill or to the end of the time, whichever comes first.
@@ -196,26 +207,27 @@ class _Run:
             return "beyond the torque table" if stop == "table" else "time is up"
         return None
 
-    def _stretch(self, way: float) -> Stretch:
+    def _stretch(self, way: float) -> Span:
         return self.equation.stretch(self.index, way)
 
     def _y(self) -> Array:
         return np.array([self.local, self.speed, *self.works])
 
     def _lift(self, wrapped: bool) -> None:
-        """Count the local angle from the turn before if the crank went back over the first breakpoint."""
+        """Count the local angle from the cycle before if the crank went back over the first breakpoint."""
         if wrapped:
-            self.turn, self.local = self.turn - 1, self.local + TURN
+            self.turn, self.local = self.turn - 1, self.local + self.period
 
-    def _pass_edge(self, stretch: Stretch) -> None:
+    def _pass_edge(self, stretch: Span) -> None:
         count = len(self.equation.breakpoints)
         if self.way > 0.0:
             self.local, self.index = stretch.high, (self.index + 1) % count
-            self.at_mark = self.index == self.mark
+            self.at_mark, self.at_cycle = self.index in self.marks, self.index == self.mark
             if self.index == 0:
                 self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
         else:
-            self.local, self.at_mark = stretch.low, self.index == self.mark
+            self.at_mark, self.at_cycle = self.index in self.marks, self.index == self.mark
+            self.local = stretch.low
             self.index = (self.index - 1) % count
             self._lift(self.index == count - 1)
 
@@ -228,7 +240,7 @@ class _Run:
             resist = max(resist, float(terms.inertia.max()) + self.drive.inertia)
         return max(abs(speed), abs(self.speed), math.sqrt(TURN * pull / resist))
 
-    def _integrate(self, stretch: Stretch) -> tuple[Any, Stop]:
+    def _integrate(self, stretch: Span) -> tuple[Any, Stop]:
         from scipy.integrate import solve_ivp
 
         motor, added, direction = self.drive.torque, self.drive.inertia, self.equation.direction

@@ -12,7 +12,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
-from .equation import TURN, CrankEquation, Stretch
+from .equation import TURN, Equation, Span
 
 Verdict = Literal["time is up", "turns done", "steady", "stands still", "beyond the torque table", "cancelled"]
 
@@ -102,14 +102,12 @@ class Transient:
 class Recorder:
     """Collects the points of a simulation, stretch by stretch."""
 
-    def __init__(
-        self, equation: CrankEquation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int
-    ) -> None:
+    def __init__(self, equation: Equation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int) -> None:
         self._equation, self._drive, self._samples = equation, drive, samples
         self._linkage = single(mechanism, linkage)
         self._parts: list[Array] = []
 
-    def add(self, stretch: Stretch, turn: int, solution: Any) -> None:
+    def add(self, stretch: Span, turn: int, solution: Any) -> None:
         """Take in the solution within a stretch; its first point only if it is the first of all."""
         count = np.ceil(np.abs(np.diff(solution.y[0])) * (self._samples / TURN)).astype(int)
         times = [
@@ -119,24 +117,24 @@ class Recorder:
         time = np.append(np.concatenate(times), solution.t[-1])[1 if self._parts else 0 :]
         self._take(stretch, turn, time, solution.sol(time))
 
-    def stand(self, stretch: Stretch, turn: int, time: float, y: Array) -> None:
+    def stand(self, stretch: Span, turn: int, time: float, y: Array) -> None:
         """Take in a single state, if there is no other."""
         if not self._parts:
             self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 
-    def _take(self, stretch: Stretch, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
+    def _take(self, stretch: Span, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
         local, speed, motor_work, load_work = y
         terms, added = stretch.at(np.ascontiguousarray(local)), self._drive.inertia
         direction = self._equation.direction
         known = np.clip(direction * speed, *speed_range(self._drive))
         motor = self._drive.torque(direction * known, direction)
         acceleration = moving * (motor - terms.torque(speed, 0.0)) / (terms.inertia + added)
-        slider = self._linkage.at(local, speed=speed, acceleration=acceleration)
+        slider = self._linkage.at(local + self._equation.lead, speed=speed, acceleration=acceleration)
         self._parts.append(
             np.array(
                 [
                     time,
-                    local + TURN * turn,
+                    local + self._equation.period * turn,
                     speed,
                     acceleration,
                     motor,

@@ -6,7 +6,6 @@ Moving inertia, and every term of the torque, add up.
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
@@ -26,8 +25,8 @@ class ShaftStretch(Span):
     parts: each with the angle of its crank over the shaft's, rad.
     """
 
-    def __init__(self, low: float, high: float, parts: list[tuple[Stretch, float]]) -> None:
-        self.low, self.high, self._parts = low, high, parts
+    def __init__(self, low: float, high: float, way: float, parts: list[tuple[Stretch, float]]) -> None:
+        self.low, self.high, self.way, self._parts = low, high, way, parts
 
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,) of the shaft, rad."""
@@ -39,10 +38,11 @@ class ShaftStretch(Span):
 class ShaftEquation(Equation):
     """The equation of motion of all cylinders of one linkage each, over a turn or two.
 
+    marks: further angles of the shaft, rad, that shall be breakpoints.
     Raises AssemblyError if the linkage does not turn fully, InputError for a mechanism with friction.
     """
 
-    def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
+    def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
         self._linkage = single(mechanism, linkage)
         turns = cycle_turns(mechanism)
         self.period = turns * TURN
@@ -55,18 +55,23 @@ class ShaftEquation(Equation):
         ]
         ends = np.asarray(self._linkage.dead_centre_angles)
         self.dead_centres = np.concatenate([ends - own.lead for own in self._members])
+        self.lead = self._members[0].lead
         self.crowds = all(math.remainder(own.lead, math.pi) == 0.0 for own in self._members)
         parts = zip(self._members, self._equations, strict=True)
         once = np.concatenate([each.breakpoints - own.lead for own, equations in parts for each in equations])
-        every = np.sort(np.mod(np.concatenate([once + turn * TURN for turn in range(turns)]), self.period))
+        every = np.concatenate([*(once + turn * TURN for turn in range(turns)), marks])
+        every = np.sort(np.mod(every, self.period))
         apart = np.diff(every, prepend=every[-1] - self.period) > NEAREST
         self.breakpoints = every[apart] if apart.any() else every[:1]
 
-    def turn(self, way: float) -> list[Span]:
-        """Return the stretches of the cycle in the order in which the shaft passes them, counter-clockwise or not."""
-        ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
-        found: list[Span] = [self._stretch(low, high, way) for low, high in itertools.pairwise(ends)]
-        return found if way > 0.0 else found[::-1]
+        self._stretches: dict[tuple[int, float], ShaftStretch] = {}
+
+    def stretch(self, index: int, way: float) -> Span:
+        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond the cycle."""
+        if (index, way) not in self._stretches:
+            ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
+            self._stretches[index, way] = self._stretch(ends[index], ends[index + 1], way)
+        return self._stretches[index, way]
 
     def _stretch(self, low: float, high: float, way: float) -> ShaftStretch:
         middle, parts = 0.5 * (low + high), []
@@ -79,16 +84,24 @@ class ShaftEquation(Equation):
             local = float(cuts[0]) + (at - float(cuts[0])) % TURN
             index = int(np.searchsorted(cuts, local, side="right")) - 1
             parts.append((equations[half].stretch(index, way), own.lead + local - at))
-        return ShaftStretch(low, high, parts)
+        return ShaftStretch(low, high, way, parts)
 
     def inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia of all cylinders, kg m^2; shape of the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
         return np.asarray(sum(equations[0].inertia(crank_angle + own.lead) for own, equations in parts))
 
+    def height_energy(self, crank_angle: Array) -> Array:
+        """Return the potential energy of gravity of all cylinders, J; shape of the crank angle."""
+        parts = zip(self._members, self._equations, strict=True)
+        return np.asarray(sum(equations[0].height_energy(crank_angle + own.lead) for own, equations in parts))
 
-def equation_of(mechanism: Mechanism, linkage: Linkage) -> Equation:
-    """Return the equation of motion of a machine: of its crank, or of a shaft with cylinders or two turns."""
+
+def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:
+    """Return the equation of motion of a machine: of its crank, or of a shaft with cylinders or two turns.
+
+    marks: further crank angles, rad, that shall be breakpoints.
+    """
     cylinders = 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
     several = cylinders > 1 or cycle_turns(mechanism) > 1
-    return ShaftEquation(mechanism, linkage) if several else CrankEquation(mechanism, linkage)
+    return (ShaftEquation if several else CrankEquation)(mechanism, linkage, marks=marks)
