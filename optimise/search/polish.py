@@ -34,6 +34,7 @@ _NOISE = 1e-15  # of the objectives: rounding of the merit
 _STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
+_APART = 1e-6  # of unit vectors: less is no direction of its own, or none in common
 _HEAVIEST = 1e8  # largest penalty of a violation
 _PASSES = 5  # at a step where only the sum counts: a small gain along a kink is worth no way off it
 _SHORTEST = 1e-13  # radius at which a design's polish ends
@@ -216,7 +217,7 @@ class _Batch:
                 change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
                 hessians[i, column] = change / steps[i, column]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
-        return np.stack([_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
+        return np.stack([convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
     def _search(self, rows: Whole, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
         """Take the steps that lower the merit, after correction where necessary; shrink the radius of the rest.
@@ -274,7 +275,7 @@ class _Batch:
         return self._solve(row, goals, limits, chosen).move
 
 
-def _convex(hessian: Array, normals: Array) -> Array:
+def convex(hessian: Array, normals: Array) -> Array:
     """Return a positive definite matrix that agrees with the Hessian along what holds the step, if that can be."""
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
@@ -282,12 +283,16 @@ def _convex(hessian: Array, normals: Array) -> Array:
     lengths = np.linalg.norm(normals, axis=1)
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
-        across = directions[: len(sizes)][sizes > 1e-6]
-        for weight in (1.0, 10.0, 100.0):
-            curved = hessian + weight * np.abs(values).max() * across.T @ across
-            if np.linalg.eigvalsh(curved)[0] >= _CURVATURE:
-                break
-        values, vectors = np.linalg.eigh(curved)
+        across = directions[: len(sizes)][sizes > _APART]
+        flat = values < _CURVATURE
+        # Directions that nothing held depends on stay as flat as they are: weight would only stiffen the others.
+        dull = int((np.abs(across @ vectors[:, flat]).max(axis=0, initial=0.0) <= _APART).sum())
+        if dull < flat.sum():
+            for weight in (1.0, 10.0, 100.0):
+                curved = hessian + weight * np.abs(values).max() * across.T @ across
+                if np.linalg.eigvalsh(curved)[dull] >= _CURVATURE:
+                    break
+            values, vectors = np.linalg.eigh(curved)
     return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
 
 

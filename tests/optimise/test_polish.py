@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.optimise.search.pieces import Rows
-from slidercrank.optimise.search.polish import polish
+from slidercrank.optimise.search.polish import convex, polish
 
 Array = NDArray[np.float64]
 Function = Callable[[Any, Any], Any]
@@ -219,3 +219,19 @@ def test_points_that_cannot_be_evaluated_are_never_asked_for() -> None:
     found = polish(Analytic([[squared(0.9, 0.9)]], inside=inside), start, np.ones(1))
     assert inside(*found.u.T).all()
     assert (found.values[:, 0] <= ((start - 0.9) ** 2).sum(axis=1)).all()
+
+
+def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
+    """A pin's diameter that no row has: the Hessian of all else stays as it is, however many rows hold the step."""
+    random = np.random.default_rng(5)
+    for _ in range(20):
+        root = random.standard_normal((4, 4))
+        hessian, normals = np.zeros((5, 5)), np.zeros((2, 5))
+        hessian[:4, :4], normals[:, :4] = root @ root.T + 0.1 * np.eye(4), random.standard_normal((2, 4))
+        np.testing.assert_allclose(convex(hessian, normals)[:4, :4], hessian[:4, :4], rtol=1e-9, atol=1e-9)
+        # What bends down across the rows is mended there alone, with the flat direction beside it.
+        along = np.linalg.svd(normals)[2][2:]
+        held = normals.T @ np.diag(random.uniform(-30.0, -10.0, 2)) @ normals
+        mended = convex(hessian + held, normals)
+        assert np.linalg.eigvalsh(mended)[0] > 0.0
+        np.testing.assert_allclose(along @ mended @ along.T, along @ hessian @ along.T, rtol=1e-3, atol=1e-3)
