@@ -16,6 +16,7 @@ from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best import Best, best_of
 from .feasibility.infeasibility import diagnose
+from .feasibility.valueless import valueless_in_all
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, searched_by
@@ -146,7 +147,7 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
         front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
-    message = diagnosis.message or _THIN
+    message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _THIN
     if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage("proving"), 0, 1)):
         message += "; proven: no design of the ranges meets them all"
     return empty(problem, evaluators, run, "infeasible", message)

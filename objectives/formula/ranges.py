@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ...model.errors import InputError
 from .expression import Call, Name, Node, Number, text_of
@@ -67,6 +68,8 @@ class Ranges:
             self._refuse_divisor(node.arguments[0], given[0])
         found = _call(node, given)
         linear = linear_of(node, self.linears)
+        if node.function == "/" and linear is None:
+            found = _both(found, self._quotient(*(linear_of(item, self.linears) for item in node.arguments)))
         return found if linear is None else _both(found, self._linear(linear))
 
     def _refuse_divisor(self, node: Node, found: Interval) -> None:
@@ -83,41 +86,84 @@ class Ranges:
     def _linear(self, linear: Linear) -> Interval:
         """Return the bounds of a linear formula where the linkage turns fully: rod > crank + |offset|."""
         factors = {name: float(factor) for name, factor in linear.factors}
-        signed, size = factors.pop("offset", 0.0), factors.pop(SIZE, 0.0)
         least = greatest = float(linear.constant)
-        three = {name: factors.pop(name, 0.0) for name in ("crank", "rod")}
         for name, factor in factors.items():
-            ends = [factor * end for end in (self.intervals[name].lower, self.intervals[name].upper)]
-            least, greatest = least + min(ends), greatest + max(ends)
-        offset = self.intervals["offset"]
-        values: list[tuple[float, bool]] = []
-        for sign in (1.0, -1.0):
-            low, high = (offset.lower, offset.upper) if sign > 0.0 else (-offset.upper, -offset.lower)
-            if high >= 0.0:
-                sizes = (max(low, 0.0), high)
-                values += self._corners(three["crank"], three["rod"], sign * signed + size, sizes)
+            if name not in _TURNING:
+                ends = [factor * end for end in (self.intervals[name].lower, self.intervals[name].upper)]
+                least, greatest = least + min(ends), greatest + max(ends)
+        values = [(_sum_of(factors, corner), corner.edge) for corner in self._corners()]
         if not values:
             return ANY
         low, high = min(value for value, _ in values), max(value for value, _ in values)
         room = _ROUNDING * max(abs(float(linear.constant)), *(abs(value) for value, _ in values))
         zeros = [edge for value, edge in values if abs(value + float(linear.constant)) <= room]
-        alone = (not factors and low + float(linear.constant) >= -room) or high + float(linear.constant) <= room
+        rest = factors.keys() - _TURNING
+        alone = (not rest and low + float(linear.constant) >= -room) or high + float(linear.constant) <= room
         return Interval(least + low, greatest + high, bool(alone and all(zeros)))
 
-    def _corners(self, r: float, l: float, a: float, sizes: tuple[float, float]) -> list[tuple[float, bool]]:
-        """Return values at the corners of what turns fully, each with whether it lies on the edge of that."""
-        crank, rod = self.intervals["crank"], self.intervals["rod"]
-        ends = [(crank.lower, crank.upper), (rod.lower, rod.upper), sizes]
+    def _quotient(self, above: Linear | None, below: Linear | None) -> Interval:
+        """Return the bounds of a quotient of formulas linear in the dimensions where the linkage turns fully.
+
+        It is greatest and least at corners. A bound that no design has, at the edge of turning, is left out.
+        """
+        if above is None or below is None or not {*above.names, *below.names} <= _TURNING:
+            return ANY
+        tops, bottoms = ({name: float(factor) for name, factor in of.factors} for of in (above, below))
+        corners = self._corners()
+        under = [_sum_of(bottoms, corner) + float(below.constant) for corner in corners]
+        if not under or not (min(under) > 0.0 or max(under) < 0.0):
+            return ANY
+        values = [
+            ((_sum_of(tops, corner) + float(above.constant)) / own, corner.edge)
+            for corner, own in zip(corners, under, strict=True)
+        ]
+        low, high = min(value for value, _ in values), max(value for value, _ in values)
+        room = _ROUNDING * max(abs(low), abs(high))
+        if all(edge for value, edge in values if value <= low + room):
+            low = math.nextafter(low, math.inf)
+        if all(edge for value, edge in values if value >= high - room):
+            high = math.nextafter(high, -math.inf)
+        return Interval(low, high) if low <= high else ANY
+
+    def _corners(self) -> list[_Corner]:
+        """Return the corners of what turns fully within the ranges, for either sign of the offset."""
+        crank, rod, offset = (self.intervals[name] for name in ("crank", "rod", "offset"))
         found = []
-        for x, y, z in itertools.product(*ends):
-            if y > x + z:
-                found.append((r * x + l * y + a * z, False))
-        # Where the plane rod = crank + |offset| cuts the edges of the box.
-        cuts = [(y - z, y, z) for y, z in itertools.product(ends[1], ends[2])]
-        cuts += [(x, x + z, z) for x, z in itertools.product(ends[0], ends[2])]
-        cuts += [(x, y, y - x) for x, y in itertools.product(ends[0], ends[1])]
-        within = [p for p in cuts if all(low <= n <= high for n, (low, high) in zip(p, ends, strict=True))]
-        return found + [(r * x + l * y + a * z, True) for x, y, z in within]
+        for sign in (1.0, -1.0):
+            low, high = (offset.lower, offset.upper) if sign > 0.0 else (-offset.upper, -offset.lower)
+            if high < 0.0:
+                continue
+            ends = [(crank.lower, crank.upper), (rod.lower, rod.upper), (max(low, 0.0), high)]
+            found += [_Corner(x, y, z, sign) for x, y, z in itertools.product(*ends) if y > x + z]
+            # Where the plane rod = crank + |offset| cuts the edges of the box.
+            cuts = [(y - z, y, z) for y, z in itertools.product(ends[1], ends[2])]
+            cuts += [(x, x + z, z) for x, z in itertools.product(ends[0], ends[2])]
+            cuts += [(x, y, y - x) for x, y in itertools.product(ends[0], ends[1])]
+            found += [
+                _Corner(*cut, sign, edge=True)
+                for cut in cuts
+                if all(low <= n <= high for n, (low, high) in zip(cut, ends, strict=True))
+            ]
+        return found
+
+
+class _Corner(NamedTuple):
+    """A corner of ranges: crank, rod and size of the offset, m, its sign, and whether it is at the edge of turning."""
+
+    crank: float
+    rod: float
+    size: float
+    sign: float
+    edge: bool = False
+
+
+_TURNING = {"crank", "rod", "offset", SIZE}
+
+
+def _sum_of(factors: Mapping[str, float], at: _Corner) -> float:
+    """Return the sum of factors times the dimensions at a corner."""
+    own = at.sign * factors.get("offset", 0.0) + factors.get(SIZE, 0.0)
+    return factors.get("crank", 0.0) * at.crank + factors.get("rod", 0.0) * at.rod + own * at.size
 
 
 def _both(one: Interval, other: Interval) -> Interval:

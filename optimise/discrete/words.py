@@ -21,12 +21,14 @@ def found_in_words(front: ParetoFront) -> str:
     assert answer is not None
     rules = rules_in_words(problem)
     if not len(front):
-        return f"no design of {answer.judged} combinations of {rules} keeps every requirement"
+        return f"no design of {_many(answer.judged)} of {rules} keeps every requirement"
     count = f"{len(front)} design{'' if len(front) == 1 else 's'}"
     if len(front) >= problem.settings.designs:
         count += ", as many as are asked for"
     if answer.exact:
-        text = f"{count}, exact: all {answer.combinations} combinations of {rules} judged"
+        text = (
+            f"{count}, exact: {'all ' if answer.combinations > 1 else ''}{_many(answer.combinations)} of {rules} judged"
+        )
     else:
         some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
         text = f"{count}, {answer.how}: {some} judged"
@@ -44,7 +46,10 @@ def found_in_words(front: ParetoFront) -> str:
 
 def missed_in_words(problem: Problem, found: Judged) -> str:
     """Return that no combination keeps every requirement, by how much the nearest misses, and a remedy."""
-    none = f"none of {found.judged} combinations of {rules_in_words(problem)}"
+    rules = rules_in_words(problem)
+    none = (
+        f"none of {_many(found.judged)} of {rules}" if found.judged != 1 else f"not even the one combination of {rules}"
+    )
     if found.nearest is None:
         return f"{none} turns fully with every quantity that is asked; give smaller steps or wider ranges"
     told_of = {*DIMENSIONS, *(item.name for item in problem.discrete)}
@@ -69,6 +74,10 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
             remedy = "ask for a range instead of one value" if item.equality else "relax it"
     remedies = f"{remedy}, or give smaller steps or other ranges"
     return f"{none} keeps every requirement; the nearest, {sizes}, has {told}; {remedies}"
+
+
+def _many(count: int) -> str:
+    return f"{count} combination{'' if count == 1 else 's'}"
 
 
 def _both(here: float, asked: float) -> tuple[tuple[float, int], tuple[float, int]]:

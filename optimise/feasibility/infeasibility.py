@@ -19,6 +19,7 @@ from ..search.violation import least_violation
 from .best import Best
 from .relaxation import Relaxation, missed, relaxations
 from .swinging import unswung
+from .valueless import valueless
 
 _UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
 _SAMPLES = 16384
@@ -57,7 +58,7 @@ def diagnose(
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
-        message = _UNMOVED if problem.motion is None else unswung(problem)
+        message = nearest or (_UNMOVED if problem.motion is None else unswung(problem))
         return Diagnosis(feasible, (), message)
     found = []
     for constraint in constraints_of(problem):
@@ -88,15 +89,21 @@ def diagnose(
 def _least_violation(
     problem: Problem, checkpoints: Checkpoints | None, engine: Engine | None
 ) -> tuple[Array, bool, str]:
-    """Return feasible designs, whether any sampled design turns fully, and the design nearest to feasible in words."""
+    """Return feasible designs, whether any sampled design can be judged, and the one nearest to feasible in words.
+
+    Where none can be judged though some turn fully, the words say which quantity has no value for any of them.
+    """
     feasible = []
     turning = False
     nearest, least = "", np.inf
+    blank = ""
     for index, sheet in enumerate(sheets(problem, eliminate=False)):
         evaluator = Evaluator(problem, sheet, checkpoints, engine)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         found = least_violation(evaluator, u, ranked=_RANKED, starts=_STARTS)
         if not len(found):
+            turned = u[evaluator.valid(u)][:_RANKED]
+            blank = blank or (valueless(evaluator.problem, sheet.dimensions(turned)) if len(turned) else "")
             continue
         turning = True
         dimensions = sheet.dimensions(found.u)
@@ -105,7 +112,7 @@ def _least_violation(
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
             nearest = _together(problem, sheet.variant, dimensions[row])
-    return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest
+    return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest if turning else blank
 
 
 def _together(problem: Problem, variant: int, design: Array) -> str:

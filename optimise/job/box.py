@@ -21,7 +21,7 @@ from .messages import key_of
 if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
 
-_SLACK = 1e-9
+SLACK = 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other requirements on the dimensions"
@@ -108,7 +108,7 @@ def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Pro
     least, greatest = box.possible(of)
     assert of.reach is not None
     got = f"got {_bounds(constraint, of)}"
-    room = _SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
+    room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + room:
         raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
     if constraint.upper is not None and constraint.upper + room < least:
@@ -158,7 +158,7 @@ def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
     if not 0.0 < angle.lower < 0.5 * math.pi or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * (
-        1.0 + _SLACK
+        1.0 + SLACK
     ):
         return None
     held = f"with a least transmission angle of {_shown(TRANSMISSION_ANGLE, angle.lower)}"

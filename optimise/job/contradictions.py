@@ -20,7 +20,10 @@ from ..problem.requirements import Range
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
 from .box import Box, require_reachable
+from .linear_contradictions import require_compatible
 from .messages import key_of
+from .options import require_options
+from .units import shown
 
 
 def require_consistent(problem: Problem) -> None:
@@ -39,6 +42,8 @@ def require_consistent(problem: Problem) -> None:
         return
     require_reachable(problem)
     require_slow_stroke(problem)
+    require_options(problem)
+    require_compatible(problem)
 
 
 _ONE_MATERIAL = 0.05
@@ -68,6 +73,15 @@ def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
     for constraint in problem.constraints:
         for word, value in constraint.sides:
             yield key_of(["constraints", constraint.quantity]), constraint.quantity, word, value
+    for variant in problem.variants:
+        for constraint in variant.limits:
+            for word, value in constraint.sides:
+                yield (
+                    f"choice {' and '.join(map(shown, variant.labels))}: {key_of([constraint.quantity])}",
+                    constraint.quantity,
+                    word,
+                    value,
+                )
     for objective in problem.objectives:
         if objective.target is not None:
             yield key_of(["objectives", objective.quantity]), objective.quantity, "target", objective.target

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 from pydantic import AfterValidator
 
-from ...model.errors import InputError
+from ...model.errors import InputError, JobError
 from ...model.machine.clearance import Clearance, Joint, Law
 from ...model.machine.friction import Friction, Pin
+from .sections import PinsPart
 from .values import Built, Checked, Fraction, PositiveLength, Pressure, optional, required
 
 _MOST = 2.0
@@ -31,7 +33,7 @@ class PinPart(Built[Pin]):
 
     makes = Pin
 
-    radius: PositiveLength = required("of the pin", "10 mm")
+    radius: PositiveLength | None = optional("of the pin; half its diameter in [sections] if left out", "10 mm")
     coefficient: Coefficient = required("of friction, on the pin's surface", 0.08)
 
 
@@ -44,6 +46,25 @@ class FrictionPart(Built[Friction]):
     crank_pivot: PinPart | None = optional("between frame and crank", {"radius": "15 mm", "coefficient": 0.08})
     crank_pin: PinPart | None = optional("between crank and connecting rod", {"radius": "10 mm", "coefficient": 0.08})
     slider_pin: PinPart | None = optional("between connecting rod and slider", {"radius": "8 mm", "coefficient": 0.08})
+
+    def with_pins(self, pins: PinsPart | None) -> Friction:
+        """Return the friction, pins without a radius as thick as those of [sections].
+
+        Raises JobError where [sections] is missing then.
+        """
+        found = self.build()
+        for name in PinsPart.model_fields:
+            part: PinPart | None = getattr(self, name)
+            if part is None or part.radius is not None:
+                continue
+            if pins is None:
+                raise JobError(
+                    f"friction.{name}.radius: is missing, but required without [sections], which has the pins; add for "
+                    'example radius = "10 mm"'
+                )
+            own = replace(getattr(found, name), radius=0.5 * getattr(pins, name))
+            found = replace(found, **{name: own})
+        return found
 
 
 def _restitution(e: float) -> float:

@@ -176,7 +176,7 @@ class Job(Part):
             gravity=own.gravity_vector,
             loads=tuple(load.build() for load in self.load),
             tolerances=self.tolerances.build(),
-            friction=self.friction.build(),
+            friction=self.friction.with_pins(None if self.sections is None else self.sections.pins),
             branch=own.branch,
             strength=None if self.sections is None else self.sections.strength(),
             **{name: part.build() for name, part in parts.items() if part is not None},

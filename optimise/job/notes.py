@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, LENGTH, Kind
-from .model import job_with
+from .model import Job, job_with
 from .own import declared
 from .units import per_si
 
@@ -38,8 +39,30 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         notes.append(
             'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
         )
+    notes += _pins(job)
     if job.motion.build() is not None and job.mechanism.speed is not None:
         notes.append("mechanism.speed: a swing has a motion of its own, that of [motion]; leave the speed out")
+    return notes
+
+
+def _pins(job: Job) -> list[str]:
+    """Return notes on pins that rub at another radius than [sections] has them, or that vary while that stays."""
+    notes: list[str] = []
+    if job.sections is None:
+        return notes
+    for name in type(job.sections.pins).model_fields:
+        rubs, diameter = getattr(job.friction, name), getattr(job.sections.pins, name)
+        radius = None if rubs is None else rubs.radius
+        if radius is None:
+            continue
+        path = f"sections.pins.{name}"
+        varies = path in job.variables.paths or any(path in of.paths for part in job.choice for of in part.option)
+        if varies or not math.isclose(2.0 * radius, diameter, rel_tol=1e-6):
+            notes.append(
+                f"friction.{name}.radius: stays {1e3 * radius:.6g} mm, while {path} "
+                f"{'varies' if varies else f'is a diameter of {1e3 * diameter:.6g} mm'}; leave the radius out, and it "
+                "is half of that"
+            )
     return notes
 
 

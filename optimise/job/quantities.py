@@ -31,8 +31,8 @@ from ...model.linkage.values import DIMENSIONS
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
 from ..problem.requirements import SENSES, Constraint, Objective, Word
-from .formulas import Formulas, is_formula
-from .messages import key_of
+from .formulas import ROOTS, Formulas, is_formula
+from .messages import key_of, toml
 from .units import closest, shown
 from .values import Part, Physical, optional, required
 
@@ -145,6 +145,14 @@ def _pattern_of(schema: dict[str, Any]) -> None:
     schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
 
 
+def _bare(path: str, value: object) -> tuple[str, object]:
+    """Return the path of a key that dots made tables of, of several the first, and what is given for it."""
+    while isinstance(value, Mapping) and value and not {*WORDS, "target"} & set(value):
+        key, value = next(iter(value.items()))
+        path = f"{path}.{key}"
+    return path, value
+
+
 class _Table(Part):
     """A table whose keys are quantities or formulas. named: formulas that have a name in the job."""
 
@@ -157,6 +165,12 @@ class _Table(Part):
         """Put formulas into a table of their own."""
         if not isinstance(data, Mapping):
             return data
+        for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
+            path, value = _bare(key, data[key])
+            raise InputError(
+                f"a key with dots stands in quotes, as a formula does; got {path} without; write it as "
+                f'"{path}" = {toml(value)}'
+            )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
         rest = {key: value for key, value in data.items() if key not in keys}
         return rest | {_KEY: {key: data[key] for key in keys}} if keys else data

@@ -16,13 +16,12 @@ from pydantic import AfterValidator, Field, model_validator
 from ...model.errors import InputError
 from .catalogue import MOST_OPTIONS
 from .file import DEEPEST
+from .formulas import ROOTS
 from .grids import says_values
 from .quantities import ConstraintsPart
 from .units import shown
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
-ROOTS = ("mechanism", "load", "friction", "tolerances", "sections")
-"""Tables whose numbers may vary."""
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
 """Of what an option may ask for."""

@@ -24,7 +24,7 @@ from ...model.machine.varying import Varying
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from .formulas import Formulas
+from .formulas import ROOTS, Formulas
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
@@ -32,7 +32,6 @@ from .quantities import constraints_of, slow_stroke_of
 from .schema import schema_of
 from .units import closest, shown
 from .values import Choices, Part, RangeOf, ToleranceOf
-from .variables import ROOTS
 
 MOST = 200
 """Combinations of choices that are enumerated."""

@@ -41,13 +41,25 @@ def linear_equations(wanted: Mapping[Quantity, float], sign: float) -> dict[str,
     for of, value in wanted.items():
         equation = equation_of(of, value) if isinstance(of, FormulaQuantity) else None
         if equation is not None:
-            found[of.name] = _on_side(equation, sign)
+            found[of.name] = on_side(equation, sign)
     if not found:
         return {}
     for of, value in wanted.items():
         more = _proportion(of, value)
         if more is not None:
             found[of.name] = more
+    return found
+
+
+def on_side(row: Linear, sign: float) -> Linear:
+    """Return an equality in |offset|, which the sign of the offset allows."""
+    size = Linear((("offset", Fraction(1)),), Fraction(0))
+    found = Linear((), row.constant)
+    for name, factor in row.factors:
+        if name == "offset":
+            found = found.plus(size, Fraction(int(sign)) * factor)
+        else:
+            found = found.plus(size if name == SIZE else unknown(name), factor)
     return found
 
 
@@ -92,18 +104,6 @@ def target_of(*numbers: Any) -> Any:
     for place, (factor, source) in enumerate(zip(factors, numbers[count + 2 :], strict=True)):
         total = factor * source if not place else total + factor * source
     return (total + constant if constant or not factors else total) / divisor
-
-
-def _on_side(row: Linear, sign: float) -> Linear:
-    """Return an equality in |offset|, which the sign of the offset allows."""
-    size = Linear((("offset", Fraction(1)),), Fraction(0))
-    found = Linear((), row.constant)
-    for name, factor in row.factors:
-        if name == "offset":
-            found = found.plus(size, Fraction(int(sign)) * factor)
-        else:
-            found = found.plus(size if name == SIZE else unknown(name), factor)
-    return found
 
 
 def _proportion(of: Quantity, value: float) -> Linear | None:

@@ -13,6 +13,7 @@ from ...model.machine.varying import Varying
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import varying_column
+from ...optimise.job.options import idle_options
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
@@ -50,7 +51,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
-        "warnings": [*expected_warnings(problem), *idle_rules(problem)],
+        "warnings": [*expected_warnings(problem), *idle_rules(problem), *idle_options(problem)],
         "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
     }
 

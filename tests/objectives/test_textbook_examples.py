@@ -143,7 +143,7 @@ def test_problem_6_17_of_shigley_amplitude_and_mean_of_a_bar_that_is_pulled_more
     pulls = (3000.0 * POUND, 800.0 * POUND)
     bar = strut(5.0 * INCH, INCH, 0.375 * INCH, pulls, pinned(material, pin=0.25 * INCH))
     assert value("static_safety", *bar) == printed("5.06")
-    net = strut(5.0 * INCH, 0.75 * INCH, 0.375 * INCH, tuple(2.16 * pull for pull in pulls), pinned(material))
+    net = strut(5.0 * INCH, 0.75 * INCH, 0.375 * INCH, (2.16 * pulls[0], 2.16 * pulls[1]), pinned(material))
 
     def used(criterion: Criterion) -> float:
         machine, design = net

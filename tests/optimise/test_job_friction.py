@@ -16,6 +16,8 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
+from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.sections import EXAMPLE
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
@@ -122,3 +124,42 @@ def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
     goals, _ = evaluator.exact(u[locks])
     assert np.all(goals.values.max(axis=1) == np.inf)
     assert np.all(goals.gradients == 0.0)
+
+
+SIZED = {
+    "mechanism": {
+        "speed": "60 rpm",
+        "slider": {"mass": "5 kg"},
+        **{name: {"width": "40 mm", "depth": "20 mm", "density": "7850 kg/m^3"} for name in ("crank", "rod")},
+    },
+    "sections": EXAMPLE,
+}
+
+
+def test_a_pin_without_a_radius_rubs_at_half_its_diameter_in_sections_and_follows_it() -> None:
+    varies = FEEDER["variables"] | {"sections": {"pins": {"crank_pin": ["10 mm", "30 mm"]}}}
+    problem = job({"crank_pin": {"coefficient": 0.1}}, **SIZED, variables=varies)
+    assert problem.mechanism.friction.crank_pin == Pin(radius=0.006, coefficient=0.1)
+    design = np.array([0.04, 0.15, 0.03])
+    values, slopes = problem.evaluate([[*design, 0.02]], gradients=True)
+    fixed = job({"crank_pin": {"radius": "10 mm", "coefficient": 0.1}}, **SIZED)
+    assert values.tolist() == fixed.evaluate([design]).tolist()
+    step = 1e-6
+    around = problem.evaluate([[*design, 0.02 + step], [*design, 0.02 - step]])
+    assert slopes[0, :, 3] == pytest.approx((around[0] - around[1]) / (2.0 * step), rel=1e-6, abs=1e-9)
+    assert slopes[0, [of.quantity for of in problem.objectives].index("peak_torque"), 3] > 0.0
+
+
+def test_a_radius_that_does_not_follow_its_pin_is_told() -> None:
+    rubs = {"crank_pin": {"radius": "6 mm", "coefficient": 0.1}, "slider_pin": {"radius": "8 mm", "coefficient": 0.1}}
+    tables = FEEDER | SIZED | {"friction": rubs}
+    (note,) = [note for note in notes_of(tables) if note.startswith("friction")]
+    assert note == (
+        "friction.slider_pin.radius: stays 8 mm, while sections.pins.slider_pin is a diameter of 10 mm; leave the "
+        "radius out, and it is half of that"
+    )
+    varies = FEEDER["variables"] | {"sections": {"pins": {"crank_pin": ["10 mm", "30 mm"]}}}
+    told = [note for note in notes_of(tables | {"variables": varies}) if "while sections.pins.crank_pin varies" in note]
+    assert len(told) == 1
+    with pytest.raises(JobError, match=r"friction\.crank_pin\.radius: is missing, but required without \[sections\]"):
+        job({"crank_pin": {"coefficient": 0.1}})

@@ -1,0 +1,130 @@
+"""Linear requirements on dimensions and varying numbers that exclude each other within the ranges.
+
+Whether some point of the ranges meets them all is a linear programme, of crank, rod, |offset| and varying numbers for
+either sign of the offset; full rotation, rod >= crank + |offset|, is a row of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from ...model.errors import JobError
+from ...objectives.formula.expression import Call
+from ...objectives.formula.linear import Linear, unknown
+from ...objectives.formula.quantity import FormulaQuantity, equation_of
+from ..problem.problem import Problem
+from ..search.elimination import signs
+from ..search.linear_rules import linear_equations, on_side
+from .messages import key_of
+
+_UNIT = 1e3  # lengths in mm: rounding of the programme is 1e-7 of its unit
+_NONE = 2
+"""Status of `linprog` where nothing meets all rows."""
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A requirement as a sum that is zero (`exact`), or not above zero. name: the quantity that it is on."""
+
+    name: str
+    sum: Linear
+    exact: bool
+
+
+def require_compatible(problem: Problem) -> None:
+    """Raise JobError, naming the requirements, if no point of the ranges meets all linear ones."""
+    seen: dict[tuple[object, ...], bool] = {}
+    parts = problem.parts()
+    for part in parts:
+        sides = [(sign, *_programme(part, sign)) for sign, _ in signs(part)]
+        if not sides or any(not rows for _, rows, _ in sides):
+            return
+        for sign, rows, ends in sides:
+            key = (sign, tuple(rows), tuple(ends.items()))
+            if key not in seen:
+                seen[key] = _possible(rows, ends, turning=problem.motion is None)
+            if seen[key]:
+                return
+    raise JobError(_told(parts[0]))
+
+
+def _told(part: Problem) -> str:
+    """Return which requirements of a problem exclude each other, as few as do on either sign of the offset."""
+    sides = [_programme(part, sign) for sign, _ in signs(part)]
+    names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))
+    for name in list(names):
+        fewer = [other for other in names if other != name]
+        if fewer and not any(
+            _possible([row for row in rows if row.name in fewer], ends, turning=part.motion is None)
+            for rows, ends in sides
+        ):
+            names = fewer
+    first = f"constraints.{key_of([names[0]])}"
+    asked = {item.quantity: item for item in part.constraints}
+    told = []
+    for name in names:
+        face = part.quantity(name).unit
+        told += [f"{name} {word} {bound * face.factor:.6g} {face.symbol}".rstrip() for word, bound in asked[name].sides]
+    if len(names) == 1:
+        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; widen the ranges"
+    return (
+        f"{first}: requirements together leave some crank, rod and offset within the ranges; got {' and '.join(told)}, "
+        "which exclude each other; give up one of them, or widen the ranges"
+    )
+
+
+def _programme(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
+    """Return the linear requirements on one sign of the offset, if a formula is among them, and the ranges."""
+    sizes = next(sizes for own, sizes in signs(part) if own == sign)
+    ends = {
+        "crank": (part.crank.lower, part.crank.upper),
+        "rod": (part.rod.lower, part.rod.upper),
+        "offset": (sizes.lower, sizes.upper),
+    } | {item.name: (item.lower, item.upper) for item in part.mechanism.varying}
+    wanted = {
+        part.quantity(item.quantity): float(item.lower)
+        for item in part.constraints
+        if item.equality and item.lower is not None
+    }
+    rows = [_Row(name, row, True) for name, row in linear_equations(wanted, sign).items()]
+    return [*rows, *_bounds(part, sign)], ends
+
+
+def _bounds(part: Problem, sign: float) -> Iterator[_Row]:
+    """Yield least and greatest values of linear formulas; quotients would need the sign of their divisors."""
+    for item in part.constraints:
+        of = part.quantity(item.quantity)
+        if item.equality or not isinstance(of, FormulaQuantity):
+            continue
+        if isinstance(of.expression, Call) and of.expression.function == "/":
+            continue
+        for word, bound in item.sides:
+            row = equation_of(of, bound)
+            if row is not None:
+                row = on_side(row, sign)
+                yield _Row(of.name, row if word == "max" else row.times(Fraction(-1)), False)
+
+
+def _possible(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
+    """Return whether some point of the ranges meets all rows, as far as a linear programme can tell."""
+    from scipy.optimize import linprog
+
+    turned = unknown("crank").plus(unknown("offset")).plus(unknown("rod"), Fraction(-1))
+    every = [*rows, _Row("", turned, False)] if turning else list(rows)
+    table = np.array([[float(dict(row.sum.factors).get(name, 0)) for name in ends] for row in every])
+    size = np.maximum(np.abs(table).max(axis=1), 1e-300)
+    table, right = table / size[:, None], -_UNIT * np.array([float(row.sum.constant) for row in every]) / size
+    exact = np.array([row.exact for row in every])
+    found = linprog(
+        np.zeros(len(ends)),
+        A_ub=table[~exact],
+        b_ub=right[~exact],
+        A_eq=table[exact],
+        b_eq=right[exact],
+        bounds=[(_UNIT * low, _UNIT * high) for low, high in ends.values()],
+    )
+    return bool(found.status != _NONE)

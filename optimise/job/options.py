@@ -1,0 +1,65 @@
+"""Options of choices that no design can have, as far as ranges and requirements tell before a search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...model.errors import InputError, JobError
+from ..problem.problem import Problem
+from .box import SLACK, Box
+
+_MOST = 5  # told one by one
+
+
+def require_options(problem: Problem) -> None:
+    """Raise JobError if no combination of options can have a design."""
+    found = impossible_options(problem)
+    if problem.variants and len(found) == len(problem.variants):
+        label, why = found[0]
+        raise JobError(
+            f"choice: some option has a design within the ranges; got none: of {label} {why}; widen the ranges"
+        )
+
+
+def idle_options(problem: Problem) -> list[str]:
+    """Return in words which combinations of options no design can have, and why."""
+    found = impossible_options(problem)
+    more = f", and {len(found) - _MOST} more" if len(found) > _MOST else ""
+    told = "; ".join(f"{label}: {why}" for label, why in found[:_MOST])
+    return [f"no design can have what an option asks for, and the front is without it: {told}{more}"] if found else []
+
+
+def impossible_options(problem: Problem) -> list[tuple[str, str]]:
+    """Return labels of combinations of options that no design can have, each with the reason."""
+    return [
+        (", ".join(variant.labels) or f"combination {place + 1}", why)
+        for place, variant in enumerate(problem.variants)
+        if (why := next(_reasons(problem, place), None))
+    ]
+
+
+def _reasons(problem: Problem, variant: int) -> Iterator[str]:
+    try:
+        part = problem.part(variant)
+    except InputError as error:  # of requirements that leave nothing together
+        yield str(error)
+        return
+    if part.motion is not None:
+        return
+    box = Box.of(part)
+    if not box.turns:
+        yield "no rod in its range exceeds crank + |offset|"
+        return
+    for constraint in part.constraints:
+        of = part.quantity(constraint.quantity)
+        if of.reach is None or not of.of_dimensions:
+            continue
+        least, greatest = box.possible(of)
+        room = SLACK * max(abs(least), abs(greatest))
+        face = of.unit
+        for word, bound in constraint.sides:
+            beyond = word != "max" and bound > greatest + room, word != "min" and bound + room < least
+            if any(beyond):
+                end = f"{(greatest if beyond[0] else least) * face.factor:.6g} {face.symbol}".rstrip()
+                asked = f"{bound * face.factor:.6g} {face.symbol}".rstrip()
+                yield f"{of.title} {word} {asked}, where {'at most' if beyond[0] else 'at least'} {end} is possible"
