@@ -69,11 +69,13 @@ def _told(part: Problem) -> str:
     for name in names:
         face = part.quantity(name).unit
         told += [f"{name} {word} {bound * face.factor:.6g} {face.symbol}".rstrip() for word, bound in asked[name].sides]
+    side = part.slow_side()
+    kept = "" if side is None else f"; constraints.slow_stroke keeps the offset {'above' if side > 0.0 else 'below'} 0"
     if len(names) == 1:
-        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; widen the ranges"
+        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; widen the ranges{kept}"
     return (
         f"{first}: requirements together leave some crank, rod and offset within the ranges; got {' and '.join(told)}, "
-        "which exclude each other; give up one of them, or widen the ranges"
+        f"which exclude each other; give up one of them, or widen the ranges{kept}"
     )
 
 
