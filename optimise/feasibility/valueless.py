@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...objectives.formula.quantity import FormulaQuantity
-from ..front.stationarity import Array
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of
 
