@@ -10,13 +10,13 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...model.linkage.linkage import Linkage
+from ...objectives.kinds import Kind
 from .job_files import Understood, understood
 from .job_requests import given_problem
 from .settings import SettingsDep
 from .throttle import READING
 
 if TYPE_CHECKING:
-    from ...objectives.kinds import Kind
     from ..preview.preview import Look
     from ..preview.swinging import PossibleSwing
 

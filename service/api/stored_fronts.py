@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import Depends, Path, Query
 from pydantic import Field
 
+from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
 from ..designs.columns import Column, all_columns
@@ -30,7 +31,6 @@ from .settings import part_of_app
 from .throttle import Turns
 
 if TYPE_CHECKING:
-    from ...model.arrays import Array
     from ...optimise.front.front import ParetoFront
     from ...optimise.questions.wish import Wishes
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from ...model.errors import NotFound
 from ..runs.result import finite
 from ..topics.discovery import TOPICS
-from ..topics.topic import TopicOfDesign
+from ..topics.topic import Topic, TopicOfDesign
 from .analysis import LONGEST_TOPICS, over
 from .exports import SEALED, of_type
 from .figures import require_figures
@@ -19,9 +19,6 @@ from .fronts import OfDesign
 from .problems import problem_responses
 from .stored_fronts import ShownDep, ShownDesign
 from .throttle import DRAWING, SIMULATING
-
-if TYPE_CHECKING:
-    from ..topics.topic import Topic
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 

@@ -17,6 +17,7 @@ import typer
 from ...model.errors import NotFound, SlidercrankError
 from ..jobs.stores import Address, has_store, is_named, store_address
 from ..resources.memory import size_text
+from ..runs.result import json_text
 from ..runs.run_folder import runs_place
 from ..text.options import File, Json, Runs
 from ..text.screen import console, give, say
@@ -45,8 +46,6 @@ def doctor(
     Looked at are: the database and its tables, whether anything in it is damaged, its clock, jobs that wait without a
     worker, places to write, free disk, versions. No job is changed.
     """
-    from ..runs.result import json_text
-
     address = store_address(store, runs)
     if backup is not None:
         _back_up(store, runs, backup)

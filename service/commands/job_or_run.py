@@ -7,8 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
+from ..designs.picking_options import require_alone
 from ..designs.selection import plain_number
 from ..designs.turning import require_turning
+from ..runs.stored_runs import problem_of
+from ..text.options import Dimensions
 from .run_choice import run_of
 
 if TYPE_CHECKING:
@@ -16,7 +19,6 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
     from ...optimise.problem.problem import Problem
     from ..designs.stored_designs import StoredDesign
-    from ..text.options import Dimensions
 
 
 class Machine(NamedTuple):
@@ -94,9 +96,7 @@ def design_of_run(
 
     command: that asks, for messages. place: of runs. given: options that the design answers itself.
     """
-    from ..designs.picking_options import require_alone
     from ..designs.stored_designs import stored_design
-    from ..runs.stored_runs import problem_of
 
     if run is None:
         raise InputError(f"--design is of a run; got none; name it: slidercrank {command} RUN --design NO")

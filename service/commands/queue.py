@@ -9,6 +9,7 @@ import typer
 
 from ...model.errors import InputError
 from ...optimise.front.progress import standing
+from ..designs.columns import split_unit
 from ..jobs.stores import Address, Name, find_job, has_store, store_address, store_that_is_there, tell_idle
 from ..runs.result import json_text
 from ..text.options import Json
@@ -95,8 +96,6 @@ def _show(screen: Console, found: list[Job]) -> None:
 
 def _standing(job: Job) -> str:
     """Return how far a job is, or what it found, in words."""
-    from ..designs.columns import split_unit
-
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []
         for column, value in job.summary["best"].items():

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from ..designs.columns import find_columns, key_in
+from ..designs.selection import chosen_rows, none_meets, part_of
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give
@@ -42,9 +44,6 @@ def front(
 
     --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
     """
-    from ..designs.columns import find_columns, key_in
-    from ..designs.selection import chosen_rows, none_meets, part_of
-
     folder, result = run_of(run, runs)
     if not result.designs:
         if json:

@@ -14,6 +14,7 @@ from ...model.errors import InputError
 from ..jobs.stores import Address, open_store, store_address
 from ..text.screen import give
 from ..workers.engines import EngineOptions
+from ..workers.logs import set_up_logs
 from .ending import Interruption
 from .worker import WorkOptions
 
@@ -55,7 +56,6 @@ def serve(
     from ..api.app import create_app
     from ..api.server import listen, names_of, run_server, url_of
     from ..api.settings import Settings
-    from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
 
     secret, made = _token(token, no_token, host)

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import StoreError
-from ...optimise.front.progress import standing
+from ...optimise.front.progress import Progress, standing
 from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
 from ..resources.memory import size_of
+from ..runs.result import json_text
 from ..text.options import JobFile, Json
-from ..text.screen import console, give, progress_bar, say
+from ..text.screen import console, error_console, give, progress_bar, say
 from ..text.streams import reader_left
 from .ending import EXIT_CODES
 
@@ -49,7 +50,6 @@ def submit(
     from ...optimise.job import load_job, read_job
     from ..jobs.submission import functions_of
     from ..jobs.submission import submit as put_in
-    from ..runs.result import json_text
     from ..store import Limits
 
     load_job(job)  # for its messages, which name the file
@@ -159,14 +159,11 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 @contextlib.contextmanager
 def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
     """Yield the writer of events: as JSON, or in words, with a progress bar where there is a terminal."""
-    from ..text.screen import error_console
-
     if json:
         from ..store.serialisation import text_of
 
         yield lambda event: give(f"{text_of(event.record())}\n")
         return
-    from ...optimise.front.progress import Progress
 
     live, last = error_console().is_terminal, 0.0
     with progress_bar() as bar:

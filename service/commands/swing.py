@@ -58,8 +58,7 @@ def swing(
     is not given is as in [motion] of JOB; without it the crank drives, slowly.
     """
     from ...model.swing.summary import summarise
-    from ..swing.record import swing_record, swing_rows
-    from ..swing.text import show_swing
+    from ..swing.record import show_swing, swing_record, swing_rows
 
     drawable(figure)
     if "-" in (str(curves), str(figure)):

@@ -12,7 +12,7 @@ from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
 from ..resources.memory import size_of
 from ..workers.engines import EngineOptions
-from ..workers.logs import Format
+from ..workers.logs import Format, set_up_logs
 from .ending import Interruption
 
 if TYPE_CHECKING:
@@ -83,7 +83,6 @@ def worker(
     goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
     required("psutil", "workers need")  # they end what a job leaves behind with it
-    from ..workers.logs import set_up_logs
     from ..workers.supervisor import Supervisor
 
     settings = options.settings(store_address(store), engine, processes, drain=drain)

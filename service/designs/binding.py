@@ -6,17 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from ...model.errors import InputError
 from ...objectives.tables.varying_column import varying_column
+from ...optimise.problem.problem import Problem
 from ..runs.result import Result
 from .columns import DIMENSIONS, find_column
 from .requirements import requirements_of
 from .stored_designs import stored_design
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
 
 _REST = 1e-6
 """Share of a range, or of a bound, within which a design rests on it: searches end there to about 1e-9."""

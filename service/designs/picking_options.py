@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
+from ...objectives.kinds import RATIO
 from ..runs.result import Result, Wanted
 from .selection import plain_number
 
@@ -97,7 +98,6 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
-    from ...objectives.kinds import RATIO
     from ...optimise.job.units import kind_for, per_si, to_si
 
     try:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.kinds import Kind, System
+from ...objectives.kinds import LENGTH, Kind, System
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
@@ -27,7 +27,6 @@ def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
     key: what gives them, for messages. Raises `InputError`.
     """
     from ...model.machine.numbers import unit_of
-    from ...objectives.kinds import LENGTH
     from ...objectives.tables.varying_column import varying_column
     from ...optimise.job.units import kind_of
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
+from ...objectives.kinds import Kind
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
 
 if TYPE_CHECKING:
-    from ...objectives.kinds import Kind
     from .row_formulas import RowFormula
 
 _TOLERANCE = 1e-8

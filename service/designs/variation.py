@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...model.arrays import Array
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
 from .requirements import ranges_of, requirements_of, unmet
 from .stored_designs import StoredDesign
-
-if TYPE_CHECKING:
-    from ...model.arrays import Array
 
 _SAME = 1e-9  # of an objective's range over the front: a difference below is rounding
 

@@ -53,18 +53,13 @@ def _summary(subject: Subject) -> Section:
     row = subject.row
     columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
     lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
-    rows: list[tuple[str, tuple[str, ...]]] = [("Lengths", (", ".join(lengths),))]
-    objectives = tuple(
-        f"{wanted.title} {measured(row[wanted.column], wanted.unit)}" for wanted in subject.result.objectives
-    )
-    rows.append(("Objectives", objectives))
-    chosen = [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")]
-    if chosen:
-        rows.append(("Choices", tuple(chosen)))
-    words = _marked(subject) if subject.changed is None else _changed(subject, subject.changed)
-    if words:
-        rows.append(("What it is", tuple(words)))
-    return Section("Summary", (Facts(tuple(rows)),))
+    rows = {
+        "Lengths": [", ".join(lengths)],
+        "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
+        "Choices": [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")],
+        "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
+    }
+    return Section("Summary", (Facts({title: lines for title, lines in rows.items() if lines}),))
 
 
 def _marked(subject: Subject) -> list[str]:
@@ -96,11 +91,11 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
 
 
 def _versions(subject: Subject, when: str) -> Section:
-    rows = (
-        ("Front computed by", (_listed(subject.versions) or "not recorded",)),
-        ("Report drawn by", (_listed({name: version_of(name) for name in _DREW}),)),
-        ("Made", (when,)),
-    )
+    rows = {
+        "Front computed by": [_listed(subject.versions) or "not recorded"],
+        "Report drawn by": [_listed({name: version_of(name) for name in _DREW})],
+        "Made": [when],
+    }
     note = (
         "Crank angles are counter-clockwise from the slider line's direction; signs and formulas are those of "
         "the theory that comes with slidercrank."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -23,7 +23,7 @@ class Paragraph:
 class Facts:
     """Names with what there is to say of each, one or more lines."""
 
-    rows: tuple[tuple[str, tuple[str, ...]], ...]
+    rows: Mapping[str, Sequence[str]]
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ def tolerance_section(subject: Subject) -> Section | None:
     return Section("Tolerances", blocks)
 
 
-def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _facts(found: dict[str, Any], system: System) -> dict[str, list[str]]:
     def at(name: str) -> str:
         size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
         if size is None:
@@ -50,18 +50,17 @@ def _facts(found: dict[str, Any], system: System) -> tuple[tuple[str, tuple[str,
         return f"{length(size, system, 6)} at {rounded(angle)} deg"
 
     spread = found["monte_carlo"]["percentiles_greatest_mm"]
-    percents = tuple(f"{percent} % within {length(value, system, 6)}" for percent, value in spread.items())
-    yields = tuple(
-        f"{rounded(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
-        for item in found["yields"]
-    )
-    return (
-        ("Worst case, first order", (at("worst_case"),)),
-        ("Worst case, exact", (at("exact_worst_case"),)),
-        ("Root-sum-square", (at("root_sum_square"),)),
-        ("Random machines", percents or ("none that turns fully",)),
-        ("Yield", yields),
-    )
+    percents = [f"{percent} % within {length(value, system, 6)}" for percent, value in spread.items()]
+    return {
+        "Worst case, first order": [at("worst_case")],
+        "Worst case, exact": [at("exact_worst_case")],
+        "Root-sum-square": [at("root_sum_square")],
+        "Random machines": percents or ["none that turns fully"],
+        "Yield": [
+            f"{rounded(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
+            for item in found["yields"]
+        ],
+    }
 
 
 def _sources(found: dict[str, Any], system: System) -> Table:

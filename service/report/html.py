@@ -44,7 +44,7 @@ def _block(block: Block, name: str) -> list[str]:
         kind = "" if block.tone == "plain" else f' class="{block.tone}"'
         return [f"<p{kind}>{escape(block.text)}</p>"]
     if isinstance(block, Facts):
-        rows = (f"<dt>{escape(title)}</dt><dd>{'<br>'.join(map(escape, lines))}</dd>" for title, lines in block.rows)
+        rows = (f"<dt>{escape(name)}</dt><dd>{'<br>'.join(map(escape, of))}</dd>" for name, of in block.rows.items())
         return [f'<dl class="facts">{"".join(rows)}</dl>']
     if isinstance(block, Table):
         return _table(block)

@@ -12,16 +12,12 @@ from .subject import Subject
 def job_section(subject: Subject) -> Section:
     """Return the section on the job in words, as `slidercrank check` gives it."""
     words = summarise(subject.problem)
-    parts = (
-        ("Given", words["given"]),
-        ("Tolerances", words["tolerances"]),
-        ("Costs", words["costs"]),
-        ("May vary", words["variables"]),
-        ("Requirements", words["rules"]),
-        ("Objectives", words["objectives"]),
-        ("Freedom", [freedom_in_words(words)]),
-    )
-    rows = tuple((title, tuple(unit_text(str(line)) for line in lines)) for title, lines in parts if lines)
+    parts = {
+        **{"Given": words["given"], "Tolerances": words["tolerances"], "Costs": words["costs"]},
+        **{"May vary": words["variables"], "Requirements": words["rules"], "Objectives": words["objectives"]},
+        "Freedom": [freedom_in_words(words)],
+    }
+    rows = {title: [unit_text(str(line)) for line in lines] for title, lines in parts.items() if lines}
     warned = tuple(Paragraph(f"Warning: {sentence}.", "bad") for sentence in subject.result.warnings)
     return Section("The job", (Facts(rows), *warned))
 
@@ -29,22 +25,20 @@ def job_section(subject: Subject) -> Section:
 def search_section(subject: Subject) -> Section:
     """Return how the front was found, and how good it is known to be."""
     result, settings = subject.result, subject.problem.settings
-    rows: list[tuple[str, tuple[str, ...]]] = [
-        ("Run", (subject.run,)),
-        ("Method", (settings.method,)),
-        ("Seed", (f"{result.seed}: the same job and seed give the same front, bit for bit",)),
-        ("Evaluations", (f"{result.evaluations}",)),
-        ("Time of the search", (f"{rounded(result.seconds)} s",)),
-        ("Designs", (f"{len(result.designs)} on the front, none of which is better than another in all objectives",)),
-        (
-            "Hypervolume",
-            (f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",),
-        ),
-        ("Outcome", (f"{result.status}: {result.message}",)),
-    ]
     stationary = sum(row.get("status") == "stationary" for row in result.designs)
-    rows.append(("Stationary designs", (f"{stationary} of {len(result.designs)}",)))
-    return Section("How the front was found", (Facts(tuple(rows)), *_certificate(subject)))
+    rows = {
+        "Run": subject.run,
+        "Method": settings.method,
+        "Seed": f"{result.seed}: the same job and seed give the same front, bit for bit",
+        "Evaluations": f"{result.evaluations}",
+        "Time of the search": f"{rounded(result.seconds)} s",
+        "Designs": f"{len(result.designs)} on the front, none of which is better than another in all objectives",
+        "Hypervolume": f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",
+        "Outcome": f"{result.status}: {result.message}",
+        "Stationary designs": f"{stationary} of {len(result.designs)}",
+    }
+    facts = Facts({title: [line] for title, line in rows.items()})
+    return Section("How the front was found", (facts, *_certificate(subject)))
 
 
 def _certificate(subject: Subject) -> tuple[Block, ...]:
@@ -63,4 +57,4 @@ def _certificate(subject: Subject) -> tuple[Block, ...]:
         if value is not None:
             lines.append(f"{title}: {rounded(float(value))}")
     lines += [f"{found['boxes']} boxes, {found['open_boxes']} open, {rounded(float(found['seconds']))} s"]
-    return (Facts((("Certificate", tuple(lines)), *((("Notes", tuple(found["notes"])),) if found["notes"] else ()))),)
+    return (Facts({"Certificate": lines, **({"Notes": found["notes"]} if found["notes"] else {})}),)

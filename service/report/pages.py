@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
 
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
 from ..figures.style import INK, MUTED, new_figure, write
 from .document import Facts, Paragraph, Picture, Report, Section, Table, Tone
-from .text_lines import longest_word, wrapped
 
 WIDTH, HEIGHT = 8.27, 11.69  # inches, A4
 _LEFT, _RIGHT, _TOP, _BOTTOM = 0.75, 0.75, 0.75, 0.85
@@ -120,7 +123,7 @@ class _Layout:
 
     def facts(self, facts: Facts, *, tail: float) -> None:
         """Write names with what there is to say beside them. tail: inches of what stays with the last of them."""
-        for place, (name, texts) in enumerate(facts.rows, 1):
+        for place, (name, texts) in enumerate(facts.rows.items(), 1):
             lines = [line for text in texts for line in wrapped(text, _TEXT, _ACROSS - _NAMES)]
             self.room(min(len(lines), 4) * _TEXT * _LEADING + (tail if place == len(facts.rows) else 0.0))
             top = self.y - _TEXT * _LEADING
@@ -204,8 +207,8 @@ def _widths(table: Table, size: float) -> list[float]:
     asked = [share * _ACROSS for share in table.wide]
     least = []
     for place, head in enumerate(table.heads):
-        words = [longest_word(head, size, bold=True)]
-        words += [longest_word(row[place], size, bold=number in table.bold) for number, row in enumerate(table.rows)]
+        words = [_longest_word(head, size, bold=True)]
+        words += [_longest_word(row[place], size, bold=number in table.bold) for number, row in enumerate(table.rows)]
         least.append(max(words) + _BETWEEN + 1e-6)
     short = sum(max(need - width, 0.0) for need, width in zip(least, asked, strict=True))
     spare = sum(max(width - need, 0.0) for need, width in zip(least, asked, strict=True))
@@ -213,3 +216,48 @@ def _widths(table: Table, size: float) -> list[float]:
         return asked
     given = short / spare if spare > 0.0 else 0.0
     return [need if need >= width else width - given * (width - need) for need, width in zip(least, asked, strict=True)]
+
+
+def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
+    """Return a text in lines of at most `width` inches at `size` points; a word too long is broken."""
+    lines: list[str] = []
+    line = ""
+    for word in text.split():
+        joined = f"{line} {word}".lstrip()
+        if _width(joined, size, bold) <= width:
+            line = joined
+            continue
+        if line:
+            lines.append(line)
+        line = word
+        while _width(line, size, bold) > width and len(line) > 1:
+            fits = len(line) - 1
+            while fits > 1 and _width(line[:fits], size, bold) > width:
+                fits -= 1
+            lines.append(line[:fits])
+            line = line[fits:]
+    return [*lines, line] if line or not lines else lines
+
+
+def _longest_word(text: str, size: float, *, bold: bool = False) -> float:
+    """Return the width of the longest word of a text, inches, in letters of `size` points."""
+    return max((_width(word, size, bold) for word in text.split()), default=0.0)
+
+
+def _width(text: str, size: float, bold: bool) -> float:
+    """Return the width of a line, inches; letters moved together for looks would make it a little less."""
+    return sum(_letter(letter, bold) for letter in text) * size
+
+
+@cache
+def _letter(letter: str, bold: bool) -> float:
+    """Return the width of a letter of a font of one point, inches."""
+    renderer, plain, heavy = _measure()
+    return float(renderer.get_text_width_height_descent(letter, heavy if bold else plain, False)[0]) / 72.0 / 100.0
+
+
+@cache
+def _measure() -> tuple[Any, Any, Any]:
+    """Return a renderer that measures text, and fonts of 100 points, normal and bold."""
+    renderer: Any = RendererAgg(10, 10, 72.0)  # type: ignore[no-untyped-call]
+    return renderer, FontProperties(size=100.0), FontProperties(size=100.0, weight="bold")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from collections.abc import Callable, Collection, Iterator
+from functools import partial
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
@@ -53,6 +55,24 @@ def open_page(browser: Browser) -> Iterator[Open]:
 
         yield opened
     assert wrong == []
+
+
+@pytest.fixture
+def form(open_page: Open) -> Open:
+    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
+    return partial(open_page, reduced_motion="reduce")
+
+
+def ready(page: Page) -> None:
+    """Wait until the form of a new run says that its job can start."""
+    status = page.get_by_role("complementary").get_by_role("status")
+    expect(status).to_have_text("Ready to start.", timeout=30_000)
+
+
+def text_of(page: Page) -> dict[str, Any]:
+    """Return the tables of the job in the form."""
+    found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())
+    return found
 
 
 def watch(page: Page, address: str, wrong: list[str], expected: Collection[str] = ()) -> None:

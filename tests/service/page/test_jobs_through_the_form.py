@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tomllib
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +26,6 @@ TOUCH = """() => {
   return count;
 }"""
 """Touch every field without changing it."""
-
-
-@pytest.fixture
-def form(open_page: Open) -> Open:
-    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
-    return partial(open_page, reduced_motion="reduce")
 
 
 def whole(sieve: Job) -> Job:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +21,6 @@ from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
 
 READY = "Ready to start."
-
-
-@pytest.fixture
-def form(open_page: Open) -> Open:
-    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
-    return partial(open_page, reduced_motion="reduce")
 
 
 @pytest.fixture

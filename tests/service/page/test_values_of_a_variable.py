@@ -2,34 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import re
-from functools import partial
-from typing import Any
 
-import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import Open
-
-
-@pytest.fixture
-def form(open_page: Open) -> Open:
-    """Return a function that opens the form with reduced motion: the sketch stands still, which saves time."""
-    return partial(open_page, reduced_motion="reduce")
-
-
-def ready(page: Page) -> None:
-    status = page.get_by_role("complementary").get_by_role("status")
-    expect(status).to_have_text("Ready to start.", timeout=30_000)
-
-
-def text_of(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())
-    return found
+from tests.service.page.conftest import Open, ready, text_of
 
 
 def test_steps_preferred_numbers_and_lists_are_those_of_the_job_and_units_change_them_together(

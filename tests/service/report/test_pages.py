@@ -49,7 +49,7 @@ def test_columns_are_as_wide_as_their_longest_word_where_there_is_room() -> None
 def test_a_note_after_facts_is_not_alone_on_its_page() -> None:
     apart = 0
     for count in range(30, 60):
-        facts = Facts(tuple((f"fact {number}", ("a line",)) for number in range(count)))
+        facts = Facts({f"fact {number}": ["a line"] for number in range(count)})
         first, *others = laid_out(facts, Paragraph("a note", "note"))
         for page in (first, *others):
             if "a note" in texts(page):

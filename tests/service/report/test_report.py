@@ -22,10 +22,9 @@ from slidercrank.service.figures.numerals import as_stored, rounded
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
 from slidercrank.service.report.html import html_file
-from slidercrank.service.report.pages import HEIGHT, WIDTH, Page, pages
+from slidercrank.service.report.pages import HEIGHT, WIDTH, Page, pages, wrapped
 from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
-from slidercrank.service.report.text_lines import wrapped
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
 
@@ -84,7 +83,7 @@ def texts(part: Report) -> list[str]:
             if isinstance(block, Paragraph):
                 found.append(block.text)
             elif isinstance(block, Facts):
-                found += [text for name, lines in block.rows for text in (name, *lines)]
+                found += [text for name, lines in block.rows.items() for text in (name, *lines)]
             elif isinstance(block, Table):
                 found += [block.title, *block.heads, *(cell for row in block.rows for cell in row)]
             else:
