@@ -14,7 +14,6 @@ _average = partial(
     kind=TORQUE,
     signal=Signal.TORQUE,
     group=Group.DRIVE,
-    section="10. Motor and balance",
     picture="torque",
 )
 RMS_TORQUE = _average(

@@ -19,7 +19,7 @@ from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
-from .quantity import Array, Pieces, Quantity, Values, undefined
+from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
 
 Formula = Callable[[Callable[[int], Any]], Any]
 
@@ -88,6 +88,8 @@ class Part(NamedTuple):
 class OfBars(Quantity):
     """A quantity that is the greatest, or the least, of what several parts of crank and rod have."""
 
+    group: Group = fact(Group.STRENGTH)
+    section: str = fact("22. Strength of crank and rod")
     links: tuple[str, ...] = ("rod", "crank")
     least: bool = False
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
-from .quantity import Array, Pieces, Quantity, Values
+from .quantity import Array, Pieces, Quantity, Values, fact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +19,8 @@ class ClosedFormQuantity(Quantity):
     rises: whether it rises with crank, rod and |offset|, where the derivatives have one sign for all that turns fully.
     """
 
+    section: str = fact("2. Closed forms")
+    on_sheet: bool = fact(True)
     forms: tuple[ClosedForm, ...]
     rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 

@@ -12,7 +12,7 @@ from ..model.machine.raw import Raw
 from ..model.signals.averages import average
 from ..model.signals.of_shaft import time_share
 from ..model.signals.signals import Signal
-from .quantity import Array, Quantity, Values
+from .quantity import Array, Quantity, Values, fact
 
 Which = Literal["mean", "rms"]
 
@@ -24,6 +24,7 @@ class CycleAverage(Quantity):
     The torque counts with its sign. times_speed: the average times the crank speed over time, a power from a torque.
     """
 
+    section: str = fact("10. Motor and balance")
     signal: Signal
     which: Which
     times_speed: bool = False

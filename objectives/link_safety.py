@@ -13,7 +13,7 @@ from ..model.machine.mechanism import Mechanism
 from .bars import LINKS, Formula, OfBars, Part, closed, constant, strength_of, stress
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, STRENGTH
-from .quantity import Array, Group
+from .quantity import Array
 
 _COMPRESSION = ((0.0, 1.0),)
 
@@ -71,7 +71,6 @@ FATIGUE_SAFETY = FatigueSafety(
     name="fatigue_safety",
     kind=RATIO,
     least=True,
-    group=Group.STRENGTH,
     place=446,
     sentence=(
         "By how much all stresses could grow until the worst point of crank and rod tires: amplitude and mean are of "
@@ -79,7 +78,6 @@ FATIGUE_SAFETY = FatigueSafety(
     ),
     advice="1.3 to 2 are usual. The endurance strength has the stress raisers of the eyes in it.",
     formula="1 / max(sigma_a / S_e + max(sigma_m, 0) / S_u) over place; S_y in place of S_u with Soderberg's criterion",
-    section="22. Strength of crank and rod",
     source="Shigley, Mechanical Engineering Design, 9th ed., eq. 6-46 (Goodman) and 6-45 (Soderberg)",
     picture="rod",
     example=1.5,
@@ -90,7 +88,6 @@ BUCKLING_SAFETY = BucklingSafety(
     name="buckling_safety",
     kind=RATIO,
     least=True,
-    group=Group.STRENGTH,
     place=448,
     sentence=(
         "The load at which a bar buckles over its greatest compression, in the plane of motion and out of it: "
@@ -98,7 +95,6 @@ BUCKLING_SAFETY = BucklingSafety(
     ),
     advice="3 and more are usual. A rod of square section is as safe in both planes.",
     formula="P_cr / max(-N): C pi^2 E I / L^2 or Johnson's parabola; C = 1 of the rod in both planes, 1/4 of the crank",
-    section="22. Strength of crank and rod",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 4-12 and 4-13, table 4-2",
     picture="rod",
     example=3.0,

@@ -10,7 +10,7 @@ from ..model.machine.mechanism import Mechanism
 from .bars import LINKS, NEAR, OfBars, Part, closed, constant, net_section, over, pin_force, strength_of, stress
 from .kinds import PRESSURE, RATIO
 from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
-from .quantity import Array, Group
+from .quantity import Array
 
 STATIC = ((1.0, 0.0), (0.0, 1.0))
 """Greatest tension and greatest compression."""
@@ -50,8 +50,6 @@ _SOURCE = "Shigley, Mechanical Engineering Design, 9th ed., sec. 3-10 and 3-13; 
 _stress = partial(
     LinkStress,
     kind=PRESSURE,
-    group=Group.STRENGTH,
-    section="22. Strength of crank and rod",
     source=_SOURCE,
     example="120 MPa",
 )
@@ -86,12 +84,10 @@ STATIC_SAFETY = LinkStress(
     name="static_safety",
     kind=RATIO,
     least=True,
-    group=Group.STRENGTH,
     place=444,
     sentence="The yield strength over the greatest stress of the links that are given by their sections.",
     advice="1.5 to 3 are usual, more where loads are not well known.",
     formula="S_y / max(crank stress, rod stress)",
-    section="22. Strength of crank and rod",
     source=_SOURCE,
     picture="rod",
     example=2.0,

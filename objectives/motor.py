@@ -1,5 +1,7 @@
 """Loads of a motor beyond its torque: greatest and mean power, greatest inertia that it feels."""
 
+from functools import partial
+
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
@@ -7,17 +9,15 @@ from .kinds import INERTIA, POWER
 from .needs import DRIVEN, MASSES, SPEED, WORK
 from .quantity import Group
 
-_SECTION = "10. Motor and balance"
+_peak = partial(CyclePeak, group=Group.DRIVE, section="10. Motor and balance")
 
-PEAK_POWER = CyclePeak(
+PEAK_POWER = _peak(
     name="peak_power",
     kind=POWER,
     signal=Signal.POWER,
     place=210,
-    group=Group.DRIVE,
     sentence="The greatest power that passes between drive and crank within a turn, driving or braking.",
     formula="max |T omega|",
-    section=_SECTION,
     picture="power",
     needs=(SPEED, DRIVEN),
 )
@@ -31,23 +31,20 @@ MEAN_POWER = CycleAverage(
     group=Group.DRIVE,
     sentence="The average power of the drive over a turn: the energy that the machine takes.",
     formula="omega times the mean of T",
-    section=_SECTION,
     picture="power",
     signed=True,
     needs=(SPEED, DRIVEN, WORK),
     instead=PEAK_POWER.name,
 )
-PEAK_REFLECTED_INERTIA = CyclePeak(
+PEAK_REFLECTED_INERTIA = _peak(
     name="peak_reflected_inertia",
     title="greatest reflected inertia",
     kind=INERTIA,
     signal=Signal.REFLECTED_INERTIA,
     place=230,
-    group=Group.DRIVE,
     sentence="The greatest moment of inertia that the drive feels at the crank, with rod and slider counted in.",
     advice="To compare it with the inertia of a motor, divide it by the square of the gear ratio.",
     formula="max J, where J omega^2 / 2 is the kinetic energy of all links",
-    section=_SECTION,
     picture="inertia",
     needs=(MASSES,),
 )

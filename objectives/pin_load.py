@@ -6,13 +6,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import PINS
 from .bars import LINKS, NEAR, Formula, OfBars, Part, closed, over, pin_force
 from .kinds import PRESSURE
-from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH
-from .quantity import Array, Group
+from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
+from .quantity import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,13 +48,25 @@ def projected(pin: str, name: str) -> Formula:
     return lambda number: number(PINS[pin]) * number(LINKS[name].depth)
 
 
-JOINED = {pin: tuple(name for name, link in LINKS.items() if pin in (NEAR, link.far)) for pin in PINS}
-"""Links that each pin bears in."""
+_OF_PINS = {
+    "crank_pivot": ("pivot force", CRANK_BAR, PIVOT_LOADED),
+    "crank_pin": ("crank pin force", A_BAR, LOADED),
+    "slider_pin": ("slider pin force", ROD_BAR, LOADED),
+}
+
+
+def of_pin(pin: str, before: tuple[Need, ...], after: tuple[Need, ...] = (), *, bears: bool = True) -> dict[str, Any]:
+    """Return what quantities of a pin share. before, after: needs besides its own. bears: on the bars that it joins."""
+    picture, bar, loaded = _OF_PINS[pin]
+    if not bears:
+        return {"pin": pin, "picture": picture, "needs": (*before, loaded, *after)}
+    links = tuple(name for name, link in LINKS.items() if pin in (NEAR, link.far))
+    return {"pin": pin, "links": links, "picture": picture, "needs": (*before, bar, loaded, *after)}
+
+
 _pressure = partial(
     PinPressure,
     kind=PRESSURE,
-    group=Group.STRENGTH,
-    section="22. Strength of crank and rod",
     formula="max F / (D d) over the crank angle",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-5 (projected area)",
     example="15 MPa",
@@ -61,8 +74,6 @@ _pressure = partial(
 _shear = partial(
     PinShear,
     kind=PRESSURE,
-    group=Group.STRENGTH,
-    section="22. Strength of crank and rod",
     formula="max F / (pi D^2 / 4) over the crank angle, in one section",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 3-11",
     example="40 MPa",
@@ -70,57 +81,42 @@ _shear = partial(
 PIN_PRESSURE_CRANK_PIVOT = _pressure(
     name="pin_pressure_crank_pivot",
     title="pressure at the crank pivot",
-    pin="crank_pivot",
-    links=JOINED["crank_pivot"],
     place=460,
     sentence="The greatest pressure of the crank's pivot on its bearing over the depth of the crank.",
-    picture="pivot force",
-    needs=(STRENGTH, CRANK_BAR, PIVOT_LOADED),
+    **of_pin("crank_pivot", (STRENGTH,)),
 )
 PIN_PRESSURE_CRANK_PIN = _pressure(
     name="pin_pressure_crank_pin",
     title="pressure at the crank pin",
-    pin="crank_pin",
-    links=JOINED["crank_pin"],
     place=461,
     sentence="The greatest pressure of the crank pin on its bearing, in the thinner of crank and rod.",
-    picture="crank pin force",
-    needs=(STRENGTH, A_BAR, LOADED),
+    **of_pin("crank_pin", (STRENGTH,)),
 )
 PIN_PRESSURE_SLIDER_PIN = _pressure(
     name="pin_pressure_slider_pin",
     title="pressure at the slider pin",
-    pin="slider_pin",
-    links=JOINED["slider_pin"],
     place=462,
     sentence="The greatest pressure of the slider pin on its bearing over the depth of the rod.",
-    picture="slider pin force",
-    needs=(STRENGTH, ROD_BAR, LOADED),
+    **of_pin("slider_pin", (STRENGTH,)),
 )
 PIN_SHEAR_CRANK_PIVOT = _shear(
     name="pin_shear_crank_pivot",
     title="shear of the crank pivot",
-    pin="crank_pivot",
     place=464,
     sentence="The greatest mean shear stress of the crank's pivot, cut once; half of it where it is held twice.",
-    picture="pivot force",
-    needs=(STRENGTH, PIVOT_LOADED),
+    **of_pin("crank_pivot", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_CRANK_PIN = _shear(
     name="pin_shear_crank_pin",
     title="shear of the crank pin",
-    pin="crank_pin",
     place=465,
     sentence="The greatest mean shear stress of the crank pin, cut once; half of it where it is held twice.",
-    picture="crank pin force",
-    needs=(STRENGTH, LOADED),
+    **of_pin("crank_pin", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_SLIDER_PIN = _shear(
     name="pin_shear_slider_pin",
     title="shear of the slider pin",
-    pin="slider_pin",
     place=466,
     sentence="The greatest mean shear stress of the slider pin, cut once; half of it where it is held twice.",
-    picture="slider pin force",
-    needs=(STRENGTH, LOADED),
+    **of_pin("slider_pin", (STRENGTH,), bears=False),
 )

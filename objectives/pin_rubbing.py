@@ -16,9 +16,9 @@ from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
 from .bars import LINKS, Formula, OfBars, Part, closed
 from .kinds import LENGTH, PRESSURE_SPEED
-from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS
-from .pin_load import JOINED
-from .quantity import Array, Group
+from .needs import EVEN_SPEED, SPEED, STRENGTH, WEARS
+from .pin_load import of_pin
+from .quantity import Array
 
 _CYCLES = 1e6
 _RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDER_PIN}
@@ -68,8 +68,6 @@ _pv = partial(
     PinRubbing,
     kind=PRESSURE_SPEED,
     factor=_speed,
-    group=Group.STRENGTH,
-    section="22. Strength of crank and rod",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
     advice="What a dry bearing warms up and wears by; makers of bushings give a limit, of 0.05 to 2 MPa m/s.",
     example="0.5 MPa m/s",
@@ -78,8 +76,6 @@ _wear = partial(
     PinRubbing,
     kind=LENGTH,
     factor=_worn,
-    group=Group.STRENGTH,
-    section="22. Strength of crank and rod",
     source="J. F. Archard, Contact and rubbing of flat surfaces, J. Appl. Phys. 24, 1953, 981-988",
     advice="Depth over the bearing's projected area, at the mean of all crank angles.",
     example="0.1 mm",
@@ -87,66 +83,48 @@ _wear = partial(
 PV_PIVOT = _pv(
     name="pv_pivot",
     title="pv of the crank pivot",
-    pin="crank_pivot",
-    links=JOINED["crank_pivot"],
     place=470,
     sentence="The mean of pressure times rubbing speed in the bearing of the crank's pivot, over the crank's depth.",
     formula="mean of |P| |omega| / (2 b) over the crank angle, b the depth of the bar",
-    picture="pivot force",
-    needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, PIVOT_LOADED, SPEED),
+    **of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_CRANK_PIN = _pv(
     name="pv_crank_pin",
     title="pv of the crank pin",
-    pin="crank_pin",
-    links=JOINED["crank_pin"],
     place=471,
     sentence="The mean of pressure times rubbing speed in the crank pin's bearing, in the thinner of crank and rod.",
     formula="mean of |A| (1 - phi') |omega| / (2 b) over the crank angle, b the depth of the bar",
-    picture="crank pin force",
-    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED, SPEED),
+    **of_pin("crank_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_SLIDER_PIN = _pv(
     name="pv_slider_pin",
     title="pv of the slider pin",
-    pin="slider_pin",
-    links=JOINED["slider_pin"],
     place=472,
     sentence="The mean of pressure times rubbing speed in the slider pin's bearing, over the depth of the rod.",
     formula="mean of |B| |phi'| |omega| / (2 b) over the crank angle, b the depth of the bar",
-    picture="slider pin force",
-    needs=(STRENGTH, EVEN_SPEED, ROD_BAR, LOADED, SPEED),
+    **of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 WEAR_PIVOT = _wear(
     name="wear_pivot",
     title="wear of the crank pivot",
-    pin="crank_pivot",
-    links=JOINED["crank_pivot"],
     place=474,
     sentence="The depth that a million cycles wear off the bearing of the crank's pivot, over the depth of the crank.",
     formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
-    picture="pivot force",
-    needs=(WEARS, EVEN_SPEED, CRANK_BAR, PIVOT_LOADED),
+    **of_pin("crank_pivot", (WEARS, EVEN_SPEED)),
 )
 WEAR_CRANK_PIN = _wear(
     name="wear_crank_pin",
     title="wear of the crank pin",
-    pin="crank_pin",
-    links=JOINED["crank_pin"],
     place=475,
     sentence="The depth that a million cycles wear off the bearing of the crank pin, in the thinner of crank and rod.",
     formula="10^6 K / (2 b) times the integral of |A| (1 - phi') over the crank angle of a cycle",
-    picture="crank pin force",
-    needs=(WEARS, EVEN_SPEED, A_BAR, LOADED),
+    **of_pin("crank_pin", (WEARS, EVEN_SPEED)),
 )
 WEAR_SLIDER_PIN = _wear(
     name="wear_slider_pin",
     title="wear of the slider pin",
-    pin="slider_pin",
-    links=JOINED["slider_pin"],
     place=476,
     sentence="The depth that a million cycles wear off the bearing of the slider pin, over the depth of the rod.",
     formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
-    picture="slider pin force",
-    needs=(WEARS, EVEN_SPEED, ROD_BAR, LOADED),
+    **of_pin("slider_pin", (WEARS, EVEN_SPEED)),
 )

@@ -11,7 +11,6 @@ from .kinds import AREA, LENGTH, RATIO
 from .quantity import Domain, Group
 from .reach import Ranges, Reach
 
-_SECTION = "2. Closed forms"
 _ABOVE_ONE = Domain(
     lower=1.0,
     idle=True,
@@ -44,7 +43,6 @@ STROKE = ClosedFormQuantity(
     sentence="The stroke is the way of the slider from one dead centre to the other.",
     advice="It equals twice the crank only without offset.",
     formula="S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)",
-    section=_SECTION,
     picture="stroke",
     example="280 mm",
     reach=Reach(
@@ -53,7 +51,6 @@ STROKE = ClosedFormQuantity(
         less="lower the lower end of crank: a stroke is never shorter than 2 crank",
     ),
     offered=("motion",),
-    on_sheet=True,
 )
 ROD_TO_OFFSET = ClosedFormQuantity(
     name="rod_to_offset",
@@ -65,7 +62,6 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     sentence="The length of the rod divided by the size of the offset: a rule such as rod = 3.2 offset.",
     advice="Held at one value it leaves one choice fewer, and the search meets it exactly.",
     formula="l / |e|, infinite without offset",
-    section=_SECTION,
     picture="offset",
     domain=_ABOVE_ONE,
     in_line=math.inf,
@@ -75,7 +71,6 @@ ROD_TO_OFFSET = ClosedFormQuantity(
         less="lower the lower end of rod or raise the upper end of offset",
     ),
     offered=("proportions",),
-    on_sheet=True,
     plain=True,
     turning=False,
 )
@@ -88,7 +83,6 @@ ROD_TO_CRANK = ClosedFormQuantity(
     group=Group.PROPORTIONS,
     sentence="The length of the rod divided by that of the crank; the higher, the more evenly the slider moves.",
     formula="l / r",
-    section=_SECTION,
     picture="rod",
     example=2.5,
     better="high",
@@ -99,7 +93,6 @@ ROD_TO_CRANK = ClosedFormQuantity(
         less="lower the lower end of rod or raise the upper end of crank",
     ),
     offered=("proportions",),
-    on_sheet=True,
     plain=True,
     turning=False,
 )
@@ -111,8 +104,6 @@ FOOTPRINT = ClosedFormQuantity(
     group=Group.PROPORTIONS,
     sentence="The footprint is the area of the rectangle that the pin centres need over a whole turn.",
     formula="(x_out + r) (r + max(r, |e|)) with x_out = sqrt((l+r)^2 - e^2)",
-    section=_SECTION,
     picture="footprint",
     offered=("objective",),
-    on_sheet=True,
 )

@@ -118,7 +118,7 @@ class Pieces:
         )
 
 
-def _fact(default: Any) -> Any:
+def fact(default: Any) -> Any:
     """Return a fact that is told, not computed with: quantities that differ in it alone compute the same."""
     return _field(default=default, compare=False)
 
@@ -145,32 +145,32 @@ class Quantity(ABC):
     """
 
     name: str
-    title: str = _fact("")
+    title: str = fact("")
     kind: Kind
-    key: str = _fact("")
-    short: str = _fact("")
-    place: int = _fact(1000)
-    group: Group = _fact(Group.FURTHER)
-    sentence: str = _fact("")
-    advice: str = _fact("")
-    formula: str = _fact("")
-    section: str = _fact("")
-    source: str = _fact(MECHANICS)
-    picture: str = _fact("")
-    example: str | float | None = _fact(None)
-    better: Better = _fact("low")
-    signed: bool = _fact(False)
-    domain: Domain | None = _fact(None)
-    floor: float | None = _fact(None)
-    in_line: float | None = _fact(None)
-    needs: tuple[Need, ...] = _fact(())
-    instead: str = _fact("")
-    reach: Reach | None = _fact(None)
-    about_tolerances: bool = _fact(False)
-    offered: tuple[Offer, ...] = _fact(())
-    on_sheet: bool = _fact(False)
-    plain: bool = _fact(False)
-    turning: bool = _fact(True)
+    key: str = fact("")
+    short: str = fact("")
+    place: int = fact(1000)
+    group: Group = fact(Group.FURTHER)
+    sentence: str = fact("")
+    advice: str = fact("")
+    formula: str = fact("")
+    section: str = fact("")
+    source: str = fact(MECHANICS)
+    picture: str = fact("")
+    example: str | float | None = fact(None)
+    better: Better = fact("low")
+    signed: bool = fact(False)
+    domain: Domain | None = fact(None)
+    floor: float | None = fact(None)
+    in_line: float | None = fact(None)
+    needs: tuple[Need, ...] = fact(())
+    instead: str = fact("")
+    reach: Reach | None = fact(None)
+    about_tolerances: bool = fact(False)
+    offered: tuple[Offer, ...] = fact(())
+    on_sheet: bool = fact(False)
+    plain: bool = fact(False)
+    turning: bool = fact(True)
     table: ClassVar[str] = ""
     """Table of a job without which there is no such quantity; none for one that every problem has."""
 

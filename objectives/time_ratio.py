@@ -40,7 +40,6 @@ TIME_RATIO = ClosedFormQuantity(
     ),
     advice="Which stroke is the slow one follows from the sign of the offset and from the direction of rotation.",
     formula="Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r))",
-    section="2. Closed forms",
     picture="time ratio",
     example=1.2,
     better="high",
@@ -59,5 +58,4 @@ TIME_RATIO = ClosedFormQuantity(
         less="lower the lower end of offset",
     ),
     offered=("motion", "objective"),
-    on_sheet=True,
 )

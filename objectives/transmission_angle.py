@@ -32,7 +32,6 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     ),
     advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
     formula="cos(mu_min) = (r + |e|) / l",
-    section="2. Closed forms",
     picture="transmission angle",
     example="40 deg",
     better="high",
@@ -45,5 +44,4 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
         less="lower the lower end of rod, or raise the upper end of crank or offset",
     ),
     offered=("requirement", "objective"),
-    on_sheet=True,
 )
