@@ -55,6 +55,33 @@ HOLDING_TORQUE = _peak(
     advice="With friction it is what moves the linkage there; less holds it.",
     formula="max of |T| at both ends, w and alpha towards 0",
 )
+HOLDING_FORCE_WITHOUT_FRICTION = _peak(
+    name="holding_force_without_friction",
+    title="holding force without friction",
+    kind=FORCE,
+    state=None,
+    free=True,
+    rubbing="holding_force",
+    driver="slider",
+    instead="holding_torque_without_friction",
+    place=317,
+    sentence="The greater force on the slider at the two ends of the swing that balances the loads, without friction.",
+    formula="max of |P| at both ends, mu = 0, x' w and alpha towards 0",
+    example="20 kN",
+)
+HOLDING_TORQUE_WITHOUT_FRICTION = _peak(
+    name="holding_torque_without_friction",
+    title="holding torque without friction",
+    kind=TORQUE,
+    state=None,
+    free=True,
+    rubbing="holding_torque",
+    driver="crank",
+    instead="holding_force_without_friction",
+    place=318,
+    sentence="The greater torque on the crank at the two ends of the swing that balances the loads, without friction.",
+    formula="max of |T| at both ends, mu = 0, w and alpha towards 0",
+)
 PEAK_ACTUATOR_POWER = _peak(
     name="peak_actuator_power",
     kind=POWER_KIND,
@@ -81,7 +108,7 @@ SWING_EFFICIENCY = SwingIntegral(
     title="efficiency of the swing",
     kind=RATIO,
     of="share",
-    rubbing=True,
+    rubbing="1",
     group=Group.DRIVE,
     picture="power",
     place=316,

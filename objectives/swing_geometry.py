@@ -1,4 +1,4 @@
-"""Geometry of a limited swing: transmission angle of the driven side, way of the slider."""
+"""Geometry of a limited swing: transmission angle of the driven side, way of the slider, angle of the crank."""
 
 import numpy as np
 
@@ -31,6 +31,7 @@ ACTUATOR_TRAVEL = SwingForm(
     title="travel of the slider",
     kind=LENGTH,
     of="travel",
+    stated="slider",
     place=301,
     group=Group.MOTION,
     sentence="The distance of the slider between the two ends of the swing.",
@@ -38,4 +39,18 @@ ACTUATOR_TRAVEL = SwingForm(
     formula="|x(end) - x(start)|",
     picture="speed",
     example="2 m",
+)
+SWING_ANGLE = SwingForm(
+    name="swing_angle",
+    title="angle of the swing",
+    kind=ANGLE,
+    of="swing",
+    stated="crank",
+    place=302,
+    group=Group.MOTION,
+    sentence="The angle by which the crank turns between the two ends of the swing.",
+    advice="Where the two places of the slider are stated, it follows from the lengths.",
+    formula="|theta(end) - theta(start)|",
+    picture="speed",
+    example="90 deg",
 )

@@ -11,10 +11,10 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.swing.closure import driven_angles, passes, travels
-from ..model.swing.peaks import SwingPeaks, holding_peaks, swing_peaks
+from ..model.swing.closure import driven_angles, passes, swing_angles, travels
+from ..model.swing.peaks import SwingPeaks, holding_peaks, least_drives, swing_peaks
 from ..model.swing.swing import Swing
-from ..model.swing.words import Driver
+from ..model.swing.words import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
 from .needs import Without
 from .quantity import MECHANICS, Array, Pieces, Quantity, Values
@@ -33,7 +33,7 @@ class SwingQuantity(Quantity):
     driver: Driver | None = field(default=None, compare=False)
     timed: bool = field(default=False, compare=False)
     tolerated: bool = field(default=False, compare=False)
-    rubbing: bool = field(default=False, compare=False)
+    rubbing: str = field(default="", compare=False)
     turning: bool = field(default=False, compare=False)
     section: str = field(default="16. Crank not at constant speed", compare=False)
     source: str = field(default=MECHANICS, compare=False)
@@ -68,15 +68,22 @@ class SwingQuantity(Quantity):
                     'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
                 )
         if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
-            return "it is 1 without friction; got none; add for example [friction] guide = 0.1, or leave it out"
+            return (
+                f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "
+                "out"
+            )
         return super().lacks(mechanism, without)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SwingPeak(SwingQuantity):
-    """The greatest size of a state over both ways. state: of `points`; None for the drive at rest at the ends."""
+    """The greatest size of a state over both ways. state: of `points`; None for the drive at rest at the ends.
+
+    free: whether that is without friction.
+    """
 
     state: int | None
+    free: bool = False
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -91,8 +98,27 @@ class SwingPeak(SwingQuantity):
 
     def _peaks(self, mechanism: Mechanism, dimensions: Array, gradients: bool, *, kept: int) -> SwingPeaks:
         if self.state is None:
-            return holding_peaks(mechanism, self._given, dimensions, gradients=gradients)
+            return holding_peaks(mechanism, self._given, dimensions, free=self.free, gradients=gradients)
         return swing_peaks(mechanism, self._given, self.state, dimensions, gradients=gradients, kept=kept)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwingLeast(SwingQuantity):
+    """The least drive along the motion of one way, without inertia: below zero where loads push the linkage on."""
+
+    back: bool
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        found = least_drives(mechanism, self._given, dimensions, back=self.back, gradients=gradients, kept=1)
+        values = np.where(found.values[:, 0] == np.inf, -np.inf, -found.values[:, 0] + 0.0)
+        return Values(values, None if found.gradients is None else -found.gradients[:, 0])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the lowest local dips; see `Quantity`."""
+        found = least_drives(mechanism, self._given, dimensions, back=self.back, gradients=True)
+        assert found.gradients is not None
+        return Pieces(-found.values + 0.0, -found.gradients, found.places, least=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,14 +136,30 @@ class SwingIntegral(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingForm(SwingQuantity):
-    """A closed form of crank, rod and offset: the least transmission angle, or the way of the slider."""
+    """A closed form of lengths and ends: the least transmission angle, the way of the slider, the angle of the crank.
 
-    of: Literal["angle", "travel"]
+    stated: whose ends must not be stated, as they say it already; None where it does not matter.
+    """
+
+    of: Literal["angle", "travel", "swing"]
+    stated: Stated | None = field(default=None, compare=False)
 
     @property
     def of_dimensions(self) -> bool:
         """True."""
         return True
+
+    def unfit(self, swing: Swing) -> str | None:
+        """Return rule, value and remedy where every design has the same; see `SwingQuantity`."""
+        if swing.of == self.stated:
+            own = self.unit.factor * abs(swing.end - swing.start)
+            keys = "from and to" if swing.of == "crank" else "slider_from and slider_to"
+            return (
+                f"[motion] states it, by {keys}, the same for all designs; got {own:.6g} {self.unit.symbol} there; "
+                f"leave it out, or state {'the two places of the slider' if swing.of == 'crank' else 'crank angles'} "
+                "instead and let it follow"
+            )
+        return super().unfit(swing)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -126,21 +168,21 @@ class SwingForm(SwingQuantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the angles at the places where the least may be, lowest first; see `Quantity`."""
-        sign = 1.0 if mechanism.branch == "open" else -1.0
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
-        rows = np.flatnonzero(passes(self._given, sign, designs))
-        if self.of == "travel":
-            one, slope = travels(self._given, sign, designs[rows])
-            own, slopes = one[:, None], slope[:, None]
-        else:
-            angles = driven_angles(self._given, sign, designs[rows])
+        rows = np.flatnonzero(passes(mechanism, self._given, designs))
+        if self.of == "angle":
+            angles = driven_angles(mechanism, self._given, designs[rows])
             own, slopes = angles.values, angles.slopes
+        else:
+            take = travels if self.of == "travel" else swing_angles
+            one, slope = take(mechanism, self._given, designs[rows])
+            own, slopes = one[:, None], slope[:, None]
         order = np.argsort(own, axis=1, kind="stable")
         values = np.full((len(designs), own.shape[1]), np.inf)
         values[:, 0] = np.nan
         gradients = np.zeros((*values.shape, designs.shape[1]))
         labels = np.zeros(values.shape)
         values[rows] = np.take_along_axis(own, order, axis=1)
-        gradients[rows, :, :3] = np.take_along_axis(slopes, order[:, :, None], axis=1)
+        gradients[rows] = np.take_along_axis(slopes, order[:, :, None], axis=1)
         labels[rows] = order
         return Pieces(values, gradients, labels, least=self.of == "angle")

@@ -16,6 +16,7 @@ from .friction import Friction
 from .links import Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .speed_profile import Profile
+from .start import Start
 from .strength import Strength
 from .varying import Varying, put, require_possible
 
@@ -108,6 +109,7 @@ class Mechanism:
     arrangement: identical cylinders on one crankshaft; `signals.of_shaft` says what adds up and what is of one.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     strength: material and pins, for what judges the strength of bars; nothing else depends on it.
+    start: of a swing, where designs choose it; nothing else depends on it.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
     offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
     """
@@ -128,6 +130,7 @@ class Mechanism:
     arrangement: Arrangement | None = None
     speed_profile: Profile | None = None
     strength: Strength | None = None
+    start: Start = Start()
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:

@@ -59,6 +59,7 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
 PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
 """Slots of the pins' diameters: behind all that kernels take, so that no kernel differentiates by them."""
 _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
+_SLOTS |= {"start.angle": (10**8 + 3, "rad"), "start.place": (10**8 + 4, "m")}  # of a swing, which takes its own
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 

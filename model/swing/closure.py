@@ -17,68 +17,119 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
+from ..machine.mechanism import Mechanism
+from .ends import Ends, ends_of
 from .push import bend
-from .swing import Swing, extreme_angles
+from .swing import Swing
 
 _FLAT = 1e-12
+_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
 class DrivenAngles:
-    """Angles at the places where the least one may be, rad. values: (n, k), inf where absent. slopes: (n, k, 3)."""
+    """Angles at the places where the least one may be, rad.
+
+    values: (n, m), inf where absent. slopes: (n, m, 3 + k), by the numbers of the designs.
+    """
 
     values: Array
     slopes: Array
 
 
-def closes(swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close over the whole swing, without a dead point where the slider drives."""
-    r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
-    with np.errstate(invalid="ignore"):
-        reach = np.max([np.abs(e - r * np.sin(angle)) for angle in extreme_angles(swing)], axis=0)
-        found = (r > 0.0) & (reach < l) & np.isfinite(designs).all(axis=1)
-    return np.asarray(found)
+def closes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) close over the whole swing."""
+    return _closing(designs, ends_of(mechanism, swing, designs))
 
 
-def passes(swing: Swing, sign: float, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close and pass no dead point where the slider drives.
-
-    sign: +1 on the open branch, -1 on the crossed one.
-    """
-    found = closes(swing, designs)
+def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) close and pass no dead point where the slider drives."""
+    ends = ends_of(mechanism, swing, designs)
+    found = _closing(designs, ends)
     if swing.driver == "slider" and found.any():
-        found &= ~_dead(swing, sign, designs)
-        found[found] = driven_angles(swing, sign, designs[found]).values.min(axis=1) > 0.0
+        sign = _sign(mechanism)
+        found &= ~_dead(ends, sign, designs)
+        own = ends.take(found)
+        found[found] = _angles(swing, own, sign, designs[found]).values.min(axis=1) > 0.0
     return found
 
 
-def _dead(swing: Swing, sign: float, designs: Array) -> Mask:
+def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
+    """Return the transmission angles of designs (n, 3 + k) that close, see `closes`."""
+    return _angles(swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs)
+
+
+def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
+    """Return the way (n,) of the slider from one end to the other, m, and its slopes (n, 3 + k)."""
+    ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
+
+    def way(sizes: Any, first: Any, last: Any) -> Any:
+        return _position(last, sign, sizes) - _position(first, sign, sizes)
+
+    values, slopes = _derived(way, designs, ends, (ends.start, 0), (ends.end, 1))
+    side = np.where(values < 0.0, -1.0, 1.0)
+    return side * values, side[:, None] * slopes
+
+
+def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
+    """Return the angle (n,) of the crank from one end to the other, rad, and its slopes (n, 3 + k)."""
+    ends = ends_of(mechanism, swing, designs, slopes=True)
+    assert ends.slopes is not None
+    slopes = np.zeros(designs.shape)
+    for place, v in enumerate(ends.by):
+        slopes[:, v] = ends.way * (ends.slopes[:, place, 1] - ends.slopes[:, place, 0])
+    return ends.high - ends.low, slopes
+
+
+def _sign(mechanism: Mechanism) -> float:
+    return 1.0 if mechanism.branch == "open" else -1.0
+
+
+def _closing(designs: Array, ends: Ends) -> Mask:
+    r, l = designs[:, 0], designs[:, 1]
+    with np.errstate(invalid="ignore"):
+        reach, angle = ends.reach(designs), ends.high - ends.low
+        found = (r > 0.0) & (reach < l) & np.isfinite(designs).all(axis=1) & (angle > 0.0) & (angle < _TURN)
+    return np.asarray(found)
+
+
+def _dead(ends: Ends, sign: float, designs: Array) -> Mask:
     """Return which designs have a dead point in the swing: beyond two of them the angle is above zero again."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     found = np.zeros(len(designs), np.bool_)
     for reach, side in ((r + l, sign), (r - l, -sign)):
         with np.errstate(divide="ignore", invalid="ignore"):
             angle = np.arcsin(e / reach)
-        found |= np.isfinite(within(swing, angle if side > 0.0 else np.pi - angle))
+        found |= np.isfinite(ends.within(angle if side > 0.0 else np.pi - angle))
     return found
 
 
-def driven_angles(swing: Swing, sign: float, designs: Array) -> DrivenAngles:
-    """Return the transmission angles of designs (n, 3 + k) that close, see `closes`."""
-    sizes = designs[:, :3].astype(np.complex128)
-    stepped = [sizes + 1j * STEP * np.eye(3)[v] for v in range(3)]
-    angles = [np.full(len(designs), angle) for angle in _candidates(swing)]
-    if swing.driver == "slider":
-        angles += _rod_as_fast(swing, sign, designs)
+def _angles(swing: Swing, ends: Ends, sign: float, designs: Array) -> DrivenAngles:
+    places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
+    if swing.driver == "crank":
+        asked = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.by or swing.inside(angle)]
+        places += [(ends.within(angle), None) for angle in asked]
+        side = None
+    else:
+        places += [(angle, None) for angle in _rod_as_fast(ends, sign, designs)]
+        middle = _bend(ends.middle, designs[:, 0], designs[:, 1], designs[:, 2], sign)
+        side = np.where(middle < 0.0, -1.0, 1.0)
+
+    def measure(sizes: Any, theta: Any) -> Any:
+        """Return cos(mu) where the crank drives, else sin(mu)."""
+        r, l, e = sizes[:, 0], sizes[:, 1], sizes[:, 2]
+        if side is not None:
+            with np.errstate(invalid="ignore"):
+                return side * _bend(theta, r, l, e, sign) / l
+        across = e - r * np.sin(theta)
+        return np.where(across.real < 0.0, -across, across) / l
+
     values, slopes = [], []
-    for theta in angles:
+    for theta, end in places:
         there = np.isfinite(theta)
-        at = np.where(there, theta, swing.start)
-        own = [_measure(swing, sign, at, dims) for dims in (sizes, *stepped)]
-        size = own[0].real
-        slope = np.stack([each.imag / STEP for each in own[1:]], axis=1)
+        size, slope = _derived(measure, designs, ends, (np.where(there, theta, ends.start), end))
         steep = np.sqrt(np.maximum(1.0 - size * size, _FLAT))[:, None]
-        if swing.driver == "crank":  # cos(mu)
+        if swing.driver == "crank":
             value, slope = np.arccos(np.minimum(size, 1.0)), -slope / steep
         else:
             value, slope = np.arcsin(np.clip(size, -1.0, 1.0)), slope / steep
@@ -87,28 +138,30 @@ def driven_angles(swing: Swing, sign: float, designs: Array) -> DrivenAngles:
     return DrivenAngles(np.stack(values, axis=1), np.stack(slopes, axis=1))
 
 
-def _candidates(swing: Swing) -> list[float]:
-    return extreme_angles(swing) if swing.driver == "crank" else [swing.start, swing.end]
+def _derived(of: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None]) -> tuple[Array, Array]:
+    """Return a function (n,) of the three sizes and of crank angles, and its derivatives (n, 3 + k) by complex steps.
+
+    angles: each (n,) with the end, 0 or 1, of the swing that it moves with; None where it stays.
+    """
+    sizes = designs[:, :3].astype(np.complex128)
+    values = of(sizes, *(angle for angle, _ in angles)).real
+    slopes = np.zeros(designs.shape)
+    for v in sorted({0, 1, 2, *ends.by}):
+        moved = sizes + 1j * STEP * np.eye(3)[v] if v < 3 else sizes
+        at: list[Any] = [angle for angle, _ in angles]
+        if v in ends.by and ends.slopes is not None:
+            slips = ends.slopes[:, ends.by.index(v)]
+            at = [angle if end is None else angle + 1j * STEP * slips[:, end] for angle, end in angles]
+        slopes[:, v] = of(moved, *at).imag / STEP
+    return values, slopes
 
 
-def _measure(swing: Swing, sign: float, theta: Array, sizes: Any) -> Any:
-    """Return cos(mu) where the crank drives, else sin(mu)."""
-    r, l, e = sizes[:, 0], sizes[:, 1], sizes[:, 2]
-    across = e - r * np.sin(theta)
-    if swing.driver == "crank":
-        return np.where(across.real < 0.0, -across, across) / l
-    half = np.array(0.5 * (swing.start + swing.end))
-    middle = _bend(half, r.real, l.real, e.real, sign)
-    with np.errstate(invalid="ignore"):
-        return np.where(middle < 0.0, -1.0, 1.0) * _bend(theta, r, l, e, sign) / l
-
-
-def _bend(theta: Array, r: Any, l: Any, e: Any, sign: float) -> Any:
+def _bend(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
     sine, cosine = np.sin(theta), np.cos(theta)
     return bend(sine, cosine, motion(sine, cosine, r, l, e, sign))
 
 
-def _rod_as_fast(swing: Swing, sign: float, designs: Array) -> list[Array]:
+def _rod_as_fast(ends: Ends, sign: float, designs: Array) -> list[Array]:
     """Return the crank angles (n,) at which the slider is at the pivot; NaN where the swing has none."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     size = np.abs(e)
@@ -116,33 +169,12 @@ def _rod_as_fast(swing: Swing, sign: float, designs: Array) -> list[Array]:
         half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
         found = []
         for way in (-1.0, 1.0):
-            theta = within(swing, np.where(e < 0.0, -0.5, 0.5) * np.pi + way * half)
+            theta = ends.within(np.where(e < 0.0, -0.5, 0.5) * np.pi + way * half)
             off = np.abs(motion(np.sin(theta), np.cos(theta), r, l, e, sign).x)
             found.append(np.where(off < 1e-6 * r, theta, np.nan))
     return found
 
 
-def within(swing: Swing, angle: Array) -> Array:
-    """Return crank angles (n,) turned by whole turns into the swing; NaN where it does not reach them."""
-    low, high = sorted((swing.start, swing.end))
-    with np.errstate(invalid="ignore"):
-        first = angle + 2.0 * np.pi * np.ceil((low - angle) / (2.0 * np.pi))
-        return np.where(first <= high, first, np.nan)
-
-
-def travels(swing: Swing, sign: float, designs: Array) -> tuple[Array, Array]:
-    """Return the way (n,) of the slider from one end to the other, m, and its slopes (n, 3)."""
-    sizes = designs[:, :3].astype(np.complex128)
-    stepped = [sizes] + [sizes + 1j * STEP * np.eye(3)[v] for v in range(3)]
-    ways = []
-    for dims in stepped:
-        at = [_position(angle, sign, dims) for angle in (swing.start, swing.end)]
-        ways.append(at[1] - at[0])
-    side = np.where(ways[0].real < 0.0, -1.0, 1.0)
-    slopes = np.stack([each.imag / STEP for each in ways[1:]], axis=1)
-    return side * ways[0].real, side[:, None] * slopes
-
-
-def _position(angle: float, sign: float, sizes: Any) -> Any:
+def _position(angle: Any, sign: float, sizes: Any) -> Any:
     sine, cosine = np.sin(angle), np.cos(angle)
     return motion(sine, cosine, sizes[:, 0], sizes[:, 1], sizes[:, 2], sign).x

@@ -85,7 +85,7 @@ def swing_curves(
 ) -> SwingCurves:
     """Return the curves of a linkage that `require_swing` has let pass, at shares (n,) of the time of one way."""
     share = np.atleast_1d(np.asarray(share, dtype=np.float64))
-    s, s_1, s_2 = way_of(swing.law, share)
+    s, s_1, s_2 = way_of(swing.law, share, swing.table)
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
     first, last = driver_ends(linkage, swing)
     # Exact at the ends, where rounding might lie beyond a dead point or the reach of the rod.

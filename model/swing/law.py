@@ -7,6 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from ..arrays import Array
+from ..errors import InputError
 from ..kernel.arithmetic import analytic
 from .words import Law
 
@@ -14,8 +15,9 @@ _TURN = 2.0 * np.pi
 _RAMP = 1.0 / 3.0
 _TOP = 1.0 / (1.0 - _RAMP)
 _STEEP = _TOP / _RAMP
+_ROUNDING = 1e-9
 _LAWS: tuple[Law, ...] = get_args(Law)
-_TRAPEZOID, _HARMONIC, _CYCLOIDAL, _POLYNOMIAL = (_LAWS.index(law) for law in _LAWS[2:])
+_TRAPEZOID, _HARMONIC, _CYCLOIDAL, _POLYNOMIAL, _TABLE = (_LAWS.index(law) for law in _LAWS[2:])
 
 
 def code_of(law: Law) -> int:
@@ -24,10 +26,10 @@ def code_of(law: Law) -> int:
 
 
 @analytic
-def way_at(code: int, t: Any, inside: Any) -> tuple[Any, Any, Any, Any]:
+def way_at(code: int, table: Any, t: Any, inside: Any) -> tuple[Any, Any, Any, Any]:
     """Return s, ds/dt, d2s/dt2 and d3s/dt3 of a law at shares t of the time, from 0 to 1.
 
-    inside: a share that tells on which side of a corner t lies.
+    table: of `spline`, for the law that is one. inside: a share that tells on which side of a corner t lies.
 
     Harmonic: s = (1 - cos(pi t)) / 2. Cycloidal: s = t - sin(2 pi t) / (2 pi). Polynomial: s = 10 t^3 - 15 t^4 + 6 t^5.
     Source: R. L. Norton, Design of Machinery, chapter 8, Cam design (double-dwell functions).
@@ -57,31 +59,93 @@ def way_at(code: int, t: Any, inside: Any) -> tuple[Any, Any, Any, Any]:
             first * _STEEP - last * _STEEP,
             0.0 * t,
         )
+    if code == _TABLE:
+        s, s_1, s_2, s_3 = 0.0 * t, 0.0 * t, 0.0 * t, 0.0 * t
+        for i in range(table.shape[0]):
+            here = 1.0 * (inside >= table[i, 0]) * (1.0 * (inside < table[i, 1]))
+            u, b, c, d = t - table[i, 2], table[i, 4], table[i, 5], table[i, 6]
+            s = s + here * (table[i, 3] + u * (b + u * (c + u * d)))
+            s_1, s_2 = s_1 + here * (b + u * (2.0 * c + 3.0 * u * d)), s_2 + here * (2.0 * c + 6.0 * u * d)
+            s_3 = s_3 + here * (6.0 * d)
+        return s, s_1, s_2, s_3
     return 1.0 * t, 1.0 + 0.0 * t, 0.0 * t, 0.0 * t
 
 
-def way(law: Law, share: Array) -> tuple[Array, Array, Array]:
+NO_TABLE = np.zeros((0, 7))
+
+
+def spline(points: tuple[tuple[float, float], ...]) -> Array:
+    """Return the cubic pieces (k, 7) through points of shares of time and way, at rest at both ends.
+
+    Speed and acceleration are continuous. Of each piece: from which share and up to which it counts, where it begins,
+    and its four coefficients. Raises `InputError` for points that are out of order, or whose way turns back between
+    them. Source: C. de Boor, A Practical Guide to Splines, chapter IV, complete cubic spline.
+    """
+    given = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    t, s = given.T
+    _require_points(t, s)
+    h, rise = np.diff(t), np.diff(s) / np.diff(t)
+    # Slopes m at the knots, m = 0 at the ends: h_i m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_{i-1} m_{i+1} = 3 (...).
+    inner = len(t) - 2
+    matrix, right = np.zeros((inner, inner + 2)), np.zeros(inner)
+    for i in range(inner):
+        matrix[i, i : i + 3] = h[i + 1], 2.0 * (h[i] + h[i + 1]), h[i]
+        right[i] = 3.0 * (h[i + 1] * rise[i] + h[i] * rise[i + 1])
+    m = np.concatenate([[0.0], np.linalg.solve(matrix[:, 1:-1], right), [0.0]])
+    lower, upper = np.concatenate([[-np.inf], t[1:-1]]), np.concatenate([t[1:-1], [np.inf]])
+    second, third = (3.0 * rise - 2.0 * m[:-1] - m[1:]) / h, (m[:-1] + m[1:] - 2.0 * rise) / h**2
+    found = np.stack([lower, upper, t[:-1], s[:-1], m[:-1], second, third], axis=1)
+    for i in range(len(h)):
+        u = np.linspace(0.0, h[i], 101)
+        slow = m[i] + u * (2.0 * second[i] + 3.0 * u * third[i])
+        if slow.min() < -_ROUNDING:
+            raise InputError(
+                "a table of a swing's motion must go on all the way; got one that turns back near the share "
+                f"{t[i] + u[int(np.argmin(slow))]:.4g} of the time; give more points there, or a gentler course"
+            )
+    return found
+
+
+def mirrored(points: tuple[tuple[float, float], ...]) -> Array:
+    """Return the pieces of the motion that is the one of points backwards, from its end to its start."""
+    return spline(tuple((1.0 - t, 1.0 - s) for t, s in reversed(points))) if points else NO_TABLE
+
+
+def _require_points(t: Array, s: Array) -> None:
+    wrong = len(t) < 3 or not np.isfinite([t, s]).all() or (t[0], s[0], t[-1], s[-1]) != (0.0, 0.0, 1.0, 1.0)
+    if wrong or (np.diff(t) <= 0.0).any() or (np.diff(s) < 0.0).any():
+        shown = ", ".join(f"({a:.6g}, {b:.6g})" for a, b in zip(t[:6].tolist(), s[:6].tolist(), strict=True))
+        raise InputError(
+            "a table of a swing's motion has three points or more, shares of time and way, each from 0 to 1, the times "
+            f"rising and the ways not falling; got {shown or 'none'}{' ...' if len(t) > 6 else ''}; "
+            "begin with 0, 0 and end with 1, 1"
+        )
+
+
+def way(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, Array]:
     """Return s, ds/dt and d2s/dt2 at shares of the time, from 0 to 1; see `way_at`."""
-    return way_at(code_of(law), share, share)[:3]
+    return way_at(code_of(law), table, share, share)[:3]
 
 
-def share_of(law: Law, s: float) -> float:
+def share_of(law: Law, s: float, table: Array = NO_TABLE) -> float:
     """Return the share of the time at which the share `s` of the way is made."""
-    return float(shares_of(law, np.array([s]))[0])
+    return float(shares_of(law, np.array([s]), table)[0])
 
 
-def shares_of(law: Law, s: Array) -> Array:
+def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
     """Return the shares of the time at which shares of the way are made; bisection, as s rises."""
     if law in ("slow", "constant"):
         return np.asarray(s, dtype=np.float64)
     low, high = np.zeros(np.shape(s)), np.ones(np.shape(s))
     for _ in range(60):
         middle = 0.5 * (low + high)
-        below = way(law, middle)[0] < s
+        below = way(law, middle, table)[0] < s
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.asarray(0.5 * (low + high))
 
 
-def corners(law: Law) -> tuple[float, ...]:
-    """Return the shares of the time at which the acceleration jumps between the ends."""
+def corners(law: Law, table: Array = NO_TABLE) -> tuple[float, ...]:
+    """Return the shares of the time at which the acceleration jumps or bends between the ends."""
+    if len(table):
+        return tuple(table[1:, 2].tolist())
     return (_RAMP, 1.0 - _RAMP) if law == "trapezoid" else ()

@@ -7,7 +7,7 @@ it, by -dg/dp / (dg/dt) in the share t of the time (implicit function theorem).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,13 +20,14 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import Numbers, numbers_of
+from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
-from .closure import driven_angles, passes, within
+from .closure import driven_angles, passes
+from .ends import Ends, ends_of, farthest, start_column, with_start
 from .forces import locking_angle
-from .law import corners, shares_of
+from .law import corners, mirrored, shares_of
 from .points import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
-from .swing import Swing, extreme_angles
+from .swing import Swing, slowly
 
 _THIN = 1e-12
 _SCAN = 33
@@ -73,16 +74,24 @@ class Many:
     ) -> None:
         """Take designs (n, 3 + k). slow: without inertia. free: without friction. forces: whether states need them."""
         raw, self.loads = fullest_inputs(mechanism)
-        self.mechanism, self.swing = mechanism, replace(swing, law="slow", duration=None) if slow else swing
-        self.numbers: Numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
+        self.mechanism, self.swing = mechanism, slowly(swing) if slow else swing
         self.rubs = mechanism.fullest.friction.acts and not free
         self.path: Path = path_of(self.swing, rubbing=self.rubs, forces=forces)
-        self.blocks, self.steps = derived(raw, self.loads, self.numbers.columns, self.numbers.values, steps=slopes)
-        self.plain: Complexes = self.blocks.astype(np.complex128)
-        self.designs, self.count, self.columns = designs, len(designs), len(self.numbers.columns)
+        self.designs, self.count = designs, len(designs)
         self.sign = 1.0 if mechanism.branch == "open" else -1.0
-        # Alike on both ways is what depends on the position alone: laws are the same backwards.
-        self.both = self.rubs or not all(load.by_position for load in mechanism.loads)
+        self.ends: Ends = ends_of(mechanism, self.swing, designs, slopes=slopes)
+        numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
+        self.blocks, self.steps = derived(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
+        self.plain: Complexes = self.blocks.astype(np.complex128)
+        column = start_column(mechanism)
+        if column is not None:
+            numbers, self.steps = with_start(numbers, self.plain, self.steps, designs, column)
+        self.numbers, self.columns = numbers, len(numbers.columns)
+        self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
+        self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
+        self.table = self.swing.table
+        # Alike on both ways is what depends on the position alone: laws are the same backwards, but for tables.
+        self.both = self.rubs or self.swing.law == "table" or not all(load.by_position for load in mechanism.loads)
 
     def states(self, which: Any, share: Any, inside: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
         """Return states (..., 8) at shares of any shape. which: designs. step: of which raw number the slope is."""
@@ -93,8 +102,8 @@ class Many:
         )
         rows = np.ascontiguousarray(np.broadcast_to(which, shape), dtype=np.int64).ravel()
         stepped = rows if step is None else rows * self.columns + step
-        blocks = self.plain if step is None else self.steps
-        found = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, inside, back))
+        blocks, ends = (self.plain, self.plain_ends) if step is None else (self.steps, self.stepped_ends)
+        found = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, inside, back), ends)
         return found.reshape(*shape, found.shape[1])
 
     def locked(self) -> Mask:
@@ -103,10 +112,10 @@ class Many:
             return np.zeros(self.count, np.bool_)
         d = design_at(self.blocks.transpose(1, 2, 0).reshape(self.blocks.shape[1], -1), slice(None))
         if self.swing.driver == "slider":
-            least = driven_angles(self.swing, self.sign, self.designs).values.min(axis=1)
+            least = driven_angles(self.mechanism, self.swing, self.designs).values.min(axis=1)
             pins = d.crank_pin_circle + d.slider_pin_circle + d.crank_pivot_circle > 0.0
             return np.asarray(pins & (least <= locking_angle(d)))
-        reach = np.max([np.abs(d.e - d.r * np.sin(angle)) for angle in extreme_angles(self.swing)], axis=0)
+        reach = farthest(self.designs, self.ends.extreme())
         return np.asarray(drives(np.sqrt(d.l * d.l - reach * reach), reach, d) <= 0.0)
 
     def ways(self) -> tuple[bool, ...]:
@@ -118,6 +127,7 @@ class Many:
 
         forces: whether cuts that only forces have are wanted too. contacts: of these, those of the guide's force.
         """
+        self.table = mirrored(self.swing.points) if back else self.swing.table
         found = list(self._corners()) + (list(self._kinks()) if forces else [])
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in found)]
         state = np.tile(np.array([-1, -1, *(code for _, code in found)], dtype=np.int64), (self.count, 1))
@@ -129,7 +139,7 @@ class Many:
         return self._with_contacts(own) if touching else own
 
     def _corners(self) -> Any:
-        for share in corners(self.swing.law):
+        for share in corners(self.swing.law, self.table):
             yield np.full(self.count, share), -1
 
     def _kinks(self) -> Any:
@@ -162,12 +172,12 @@ class Many:
                         yield from self._at_angle(angle, PLACE)
 
     def _at_angle(self, angle: Array, state: int) -> Any:
-        theta = within(self.swing, angle)
+        theta = self.ends.within(angle)
         if np.isnan(theta).all():
             return
-        first, last = self.swing.start, self.swing.end
+        first, last = self.ends.start, self.ends.end
         if self.swing.driver == "crank":
-            share = shares_of(self.swing.law, np.clip((theta - first) / (last - first), 0.0, 1.0))
+            share = shares_of(self.swing.law, np.clip((theta - first) / (last - first), 0.0, 1.0), self.table)
             yield np.where(np.isnan(theta), np.nan, share), state
         else:
             yield self._at_place(self._place(theta)), state
@@ -177,12 +187,16 @@ class Many:
         with np.errstate(invalid="ignore"):
             return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
 
+    def driver_at(self, theta: Array) -> Array:
+        """Return where the driver is at crank angles (n,): these, or slider positions, m."""
+        return theta if self.swing.driver == "crank" else self._place(theta)
+
     def _at_place(self, x: Array) -> Array:
-        first, last = self._place(self.swing.start), self._place(self.swing.end)
+        first, last = self._place(self.ends.start), self._place(self.ends.end)
         with np.errstate(divide="ignore", invalid="ignore"):
             s = (x - first) / (last - first)
         inside = (s >= 0.0) & (s <= 1.0)
-        return np.where(inside, shares_of(self.swing.law, np.where(inside, s, 0.0)), np.nan)
+        return np.where(inside, shares_of(self.swing.law, np.where(inside, s, 0.0), self.table), np.nan)
 
     def _with_contacts(self, own: Pieces) -> Pieces:
         """Return pieces cut where the guide's force changes sides, between neighbours of a row of samples in each."""
@@ -253,10 +267,11 @@ def _sorted(own: Pieces) -> Pieces:
 def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can swing as asked; see `require_swing` of one."""
     sign = 1.0 if mechanism.branch == "open" else -1.0
-    found = passes(swing, sign, designs)
+    found = passes(mechanism, swing, designs)
     if swing.driver == "crank" and mechanism.fullest.friction.crank_pin.circle and found.any():
         # The rod turns as fast as the crank where the slider is at the pivot.
-        theta = np.linspace(swing.start, swing.end, 361)
+        ends = ends_of(mechanism, swing, designs[found])
+        theta = np.linspace(ends.start, ends.end, 361, axis=1)
         r, l, e = (designs[found, i : i + 1] for i in range(3))
         found[found] = (sign * motion(np.sin(theta), np.cos(theta), r, l, e, sign).x > 0.0).all(axis=1)
     return found

@@ -16,7 +16,7 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure
 from .forces import SwingCurves, driver_ends, swing_curves
-from .law import corners, share_of
+from .law import corners, mirrored, share_of
 from .swing import Swing, dead_points
 
 _SAMPLES = 721
@@ -118,7 +118,9 @@ class Over:
         return 0.0 if abs(total) <= _EQUAL * gross else total
 
     def _cuts(self, back: bool) -> Array:
-        shares = [0.0, 1.0, *corners(self.swing.law), *(self._share(angle) for angle in self._kinks())]
+        table = mirrored(self.swing.points) if back else self.swing.table
+        kinks = (self._share(angle, table) for angle in self._kinks())
+        shares = [0.0, 1.0, *corners(self.swing.law, table), *kinks]
         if back:
             shares = [1.0 - share for share in shares]
         return np.unique([*shares, *self._changes(back)])
@@ -146,10 +148,10 @@ class Over:
                 found += [crank_angle_at(x, r, l, e, second) for second in (False, True)]
         return found
 
-    def _share(self, angle: float) -> float:
+    def _share(self, angle: float, table: Array) -> float:
         first, last = driver_ends(self.linkage, self.swing)
         place = angle if self.swing.driver == "crank" else float(self.linkage.at(angle).slider_position)
-        return share_of(self.swing.law, float(np.clip((place - first) / (last - first), 0.0, 1.0)))
+        return share_of(self.swing.law, float(np.clip((place - first) / (last - first), 0.0, 1.0)), table)
 
     def _changes(self, back: bool) -> list[float]:
         """Return the shares at which friction changes sides: of the guide, and of a crank pin that turns back."""

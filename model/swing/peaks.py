@@ -67,10 +67,31 @@ def swing_peaks(
     return _gathered(mechanism, swing, designs, kept, gradients, found, forces=state != ERROR)
 
 
-def holding_peaks(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> SwingPeaks:
-    """Return the sizes of the drive at the ends of designs (n, 3 + k), without inertia."""
-    ways = 2 if Many(mechanism, swing, np.ones((1, 3 + len(mechanism.varying))), slopes=False).both else 1
-    return _gathered(mechanism, swing, designs, 2 * ways, gradients, lambda many: _at_ends(many, gradients), slow=True)
+def least_drives(
+    mechanism: Mechanism, swing: Swing, designs: Array, *, back: bool, gradients: bool = False, kept: int = KEPT
+) -> SwingPeaks:
+    """Return the least drives along the motion of one way, without inertia, negated: local peaks, highest first.
+
+    Where the least one is below zero, loads push the linkage on, and the drive holds it back.
+    """
+
+    def found(many: Many) -> tuple[Array, Array, Array]:
+        first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
+        toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
+        own = many.pieces(back=back)
+        return _of_way(many, own, DRIVE, kept, gradients, toward)
+
+    return _gathered(mechanism, swing, designs, kept, gradients, found, slow=True)
+
+
+def holding_peaks(
+    mechanism: Mechanism, swing: Swing, designs: Array, *, free: bool = False, gradients: bool = False
+) -> SwingPeaks:
+    """Return the sizes of the drive at the ends of designs (n, 3 + k), without inertia. free: without friction."""
+    one = np.ones((1, 3 + len(mechanism.varying)))
+    ways = 2 if Many(mechanism, swing, one, slopes=False, slow=True, free=free).both else 1
+    found = partial(_at_ends, gradients=gradients)
+    return _gathered(mechanism, swing, designs, 2 * ways, gradients, found, slow=True, free=free)
 
 
 def _gathered(
@@ -82,6 +103,7 @@ def _gathered(
     of: Any,
     *,
     slow: bool = False,
+    free: bool = False,
     forces: bool = True,
 ) -> SwingPeaks:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
@@ -93,12 +115,12 @@ def _gathered(
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]
-        many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, forces=forces)
+        many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
         stuck = many.locked()
         if stuck.any():
             values[own[stuck], 0] = np.inf
             own = own[~stuck]
-            many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, forces=forces)
+            many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
         if len(own):
             values[own], places[own], found = of(many)
             if gradients:
@@ -120,21 +142,25 @@ def _peaks(many: Many, state: int, kept: int, gradients: bool) -> tuple[Array, A
     return first, where, np.take_along_axis(slopes, order[:, :, None], axis=1)
 
 
-def _of_way(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> tuple[Array, Array, Array]:
+def _of_way(
+    many: Many, own: Pieces, state: int, kept: int, gradients: bool, toward: Array | None = None
+) -> tuple[Array, Array, Array]:
+    """Return the peaks of one way. toward: the sign (n,) that a state is judged by; None for its size."""
     n, back = many.count, float(own.back)
-    tops = _tops(many, own, state, kept, gradients)
+    tops = _tops(many, own, state, kept, gradients, toward)
     inside = own.inside[tops.design, tops.piece]
-    share, cut = _refined(many, tops, inside, back, state)
+    share, cut = _refined(many, tops, inside, back, state, toward)
     found = many.states(tops.design, share, inside, back)[:, state].real
+    sides = np.where(found < 0.0, -1.0, 1.0) if toward is None else toward[tops.design]
     values, places = np.full((n, kept), -np.inf), np.full((n, kept), np.nan)
     slopes = np.zeros((n, kept, many.columns if gradients else 0))
-    order = np.lexsort((-np.abs(found), tops.design))
+    order = np.lexsort((-sides * found, tops.design))
     design, rank = tops.design[order], _ranks(tops.design[order])
     fits = rank < kept
     order, design, rank = order[fits], design[fits], rank[fits]
-    values[design, rank], places[design, rank] = np.abs(found[order]), share[order] + back
+    values[design, rank], places[design, rank] = (sides * found)[order], share[order] + back
     if gradients:
-        sign = np.where(found[order] < 0.0, -1.0, 1.0)
+        sign = sides[order]
         slips = _slips(many, own, tops.design[order], cut[order], inside[order])
         for v in range(many.columns):
             stepped = many.states(tops.design[order], share[order], inside[order], back, STEP * slips[:, v], v)
@@ -150,7 +176,7 @@ def _slips(many: Many, own: Pieces, design: Whole, cut: Whole, inside: Array) ->
     return slips
 
 
-def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> _Tops:
+def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool, toward: Array | None) -> _Tops:
     """Return the highest samples that no neighbour exceeds, a few of each design."""
     live, pieces = own.live, own.cuts.shape[1] - 1
     count = _ALL if pieces == 1 else max(_LEAST, _ALL // pieces)
@@ -160,12 +186,18 @@ def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> _T
     inside = np.broadcast_to(own.inside[design, piece][:, None], (len(design), count))
     values = np.full(share.shape, -np.inf)
     rows = np.broadcast_to(design[:, None], inside.shape)
-    values[design, piece] = np.abs(many.states(rows, share[design, piece], inside, float(own.back))[..., state].real)
+    found = many.states(rows, share[design, piece], inside, float(own.back))[..., state].real
+    values[design, piece] = np.abs(found) if toward is None else toward[design][:, None] * found
     values = np.where(np.isnan(values), -np.inf, values)
     padded = np.pad(values, ((0, 0), (0, 0), (1, 1)), constant_values=-np.inf)
     top = (values >= padded[:, :, :-2]) & (values > padded[:, :, 2:])
     highest = values.max(axis=(1, 2), keepdims=True)
-    top &= values >= (1.0 - (2.0 * _NEAR if gradients else _NEAR)) * highest
+    near = 2.0 * _NEAR if gradients else _NEAR
+    if toward is None:
+        top &= values >= (1.0 - near) * highest
+    else:
+        size = np.abs(np.where(np.isfinite(values), values, 0.0)).max(axis=(1, 2), keepdims=True)
+        top &= values >= highest - near * size
     flat = np.where(top, values, -np.inf).reshape(many.count, -1)
     best = np.argsort(-flat, axis=1, kind="stable")[:, : 2 * kept]
     at, rank = np.nonzero(np.isfinite(np.take_along_axis(flat, best, axis=1)))
@@ -181,13 +213,16 @@ def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool) -> _T
     )
 
 
-def _refined(many: Many, tops: _Tops, inside: Array, back: float, state: int) -> tuple[Array, Whole]:
+def _refined(
+    many: Many, tops: _Tops, inside: Array, back: float, state: int, toward: Array | None
+) -> tuple[Array, Whole]:
     """Return the shares of tops, roots of the slope by bracketed secants, and the cut of each, -1 for none."""
     share, cut = tops.share.copy(), tops.cut.copy()
 
     def slope(rows: Whole) -> Array:
         found = many.states(tops.design[rows], share[rows], inside[rows], back, STEP)[:, state]
-        return np.asarray(np.where(found.real < 0.0, -1.0, 1.0) * found.imag / STEP)
+        side = np.where(found.real < 0.0, -1.0, 1.0) if toward is None else toward[tops.design[rows]]
+        return np.asarray(side * found.imag / STEP)
 
     low, high = tops.low.copy(), tops.high.copy()
     rows = np.arange(len(share))

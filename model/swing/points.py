@@ -15,7 +15,7 @@ from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import Watch, enter, load_on_slider
 from ..dynamics.torque import balance, with_couple
 from ..kernel.arithmetic import analytic, inverse, magnitude
-from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, seldom_kernel
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, seldom_kernel
 from ..kinematics.position import motion
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
@@ -40,23 +40,20 @@ _NO_WATCH = Watch(0, 0.0, 1.0, False)
 class Path(NamedTuple):
     """A swing as the kernel takes it. slider: whether the slider drives. law: code. per_time: 1 / s, 0 where slow."""
 
-    start: float
-    end: float
     slider: bool
     law: int
     per_time: float
     tolerance: float
     rubbing: bool
     forces: bool
+    table: Table
 
 
 def path_of(swing: Swing, *, rubbing: bool, forces: bool) -> Path:
     """Return a swing for the kernel. rubbing: whether friction counts. forces: whether they are needed."""
     per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
     law = code_of(swing.law)
-    return Path(
-        swing.start, swing.end, swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces
-    )
+    return Path(swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.table)
 
 
 @analytic
@@ -67,17 +64,17 @@ def slider_at(theta: Any, d: Any) -> Any:
 
 
 @analytic
-def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, path: Path) -> Any:
+def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end: float) -> Any:
     """Return the crank angle of a swing without dead point that puts the slider at x; see `forces.angles_at`."""
     size = math.sqrt(x * x + e * e)
     ratio = (r * r + size * size - l * l) / (2.0 * r * size)
     half = math.acos(min(1.0, max(-1.0, ratio)))
-    middle = 0.5 * (path.start + path.end)
+    middle = 0.5 * (start + end)
     sine, cosine = math.sin(middle), math.cos(middle)
     side = bend(sine, cosine, motion(sine, cosine, r, l, e, branch))
     theta = math.atan2(e, x) + (half if side > 0.0 else -half)
     theta = theta + 2.0 * math.pi * math.floor((middle - theta) / (2.0 * math.pi) + 0.5)
-    low, high = min(path.start, path.end), max(path.start, path.end)
+    low, high = min(start, end), max(start, end)
     for _ in range(2):
         m = motion(math.sin(theta), math.cos(theta), r, l, e, branch)
         theta = min(high, max(low, theta - (m.x - x) / m.x_1))
@@ -126,6 +123,7 @@ def _states(
     slip: Row,
     inside: Row,
     back: Row,
+    ends: ComplexTable,
     loads: Loads,
     path: Path,
     out: ComplexTable,
@@ -142,36 +140,40 @@ def _states(
         if stepped[p] != last_step:
             last_step = stepped[p]
             own[:, :] = steps[last_step]
-        turning = (1.0 if path.end > path.start else -1.0) * (1.0 - 2.0 * back[p])
+        begin, ending = ends[stepped[p], 0], ends[stepped[p], 1]
+        start, end = begin.real, ending.real
+        turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * back[p])
         # Where the piece lies: stroke, pieces of tables, side of the guide.
         d = design_at(block, 0)
-        s, _, _, _ = way_at(path.law, inside[p], inside[p])
-        s = 1.0 - s if back[p] > 0.5 else s
+        s, s_1, s_2, _ = way_at(path.law, path.table, inside[p], inside[p])
+        if back[p] > 0.5:
+            s, s_1, s_2 = 1.0 - s, -s_1, -s_2
         if path.slider:
-            first, final = slider_at(path.start, d), slider_at(path.end, d)
-            within = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, path)
+            first, final = slider_at(start, d), slider_at(end, d)
+            within = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
         else:
-            within = path.start + (path.end - path.start) * s
+            within = start + (end - start) * s
         # The state itself.
         z = design_at(own, 0)
-        w, w_1, w_2, w_3 = way_at(path.law, share[p], inside[p])
+        w, w_1, w_2, w_3 = way_at(path.law, path.table, share[p], inside[p])
         if back[p] > 0.5:
             w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
         a, a_1 = complex(w, w_1 * slip[p]), complex(w_1, w_2 * slip[p])
         a_2 = complex(w_2, w_3 * slip[p])
-        begin, ending = complex(path.start, 0.0), complex(path.end, 0.0)
         if path.slider:
-            sine, cosine = math.sin(path.start), math.cos(path.start)
-            begin = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch).x
-            sine, cosine = math.sin(path.end), math.cos(path.end)
-            ending = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch).x
+            sine, cosine = math.sin(start), math.cos(start)
+            zs, zc = complex(sine, cosine * begin.imag), complex(cosine, -sine * begin.imag)
+            begin = motion(zs, zc, z.r, z.l, z.e, z.branch).x
+            sine, cosine = math.sin(end), math.cos(end)
+            zs, zc = complex(sine, cosine * ending.imag), complex(cosine, -sine * ending.imag)
+            ending = motion(zs, zc, z.r, z.l, z.e, z.branch).x
         place = begin + (ending - begin) * a
         rate = (ending - begin) * a_1
         velocity = rate * path.per_time
         acceleration = (ending - begin) * a_2 * (path.per_time * path.per_time)
         theta, moved = place.real, place.imag
         if path.slider:
-            theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, path)
+            theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, start, end)
             sine, cosine = math.sin(theta), math.cos(theta)
             at = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch)
             moved = (place.imag - at.x.imag) / at.x_1.real
@@ -184,7 +186,12 @@ def _states(
             rise = (acceleration - m.x_2 * speed * speed) * inverse(m.x_1)
         if speed.real == 0.0:
             speed = speed + turning * _STILL
-        block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(speed.real), _STILL), rise.real
+        # Sides are those within the piece: at its place, speed and acceleration.
+        fast, faster = speed.real, rise.real
+        if not path.slider:
+            fast = (end - start) * s_1 * path.per_time
+            faster = (end - start) * s_2 * (path.per_time * path.per_time)
+        block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
         own[_SPEED, 0], own[_ACCELERATION, 0] = speed, rise
         d, z = design_at(block, 0), design_at(own, 0)
         load, outward = 0j, False
@@ -220,13 +227,15 @@ def states(
     loads: Loads,
     path: Path,
     points: tuple[Whole, Whole, Array, Array, Array, Array],
+    ends: Complexes,
 ) -> Complexes:
     """Return states (p, 8) at points: numbers of block and stepped block, share and its imaginary part, piece, way.
 
     blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
-    steps. The piece is told by a share within it; way: 0 forth, 1 back. Shares count from the start of the way.
+    steps. ends: crank angles (k, 2) of both ends of the swing, with them. The piece is told by a share within it; way:
+    0 forth, 1 back. Shares count from the start of the way.
     """
     which, stepped, share, slip, inside, back = points
     out = np.empty((len(share), _STATES), np.complex128)
-    _states(blocks, steps, which, stepped, share, slip, inside, back, loads, path, out)
+    _states(blocks, steps, which, stepped, share, slip, inside, back, ends, loads, path, out)
     return out

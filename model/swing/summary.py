@@ -10,7 +10,7 @@ from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .over import At, Over
-from .swing import Swing, require_swing
+from .swing import Swing, placed, require_swing, slowly
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,10 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     Raises what `require_swing` raises.
     """
     own = require_swing(mechanism, linkage, swing)
+    swing = placed(mechanism, own, swing)
     over = Over(mechanism, own, swing)
     ends = np.array([0.0, 1.0])
-    slow = Over(mechanism, own, replace(swing, law="slow", duration=None))
+    slow = Over(mechanism, own, slowly(swing))
     still = slow.at(ends), slow.at(ends, back=True)
     free = Over(replace(mechanism, friction=Friction()), own, slow.swing)
     locked = over.first_locked()

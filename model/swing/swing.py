@@ -7,30 +7,39 @@ drives, it must not pass a dead point either, sin(theta - phi) = 0, at which no 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from ..checks import require_all_finite, require_numbers
+from ..arrays import Array
+from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..linkage.single import one_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .words import Driver, Law
+from .law import NO_TABLE, spline
+from .places import angles_of
+from .words import Driver, Law, Side, Stated
 
+STARTS = {"crank": "start.angle", "slider": "start.place"}
+"""Which number of a machine says where a swing starts, by what its ends are stated of."""
 _TURN = 2.0 * math.pi
 _LEAST, _MOST = 1e-6, 1e9  # s
 
 
 @dataclass(frozen=True, kw_only=True)
 class Swing:
-    """A swing forth from one crank angle to another, rad, and back.
+    """A swing forth from one crank angle to another, rad, and back; or from one slider position to another, m.
 
-    The crank turns from start towards end: clockwise where end is less. driver: what moves the linkage, a torque on the
-    crank or a force on the slider along its line. law: of the driver's motion over time, each way. duration: of one
-    way, s; none where it is slow. actuator_tolerance: how far the slider may be off where it drives, m.
+    The crank turns from start towards end: clockwise where end is less. of: what start and end are of; of a slider
+    position, `side` says on which side of the line from crank pivot to slider pin the crank pin is, and `placed` gives
+    the crank angles. follows: whether the end keeps its distance from a start that designs choose (`machine.start`).
+    driver: what moves the linkage, a torque on the crank or a force on the slider along its line. law: of the driver's
+    motion over time, each way. duration: of one way, s; none where it is slow. actuator_tolerance: how far the slider
+    may be off where it drives, m. points: of the law that is a table: shares of time and way, see `law.spline`.
     """
 
     start: float
@@ -39,15 +48,26 @@ class Swing:
     law: Law = "slow"
     duration: float | None = None
     actuator_tolerance: float = 0.0
+    of: Stated = "crank"
+    side: Side = "left"
+    follows: bool = False
+    points: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
+        keep_tuples(self, "points")
         require_all_finite("start and end of a swing", (self.start, self.end))
         require_numbers(self, "duration", what="the duration of a swing", above=0.0, unit="s")
         require_numbers(self, "actuator_tolerance", what="the tolerance of the actuator", least=0.0, unit="m")
         require_word("driver", self.driver, Driver)
         require_word("law", self.law, Law)
+        require_word("of", self.of, Stated)
+        require_word("side", self.side, Side)
         angle = abs(self.end - self.start)
-        if not 0.0 < angle < _TURN:
+        if self.of == "slider" and not angle:
+            raise InputError(
+                f"a swing needs two different slider positions; got {1e3 * self.start:.6g} mm twice; change one"
+            )
+        if self.of == "crank" and not 0.0 < angle < _TURN:
             raise InputError(
                 "a swing needs two different crank angles, less than a turn apart; "
                 f"got {math.degrees(self.start):.6g} and {math.degrees(self.end):.6g} deg; "
@@ -63,11 +83,22 @@ class Swing:
             raise InputError(
                 f"one way of a swing takes from {_LEAST:g} to {_MOST:g} s; got {self.duration:g} s; check the unit"
             )
+        if (self.law == "table") != bool(self.points):
+            raise InputError(
+                "a law of motion by a table has its points, and any other has none; got the law "
+                f"{self.law} and {len(self.points)} points; give both, or neither"
+            )
+        _ = self.table
         if self.actuator_tolerance and self.driver == "crank":
             raise InputError(
                 "the tolerance of the actuator is of a slider that drives; got "
                 f"{1e3 * self.actuator_tolerance:g} mm with the crank driven; drive the slider, or leave it out"
             )
+
+    @cached_property
+    def table(self) -> Array:
+        """Pieces (k, 7) of the law that is a table, see `law.spline`; none of others."""
+        return spline(self.points) if self.points else NO_TABLE
 
     @property
     def way(self) -> float:
@@ -79,6 +110,11 @@ class Swing:
         low, high = sorted((self.start, self.end))
         first = angle + _TURN * math.ceil((low - angle) / _TURN)
         return [first] if first <= high else []
+
+
+def slowly(swing: Swing) -> Swing:
+    """Return a swing without inertia."""
+    return replace(swing, law="slow", duration=None, points=())
 
 
 def dead_points(linkage: Linkage) -> tuple[float, ...]:
@@ -95,6 +131,40 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
     return tuple(found)
 
 
+def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
+    """Return the swing of one linkage between two crank angles. Raises `AssemblyError` where it misses a place."""
+    own = getattr(mechanism.start, "angle" if swing.of == "crank" else "place")
+    if own is not None:
+        end = own + (swing.end - swing.start) if swing.follows else swing.end
+        swing = replace(swing, start=own, end=end)
+    if swing.of == "crank":
+        return swing
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    places, side = np.array([swing.start, swing.end]), 1.0 if swing.side == "left" else -1.0
+    angles = angles_of(places, linkage.sign, side, np.array([[r, l, e], [r, l, e]])).tolist()
+    for place, angle in zip(places.tolist(), angles, strict=True):
+        if math.isnan(angle):
+            raise AssemblyError(_missed(place, linkage, swing))
+    return replace(swing, start=angles[0], end=angles[1], of="crank", follows=False)
+
+
+def _missed(place: float, linkage: Linkage, swing: Swing) -> str:
+    r, l, e = (1e3 * float(size) for size in (linkage.crank, linkage.rod, linkage.offset))
+    near, far = abs(l - r), l + r
+    away = math.hypot(1e3 * place, e)
+    if not near < away < far:
+        return (
+            f"the slider must reach both ends of the swing, between {near:.6g} and {far:.6g} mm from the crank pivot; "
+            f"got a slider position of {1e3 * place:.6g} mm, {away:.6g} mm away; move it, or change a length"
+        )
+    other = "crossed" if linkage.branch == "open" else "open"
+    return (
+        f"the slider must reach both ends of the swing on the {linkage.branch} branch, with the crank pin on the "
+        f"{swing.side} of the line to the slider pin; got a slider position of {1e3 * place:.6g} mm, which is on the "
+        f"{other} branch there; move it, take the other side, or the other branch"
+    )
+
+
 def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
     """Return one linkage that can swing as asked, its dimensions as floats.
 
@@ -102,6 +172,11 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
     own = one_linkage(mechanism, linkage)
+    _require_passing(mechanism, own, placed(mechanism, own, swing))
+    return own
+
+
+def _require_passing(mechanism: Mechanism, own: Linkage, swing: Swing) -> None:
     _require_closing(own, swing)
     passed = sorted(angle for dead in dead_points(own) for angle in swing.inside(dead))
     if swing.driver == "slider" and passed:
@@ -125,7 +200,6 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
             )
     if mechanism.friction.crank_pin.circle and swing.driver == "crank":
         _require_one_sense(own, swing)
-    return own
 
 
 def _folded(linkage: Linkage, swing: Swing) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...model.swing.closure import closes, passes
+from ...model.swing.ends import start_column
 from ...model.swing.many import Many
 from ...objectives.tables.evaluate import moving
 from ..problem.problem import Problem
@@ -31,17 +32,26 @@ def unswung(problem: Problem) -> str:
     closing = passing = running = 0
     for index, sheet in enumerate(sheets(problem)):
         part = problem.part(sheet.variant)
-        machine, sign = part.mechanism, 1.0 if part.mechanism.branch == "open" else -1.0
+        machine = part.mechanism
         designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), problem.settings.seed, index))
         designs = designs[np.isfinite(designs).all(axis=1)]
-        closing += int(closes(motion, designs).sum())
-        passing += int(passes(motion, sign, designs).sum())
+        closing += int(closes(machine, motion, designs).sum())
+        passing += int(passes(machine, motion, designs).sum())
         able = designs[moving(machine, motion, designs)]
         if len(able):
             running += int((~Many(machine, motion, able, slopes=False).locked()).sum())
         if running:
             return ""
-    asked = f"the swing from {math.degrees(motion.start):.6g} to {math.degrees(motion.end):.6g} deg"
+    factor, unit = (180.0 / math.pi, "deg") if motion.of == "crank" else (1e3, "mm of the slider")
+    asked = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
+    if any(start_column(problem.part(sheet.variant).mechanism) is not None for sheet in sheets(problem)):
+        asked = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
+    if not closing and motion.of == "slider":
+        return (
+            f"no design of the ranges makes {asked} with the crank pin on the {motion.side} of the line to the slider "
+            "pin: the slider must be between |rod - crank| and rod + crank from the crank pivot at both ends; change "
+            "the ranges, the places, crank_side or the branch"
+        )
     if not closing:
         return (
             f"no design of the ranges closes over {asked}: rod > |offset - crank sin(crank angle)|; "

@@ -25,7 +25,7 @@ from ..problem.requirements import Range
 from .dimensions import kind_of_formula
 from .units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
 
-ROOTS = ("mechanism", "load", "friction", "tolerances", "sections")
+ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and begin names of formulas then."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3

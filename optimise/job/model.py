@@ -179,6 +179,7 @@ class Job(Part):
             friction=self.friction.with_pins(None if self.sections is None else self.sections.pins),
             branch=own.branch,
             strength=None if self.sections is None else self.sections.strength(),
+            start=self.motion.start,
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

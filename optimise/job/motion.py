@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, cast
 
-from pydantic import create_model
+from pydantic import Field, create_model
 
 from ...model.errors import InputError, JobError
+from ...model.machine.start import Start
 from ...model.swing.swing import Swing
-from ...model.swing.words import Driver, Law
+from ...model.swing.words import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
 from ..problem.requirements import Constraint
-from .values import Angle, AngleTolerance, Checked, Clearance, Part, PositiveTime, optional
+from .values import Angle, AngleTolerance, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
 _MARGIN = ANGLE.metric.factor * (SWING_TRANSMISSION_ANGLE.floor or 0.0)
@@ -29,6 +30,9 @@ def _swing(
     driver: Driver = "crank",
     law: Law = "slow",
     duration: float | None = None,
+    law_times: tuple[float, ...] = (),
+    law_shares: tuple[float, ...] = (),
+    crank_side: Side = "left",
     **ends: float,
 ) -> Swing | None:
     """Return the swing that a table states; None for a crank that turns through."""
@@ -37,26 +41,83 @@ def _swing(
         given += ["actuator_tolerance"] if actuator_tolerance else []
         given += [f"driver {driver}"] if driver != "crank" else []
         given += [f"law {law}"] if law != "slow" else []
+        given += ["law_times or law_shares"] if law_times or law_shares else []
+        given += [f"crank_side {crank_side}"] if crank_side != "left" else []
         if given:
             raise InputError(
                 f"a crank that turns through has none of what a swing has; got {', '.join(given)}; "
                 'write kind = "swing", or leave it out'
             )
         return None
-    if set(ends) != {"from", "to"}:
-        missing = " and ".join(sorted({"from", "to"} - set(ends)))
+    of = _stated(set(ends))
+    start, span = ends[_STARTS[of]], ends.get(_SPANS[of])
+    if of == "crank" and crank_side != "left":
         raise InputError(
-            f'a swing runs from one crank angle to another; got no {missing}; add for example from = "11 deg", '
-            'to = "101 deg"'
+            f"the side of the crank is asked where the places of the slider state the swing; got {crank_side} with "
+            "crank angles; leave it out"
         )
     return Swing(
-        start=ends["from"],
-        end=ends["to"],
+        start=start,
+        end=ends[_ENDS[of]] if span is None else start + span,
         driver=driver,
         law=law,
         duration=duration,
         actuator_tolerance=actuator_tolerance,
+        of=of,
+        side=crank_side,
+        follows=span is not None,
+        points=_points(law, law_times, law_shares),
     )
+
+
+def _points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
+    """Return the points of a law that is a table. Raises `InputError` for lists of different lengths."""
+    if law == "table" and not times:
+        raise InputError(
+            "a law of motion by a table has shares of the time and of the way; got no law_times; add for example "
+            "law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
+        )
+    if len(times) != len(shares):
+        raise InputError(
+            "law_times and law_shares have as many values; got "
+            f"{len(times)} and {len(shares)}; give a share of the way for each share of the time"
+        )
+    return tuple(zip(times, shares, strict=True))
+
+
+_STARTS: dict[Stated, str] = {"crank": "from", "slider": "slider_from"}
+_ENDS: dict[Stated, str] = {"crank": "to", "slider": "slider_to"}
+_SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
+
+
+def _stated(keys: set[str]) -> Stated:
+    """Return what the ends of a swing are of. Raises `InputError` unless there is a start, and an end or a span."""
+    found = [of for of in _STARTS if keys & {_STARTS[of], _ENDS[of], _SPANS[of]}]
+    if len(found) > 1:
+        raise InputError(
+            "a swing runs between two crank angles, or between two places of the slider; got "
+            f"{', '.join(sorted(keys))}; leave out those of one"
+        )
+    of = found[0] if found else "crank"
+    if _STARTS[of] not in keys or len(keys) < 2:
+        missing = [name for name in (_STARTS[of], _ENDS[of]) if name not in keys]
+        missing = missing if _SPANS[of] not in keys else [_STARTS[of]]
+        raise InputError(
+            f"a swing runs from one {_PLACES[of]} to another; got no {' and '.join(missing)}; add for example "
+            f"{_EXAMPLES[of]}"
+        )
+    if len(keys) > 2:
+        raise InputError(
+            f"{_ENDS[of]} is where {_SPANS[of]} leads from {_STARTS[of]}; got all three; leave out one of the first two"
+        )
+    return of
+
+
+_PLACES: dict[Stated, str] = {"crank": "crank angle", "slider": "slider position"}
+_EXAMPLES: dict[Stated, str] = {
+    "crank": 'from = "11 deg", to = "101 deg"',
+    "slider": 'slider_from = "3.1 m", slider_to = "0.8 m"',
+}
 
 
 class _Motion(Checked[Swing | None]):
@@ -65,11 +126,18 @@ class _Motion(Checked[Swing | None]):
     makes: ClassVar = _swing
 
     @property
+    def start(self) -> Start:
+        """Where the swing starts, for a start that designs choose."""
+        keys = _STARTS["crank"], _STARTS["slider"]
+        return Start(angle=getattr(self, keys[0]), place=getattr(self, keys[1]))
+
+    @property
     def margin_asked(self) -> float | None:
         """Least transmission angle of the swing that the table asks for, rad."""
         return cast("float | None", getattr(self, "margin"))  # noqa: B009
 
 
+_Shares = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1.0)], ...], Field(max_length=200)]
 _ENTRIES: dict[str, Any] = {
     "kind": (
         Literal["turn", "swing"],
@@ -77,6 +145,22 @@ _ENTRIES: dict[str, Any] = {
     ),
     "from": (Angle | None, optional("crank angle at which the way forth starts", "11 deg")),
     "to": (Angle | None, optional("crank angle at which it ends; less than the first one is clockwise", "101 deg")),
+    "swing": (Angle | None, optional("instead of to: by which angle it turns; below 0 is clockwise", "90 deg")),
+    "slider_from": (
+        Length | None,
+        optional("instead of crank angles: slider position at which the way forth starts, along the line", "3.1 m"),
+    ),
+    "slider_to": (Length | None, optional("slider position at which it ends", "0.8 m")),
+    "slider_travel": (Length | None, optional("instead of slider_to: how far; below 0 is towards -x", "-2.3 m")),
+    "crank_side": (
+        Side,
+        optional(
+            "where places of the slider state the swing: side of the line from crank pivot to slider pin, looking "
+            "along it, that the crank pin is on",
+            "right",
+            default="left",
+        ),
+    ),
     "driver": (
         Driver,
         optional(
@@ -85,6 +169,8 @@ _ENTRIES: dict[str, Any] = {
     ),
     "law": (Law, optional("how the driver moves over time; slow is without inertia", "polynomial", default="slow")),
     "duration": (PositiveTime | None, optional("of one way, for a law other than slow", "30 s")),
+    "law_times": (_Shares, optional("of the law table: shares of the time of one way", [0, 0.3, 0.7, 1], default=())),
+    "law_shares": (_Shares, optional("of the law table: shares of the way made then", [0, 0.2, 0.8, 1], default=())),
     "actuator_tolerance": (
         Clearance,
         optional("how far the driven slider may be off: adds to the error of the crank", "1 mm", default=0.0),
@@ -134,6 +220,18 @@ def require_speed(swing: Swing | None, speed: float | None, varying: Iterable[st
             raise JobError(
                 f"{path}: a swing has a motion of its own, that of [motion]; got it as a variable, or in an option; "
                 "leave it out"
+            )
+
+
+def require_start(varying: Mapping[str, bool]) -> None:
+    """Raise JobError where another number of [motion] than the start is to vary. varying: paths, and whether chosen."""
+    free = {f"motion.{name}" for name in _STARTS.values()}
+    for path, chosen in varying.items():
+        if path.startswith("motion.") and (chosen or path not in free):
+            raise JobError(
+                f"{path}: of a swing its start may vary, within a range; got "
+                f"{'a choice' if chosen else 'a range of another number'}; give it in [motion] alone, and let "
+                f"{' or '.join(sorted(free))} vary, with swing or slider_travel if the end goes along"
             )
 
 

@@ -17,12 +17,12 @@ from .contradictions import require_consistent
 from .formulas import Formulas
 from .messages import key_of
 from .model import Job
-from .motion import require_speed, require_swing_asked, with_margin
+from .motion import require_speed, require_start, require_swing_asked, with_margin
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
 from .target_motion import require_target
-from .varying import discrete_of, ends_of, reach_of, variants_of, varying_machine
+from .varying import discrete_of, ends_of, is_choice, reach_of, variants_of, varying_machine
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
@@ -35,6 +35,8 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     motion = job.motion.build()
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
     require_speed(motion, job.mechanism.speed, {*variables.paths, *chosen})
+    chosen |= {path for path, given in variables.paths.items() if is_choice(given)}
+    require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
     require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
     own = (

@@ -48,6 +48,7 @@ class VariablesPart(Part):
     load: Table = _more("a [[load]], after its place, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
     friction: Table = _more("[friction]", {"guide": [0.05, 0.15]})
     tolerances: Table = _more("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
+    motion: Table = _more("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
     sections: Table = _more("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})
 
     @model_validator(mode="before")

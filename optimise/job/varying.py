@@ -20,6 +20,7 @@ from ...model.linkage.linkage import SlowStroke
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
+from ...model.machine.start import Start
 from ...model.machine.varying import Varying
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
@@ -53,8 +54,10 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
     base = job.machine()
     found = []
     for path, given in job.variables.paths.items():
-        if not _is_choice(given):
+        if not is_choice(given):
             found.append(_varying(job, f"{key}.{path}", path, given))
+    if not any(path.startswith("start.") for item in found for path in item.paths):
+        base = replace(base, start=Start())
     try:
         return replace(base, varying=tuple(found))
     except InputError as error:
@@ -76,7 +79,7 @@ def variants_of(job: Job, formulas: Formulas) -> tuple[tuple[str, ...], tuple[Va
             f"variables: every combination of choices is tried, so there are {MOST} at most; got {sizes} = {count}; "
             "leave out some, or let a number vary over a range"
         )
-    numbers = sum(not _is_choice(given) for given in job.variables.paths.values())
+    numbers = sum(not is_choice(given) for given in job.variables.paths.values())
     if count * numbers > _MOST_READ:
         raise JobError(
             f"variables: numbers that vary are read in every combination of choices, {_MOST_READ} in all at most; got "
@@ -135,7 +138,8 @@ def reach_of(job: Job) -> dict[str, Range]:
     return found
 
 
-def _is_choice(given: object) -> bool:
+def is_choice(given: object) -> bool:
+    """Return whether a variable is one of some values that need not be numbers."""
     return isinstance(given, Mapping) and set(given) == {"choices"}
 
 
@@ -146,7 +150,7 @@ def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
         if isinstance(given, Choices):
             yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in given.choices]
     for path, given in job.variables.paths.items():
-        if _is_choice(given):
+        if is_choice(given):
             values = given["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
                 raise JobError(f"variables.{path}: choices are a list of two values or more; got {shown(values)}")

@@ -19,6 +19,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.start import Start
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
@@ -265,6 +266,7 @@ class Problem:
             start=start, end=end, driver=driver, law=law, duration=duration, actuator_tolerance=actuator_tolerance
         )
         machine, sizes = one_design(self.mechanism, design)
+        machine = replace(machine, start=Start())
         return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), asked)
 
     def _require_chosen(self) -> None:

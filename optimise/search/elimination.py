@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,8 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
+from .rule import Rule
+from .swing_rules import swing_rules
 
 _LINEAR = "linear: "
 """How the origin of a rule of linear equalities begins."""
@@ -35,16 +37,8 @@ ZERO = 1e-300
 
 
 @dataclass(frozen=True)
-class Rule:
-    """One way to compute an unknown: `target` from `sources`. origin: the requirements that it is of, joined by "+".
-
-    wanted: their values.
-    """
-
-    origin: str
-    target: str
-    sources: tuple[str, ...]
-    wanted: tuple[float, ...]
+class ClosedRule(Rule):
+    """A rule of `_FORMULAS`."""
 
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
@@ -122,16 +116,19 @@ class Sheet:
 def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     """Return the sheets of a problem: one for each possible sign of the offset, in every variant of its choices.
 
-    Those that leave something free come first: the search moves on them; of each other one its only design is all.
+    Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
+    other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
     leaves one sign. Raises `InputError` where the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
     found = (
-        _sheet(part, sign, offset, eliminate=eliminate, variant=variant)
+        replace(sheet, steps=steps)
         for variant, part in enumerate(parts)
         for sign, offset in signs(part)
+        for sheet in [_sheet(part, sign, offset, eliminate=eliminate, variant=variant)]
+        for steps in itertools.product(*(step.solutions for step in sheet.steps))
     )
     return tuple(sorted(found, key=lambda sheet: not sheet.free))
 
@@ -171,19 +168,21 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
     equations: dict[str, Linear] = {}
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
-    rules = _rules({name: value for name, value in wanted.items() if name not in equations}) if eliminate else []
+    others = {name: value for name, value in wanted.items() if name not in equations and eliminate}
+    rules = [*_rules(others), *swing_rules(problem, others, sign)]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
     solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
     more = [*bounds][len(DIMENSIONS) :]
-    best: tuple[tuple[int, int, bool], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
+    best: tuple[tuple[int, int, bool, int], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
             for block in solved:
                 for steps in _ways({*free, *fixed, *more}, [*rules, *_linear(block)]):
                     used = _fulfilled(steps, block)
-                    score = (len(wanted) - len(used), size, not used.issuperset(block.origins))
+                    roots = math.prod(len(step.solutions) for step in steps)
+                    score = (len(wanted) - len(used), size, not used.issuperset(block.origins), roots)
                     if best is None or score < best[0]:
                         best = (score, free, steps, used)
     assert best is not None  # all unknowns free always works
@@ -241,11 +240,11 @@ def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
 
 def _rules(wanted: dict[str, float]) -> list[Rule]:
     """Return every rule that the wanted values give."""
-    rules = []
+    rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():
         names = origin.split("+")
         if all(name in wanted for name in names):
-            rules.append(Rule(origin, target, sources, tuple(wanted[name] for name in names)))
+            rules.append(ClosedRule(origin, target, sources, tuple(wanted[name] for name in names)))
     # At a time ratio of one the dead centres lie opposite, whatever the rod.
     if TIME_RATIO.name in wanted and _excess(wanted[TIME_RATIO.name])[1] == 1.0:
         rules = [rule for rule in rules if (rule.origin, rule.target) != (_PAIR, "rod")]

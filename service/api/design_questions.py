@@ -5,12 +5,14 @@ Each answer is what the command of the same name prints with --json.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
+from ...model.machine.start import Start
 from ...model.swing.summary import summarise
 from ...model.swing.swing import Swing
 from ...model.swing.words import Driver, Law
@@ -250,5 +252,6 @@ def analyse_swing(
         actuator_tolerance=actuator_tolerance_mm / LENGTH.metric.factor,
     )
     stored = found.design(design)
-    record = finite(swing_record(stored.mechanism, summarise(stored.mechanism, stored.linkage, asked)))
+    machine = replace(stored.mechanism, start=Start())
+    record = finite(swing_record(machine, summarise(machine, stored.linkage, asked)))
     return SwingModel(job=found.job.id, number=design, swing=record_in(record, units))

@@ -112,8 +112,8 @@ class SwingPreview(BaseModel):
     feasible_share: of the sampled designs that meet all requirements which were checked.
     """
 
-    from_deg: float = Field(examples=[11.16])
-    to_deg: float = Field(examples=[101.16])
+    from_deg: float | None = Field(description="of the example; null without one", examples=[11.16])
+    to_deg: float | None = Field(description="of the example; null without one", examples=[101.16])
     closing_share: float = Field(examples=[0.6])
     travel_mm: Ends | None = Field(description="null where nothing makes the swing", examples=[[1900.0, 2400.0]])
     feasible_share: float = Field(examples=[0.3])
@@ -223,8 +223,8 @@ def _swing(found: PossibleSwing | None) -> SwingPreview | None:
     if found is None:
         return None
     return SwingPreview(
-        from_deg=math.degrees(found.swing.start),
-        to_deg=math.degrees(found.swing.end),
+        from_deg=None if found.shown is None else math.degrees(found.shown.start),
+        to_deg=None if found.shown is None else math.degrees(found.shown.end),
         closing_share=found.closing,
         travel_mm=_in(1e3, found.travel),
         feasible_share=found.feasible,
@@ -237,7 +237,7 @@ def _swing(found: PossibleSwing | None) -> SwingPreview | None:
 def _swing_example(found: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
     from ..preview.swinging import positions
 
-    swing, design = found.swing, np.array([lengths])
+    swing, design = found.shown or found.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
     # One point a degree; of a whole turn those of the swing, and one beyond each end with the place at that end.
     angles = range(math.floor(low), math.floor(high) + 2)

@@ -1,4 +1,4 @@
-"""`slidercrank swing`: a crank that swings between two angles, and what drives it."""
+"""`slidercrank swing`: a crank that swings between two angles or places of the slider, and what drives it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
-from ...model.swing.words import Driver, Law
+from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ..designs.shown_units import record_in, rows_in
 from ..runs.result import csv_text
@@ -37,6 +37,17 @@ def swing(
     end: Annotated[
         str | None, typer.Option("--to", metavar="ANGLE"), "Crank angle at which it ends; less is clockwise."
     ] = None,
+    slider_from: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH"),
+        'Slider position at which the way forth starts, such as "3.1 m", instead of crank angles.',
+    ] = None,
+    slider_to: Annotated[str | None, typer.Option(metavar="LENGTH"), "Slider position at which it ends."] = None,
+    crank_side: Annotated[
+        Side | None,
+        "With slider positions: side of the line from crank pivot to slider pin, looking along it, that the crank pin "
+        "is on; left if not said.",
+    ] = None,
     driver: Annotated[Driver | None, "What is driven: the crank by a torque, or the slider by a force."] = None,
     law: Annotated[Law | None, "How the driver moves over time; slow is without inertia."] = None,
     duration: Annotated[
@@ -50,13 +61,14 @@ def swing(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Analyse a swing of the crank between two angles, forth and back.
+    """Analyse a swing of the crank between two angles, or two slider positions, forth and back.
 
     The linkage need not turn through: it must close over the whole swing, and may not pass a dead point where the
     slider drives. Drive forces and torques are along +x and counter-clockwise; peaks are of the continuous crank
     angle. Without JOB nothing has mass. Loads that act on the slider are those of JOB; its speed does not matter. What
     is not given is as in [motion] of JOB; without it the crank drives, slowly.
     """
+    from ...model.machine.start import Start
     from ...model.swing.summary import summarise
     from ..swing.record import show_swing, swing_record, swing_rows
 
@@ -69,14 +81,16 @@ def swing(
     mechanism, linkage, problem = machine_of("swing", job, size, design, runs)
     motion = None if problem is None else problem.motion
     given: dict[str, Any] = {
-        "start": given_value("--from", start, ANGLE),
-        "end": given_value("--to", end, ANGLE),
+        **_ends({"--from": start, "--to": end}, {"--slider-from": slider_from, "--slider-to": slider_to}),
         "driver": driver,
+        "side": crank_side,
         "law": law,
         "duration": given_value("--duration", duration, TIME, sign="positive"),
         "actuator_tolerance": given_value("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
     }
     asked = _swing({name: value for name, value in given.items() if value is not None}, motion)
+    if "start" in given or "end" in given:
+        mechanism = replace(mechanism, start=Start())
     record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
     answer(json, record, lambda screen: show_swing(screen, record))
     if curves is not None:
@@ -92,6 +106,24 @@ def swing(
         say(f"figure: {figure}")
 
 
+def _ends(angles: dict[str, str | None], places: dict[str, str | None]) -> dict[str, Any]:
+    """Return start and end that the options give, and what they are of."""
+    found = [name for name, value in {**angles, **places}.items() if value is not None]
+    if not found:
+        return {}
+    own = angles if found[0] in angles else places
+    if any(name not in own for name in found):
+        raise InputError(
+            f"a swing runs between two crank angles, or between two places of the slider; got {', '.join(found)}; give "
+            "the two of one"
+        )
+    kind = ANGLE if own is angles else LENGTH
+    ends = zip(("start", "end"), own.items(), strict=True)
+    return {end: given_value(name, value, kind) for end, (name, value) in ends if value is not None} | {
+        "of": "crank" if own is angles else "slider"
+    }
+
+
 def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
     """Return the swing of options, else of a job's [motion]."""
     from ...model.swing.swing import Swing
@@ -99,12 +131,19 @@ def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
     if motion is not None:
         if given.get("law") == "slow":
             given.setdefault("duration", None)
+        if "law" in given:
+            given.setdefault("points", ())
         if given.get("driver") == "crank":
             given.setdefault("actuator_tolerance", 0.0)
-        return replace(motion, **given)
-    for option, name in (("--from", "start"), ("--to", "end")):
+        if given.get("of", motion.of) == motion.of:
+            return replace(motion, **given)
+        kept = ("driver", "law", "duration", "points", "actuator_tolerance")
+        given = {name: getattr(motion, name) for name in kept} | given
+    slider = given.get("of") == "slider"
+    for option, name in (("from", "start"), ("to", "end")):
         if name not in given:
             raise InputError(
-                f"a swing runs from one crank angle to another; got no {option}; give one, or a JOB with [motion]"
+                f"a swing runs from one {'slider position' if slider else 'crank angle'} to another; got no "
+                f"--{'slider-' if slider else ''}{option}; give one, or a JOB with [motion]"
             )
     return Swing(**given)

@@ -7,7 +7,7 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves, swing_curves
-from ...model.swing.swing import Swing, require_swing
+from ...model.swing.swing import Swing, placed, require_swing
 from ...objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE, Kind
 
 POINTS = 181
@@ -32,6 +32,7 @@ def driven(swing: Swing) -> str:
 def both_ways(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
     """Return the curves of the way forth and of the way back, at even shares of the time."""
     own, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
+    swing = placed(mechanism, own, swing)
     return (
         swing_curves(mechanism, own, swing, share),
         swing_curves(mechanism, own, swing, share, back=True),

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
+from ...model.swing.ends import start_column
 from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
@@ -90,7 +91,7 @@ def possible(problem: Problem) -> Possible:
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
         hardest=_hardest(problem, box[turning]),
-        example=example_of(found, violation, box[turning]),
+        example=lengths_of(example_of(found, violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if made is None else (),
     )
@@ -105,11 +106,20 @@ def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
 
 
 def designs_of(problem: Problem, count: int) -> Array:
-    """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage."""
+    """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage.
+
+    Those of a swing whose start varies have it as a fourth number.
+    """
     parts = []
     for index, sheet in enumerate(sheets(problem)):
-        parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, :3])
+        parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, _kept(problem)])
     return np.concatenate(parts)
+
+
+def _kept(problem: Problem) -> list[int]:
+    """Return the columns of designs that are shown: the three lengths, and where a swing starts if they choose it."""
+    column = start_column(problem.mechanism)
+    return [0, 1, 2, *([] if column is None else [column])]
 
 
 def _turns(designs: Array) -> NDArray[np.bool_]:
@@ -119,15 +129,16 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
 
 
 def screened(problem: Problem) -> tuple[Array, Array]:
-    """Return designs (n, 3) and their greatest relative violation (n,), as many as a moment allows."""
+    """Return designs as `designs_of` and their greatest relative violation (n,), as many as a moment allows."""
     end = time.monotonic() + _MOMENT
-    designs, violations = [np.zeros((0, 3))], [np.zeros(0)]
+    kept = _kept(problem)
+    designs, violations = [np.zeros((0, len(kept)))], [np.zeros(0)]
     for index, sheet in enumerate(sheets(problem)):
         evaluator = Evaluator(problem, sheet)
         points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
         for begin in range(0, len(points), _BATCH):
             found, _, violation = evaluator.screen(points[begin : begin + _BATCH])
-            designs.append(found[:, :3])
+            designs.append(found[:, kept])
             violations.append(violation)
             if time.monotonic() > end:
                 break
@@ -245,7 +256,7 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
     return min(shares.items(), key=lambda item: item[1]) if shares else None
 
 
-def example_of(designs: Array, violation: Array, others: Array) -> tuple[float, float, float] | None:
+def example_of(designs: Array, violation: Array, others: Array) -> Array | None:
     """Return the design in the middle of those that meet everything, else the nearest to that, else of others."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])
@@ -254,13 +265,16 @@ def example_of(designs: Array, violation: Array, others: Array) -> tuple[float, 
     return _middle_of(others) if len(others) else None
 
 
-def _middle_of(designs: Array) -> tuple[float, float, float]:
-    """Return the design nearest to the middle of some, in each dimension on its own scale."""
+def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
+    """Return crank, rod and offset of a design."""
+    return None if design is None else (float(design[0]), float(design[1]), float(design[2]))
+
+
+def _middle_of(designs: Array) -> Array:
+    """Return the design nearest to the middle of some, in each of its numbers on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size
-    row = int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))
-    crank, rod, offset = designs[row].tolist()
-    return crank, rod, offset
+    return np.asarray(designs[int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))])
 
 
 def within(seconds: float, work: Callable[[], T]) -> T | None:

@@ -14,14 +14,15 @@ from ...model.errors import InputError
 from ...model.kinematics.position import motion
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import passes
-from ...model.swing.swing import Swing
-from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_TRANSMISSION_ANGLE
+from ...model.swing.ends import ends_of
+from ...model.swing.swing import STARTS, Swing
+from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_quantities
 from ...optimise.job.motion import MotionPart, with_margin
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from ...optimise.problem.violation import FEASIBLE
-from .feasibility import PATIENCE, Ends, designs_of, example_of, screened, within
+from .feasibility import PATIENCE, Ends, designs_of, example_of, lengths_of, screened, within
 from .partial_job import ranges_of
 
 Array = NDArray[np.float64]
@@ -34,11 +35,12 @@ class PossibleSwing:
 
     travel (m): its ends, of designs that keep the margin and whatever else was checked, where some do; None where no
     design makes the swing. feasible: share of the `sampled` designs that meet every requirement that was checked.
-    example: crank, rod and offset, m; None if nothing makes the swing. unchecked: requirements that would have taken
-    longer than a moment, or that wait for the rest of the job.
+    example: crank, rod and offset, m; None if nothing makes the swing. shown: its swing, between crank angles.
+    unchecked: requirements that would have taken longer than a moment, or that wait for the rest of the job.
     """
 
     swing: Swing
+    shown: Swing | None
     branch: float
     closing: float
     travel: Ends | None
@@ -64,10 +66,12 @@ def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> Possible
         return None
     given = tables.get("mechanism")
     crossed = isinstance(given, Mapping) and given.get("branch") == "crossed"
-    wanted = (Objective(quantity=ACTUATOR_TRAVEL.name, sense="minimise"),)
+    cheap = ACTUATOR_TRAVEL if swing.of == "crank" else SWING_ANGLE
+    wanted = (Objective(quantity=cheap.name, sense="minimise"),)
+    free = () if whole is None else tuple(item for item in whole.mechanism.varying if item.paths[0] in STARTS.values())
     light = Problem(
         name="preview",
-        mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open"),
+        mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open", start=part.start, varying=free),
         crank=ranges["crank"],
         rod=ranges["rod"],
         offset=ranges["offset"],
@@ -89,19 +93,26 @@ def _possible(
 ) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
     box = designs_of(replace(light, constraints=()), _SAMPLES)
-    turning = passes(swing, sign, box)
+    turning = passes(light.mechanism, swing, box)
     made = np.isfinite(violation)
     good = violation <= FEASIBLE
+    example = example_of(designs, violation, box[turning])
     kept = designs[good] if good.any() else designs[made] if made.any() else box[turning]
-    travel = np.abs(positions(swing.end, sign, kept) - positions(swing.start, sign, kept))
+    ends = ends_of(light.mechanism, swing, kept)
+    travel = np.abs(positions(ends.end, sign, kept) - positions(ends.start, sign, kept))
+    shown = None
+    if example is not None:
+        one = ends_of(light.mechanism, swing, example[None])
+        shown = replace(swing, start=float(one.start[0]), end=float(one.end[0]), of="crank", follows=False)
     return PossibleSwing(
         swing=swing,
+        shown=shown,
         branch=sign,
         closing=float(turning.mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
         feasible=float(good.mean()) if len(good) else 0.0,
         sampled=len(good),
-        example=example_of(designs, violation, box[turning]),
+        example=lengths_of(example),
         example_feasible=bool(good.any()),
         unchecked=unchecked,
     )

@@ -10,6 +10,7 @@ from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.varying import Varying
+from ...model.swing.ends import start_column
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import varying_column
@@ -112,7 +113,14 @@ def _motion(problem: Problem) -> list[str]:
     swing = problem.motion
     if swing is None:
         return []
-    ends = f"crank swings from {math.degrees(swing.start):.6g} to {math.degrees(swing.end):.6g} deg and back"
+    factor, unit = (180.0 / math.pi, "deg") if swing.of == "crank" else (1e3, "mm")
+    start, end = (f"{factor * value:.6g}" for value in (swing.start, swing.end))
+    ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from {start} to {end} {unit} and back"
+    if start_column(problem.mechanism) is not None:
+        span = f"{factor * (swing.end - swing.start):.6g} {unit} on" if swing.follows else f"{end} {unit}"
+        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from where a design starts to {span}, and back"
+    if swing.of == "slider":
+        ends += f", the crank pin {swing.side} of the line to the slider pin"
     timed = "" if swing.duration is None else f", {swing.duration:.6g} s a way"
     lines = [f"{ends}; the {swing.driver} is driven, law {swing.law}{timed}"]
     if swing.actuator_tolerance:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing
+from slidercrank.model.swing.swing import Swing, slowly
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.swinging import swing_facts, swing_quantities
 from tests.model.cases import Array
@@ -28,7 +29,7 @@ TOLERANCES = Tolerances(
 def cases(count: int, *, seed: int, friction: bool) -> list[Case]:
     """Return random swings whose loads are counted from the crank pivot, with tolerances."""
     found = []
-    for machine, linkage, swing in random_swings(3 * count, seed=seed, friction=friction):
+    for machine, linkage, swing in random_swings(6 * count, seed=seed, friction=friction):
         if not any(getattr(load, "datum", "").endswith("dead centre") for load in machine.loads):
             actuator = 1e-3 if swing.driver == "slider" else 0.0
             found.append(
@@ -69,7 +70,11 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
             expected["swing_efficiency"] = one.efficiency
         for name, value in expected.items():
             assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forth)), name
-        assert not set(found) - {"swing_efficiency"}
+        if friction:
+            slow = summarise(replace(machine, friction=Friction()), linkage, slowly(swing))
+            held = max(map(abs, slow.drive_start + slow.drive_end))
+            assert found.pop(f"holding_{kind}_without_friction") == pytest.approx(held, rel=1e-9)
+        assert not set(found) - {"swing_efficiency", f"least_{kind}_forth", f"least_{kind}_back"}
 
 
 @pytest.mark.parametrize("friction", [False, True])
@@ -82,6 +87,25 @@ def test_peaks_are_not_below_a_dense_sweep(friction: bool) -> None:
         swept = max(np.abs(curve.drive).max() for curve in curves)
         assert swept <= peak * (1.0 + 1e-12)
         assert swept == pytest.approx(peak, rel=1e-3)
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_least_drives_are_those_of_a_dense_sweep(friction: bool) -> None:
+    """Signed along the motion of each way; a linkage that both ways must drive holds itself."""
+    share, held = np.linspace(0.0, 1.0, 20_001), set()
+    for machine, linkage, swing in cases(6, seed=74, friction=friction):
+        found, slow = values(machine, swing, design_of(linkage)), slowly(swing)
+        least = []
+        for back, way in ((False, "forth"), (True, "back")):
+            curves = swing_curves(machine, linkage, slow, share, back=back)
+            along = np.sign(curves.rate[10_000]) * curves.drive
+            value = found[f"least_{'force' if swing.driver == 'slider' else 'torque'}_{way}"]
+            assert value <= along.min() + 1e-12 * np.abs(along).max()
+            assert value == pytest.approx(along.min(), abs=1e-3 * np.abs(along).max())
+            least.append(value)
+        assert summarise(machine, linkage, slow).holds == (friction and min(least) >= 0.0)
+        held.add(min(least) > 0.0)
+    assert False in held
 
 
 @pytest.mark.parametrize("friction", [False, True])

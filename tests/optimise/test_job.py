@@ -350,7 +350,10 @@ def test_the_examples_of_the_schema_are_valid() -> None:
             given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
             fact = FACTS[name]
             if isinstance(fact, SwingQuantity):
-                swing = {"kind": "swing", "from": "20 deg", "to": "80 deg", "driver": fact.driver or "slider"}
+                ends = {"from": "20 deg", "to": "80 deg"}
+                if name == "swing_angle":
+                    ends = {"slider_from": "130 mm", "slider_to": "100 mm"}
+                swing = {"kind": "swing", **ends, "driver": fact.driver or "slider"}
                 swing |= {"law": "harmonic", "duration": "2 s"}
                 rubs = {key: given[key] for key in ("tolerances", "friction")}
                 parse_job(small(**rubs, motion=swing, objectives={name: example}))

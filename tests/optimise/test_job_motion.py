@@ -56,11 +56,83 @@ def test_a_swing_is_read_with_its_margin() -> None:
     assert parse_job(changed(motion={"margin": "20 deg"})).quantity("peak_actuator_force").kind.unit == "N"
 
 
+PLACES = {"kind": "swing", "slider_from": "3.1 m", "slider_to": "0.8 m", "driver": "slider"}
+
+
+def test_places_of_the_slider_state_a_swing_whose_angle_is_exact() -> None:
+    """A law of motion by a table, equalities in closed form, and designs that nothing dominates."""
+    motion = {
+        **PLACES,
+        "law": "table",
+        "law_times": [0, 0.3, 0.7, 1],
+        "law_shares": [0, 0.2, 0.8, 1],
+        "duration": "9 s",
+    }
+    job = {**changed(constraints={"swing_angle": {"equals": "90 deg"}}), "motion": motion}
+    problem = parse_job(job)
+    assert problem.motion is not None
+    assert len(problem.motion.points) == 4
+    front = solve(problem)
+    assert len(front) > 4
+    angle, error, force = (
+        problem.evaluate(front.dimensions, [name]).ravel()
+        for name in ("swing_angle", "swing_angle_error", "peak_actuator_force")
+    )
+    assert np.abs(angle / (0.5 * math.pi) - 1.0).max() < 1e-12
+    order = np.argsort(force)
+    assert (np.diff(error[order]) < 0.0).all()
+
+
+def test_a_free_start_finds_what_the_best_of_many_fixed_ones_does() -> None:
+    """The swing and the travel are exact; the best start is found among the others."""
+    constraints = {"actuator_travel": {"equals": "2.3 m"}}
+    objectives = {"peak_actuator_force": "minimise"}
+    motion = {"kind": "swing", "from": "11 deg", "swing": "90 deg", "driver": "slider"}
+    job = {**changed(constraints=constraints, objectives=objectives), "motion": motion}
+    free = {**job, "variables": {**JOB["variables"], "motion": {"from": ["5 deg", "40 deg"]}}}
+    problem = parse_job(free)
+    front = solve(problem)
+    design = front.dimensions[0]
+    assert problem.evaluate(design, ["actuator_travel"])[0] == pytest.approx(2.3, rel=1e-12)
+    least = problem.evaluate(design, ["peak_actuator_force"])[0]
+    fixed = {}
+    for start in (math.degrees(design[3]), 5.0, 20.0, 35.0):
+        own = parse_job({**job, "motion": {**motion, "from": f"{start!r} deg"}})
+        fixed[start] = own.evaluate(solve(own).dimensions[0], ["peak_actuator_force"])[0]
+    assert least == pytest.approx(min(fixed.values()), rel=1e-6)
+    assert fixed[math.degrees(design[3])] == pytest.approx(least, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("job", "words"),
+    [
+        ({"slider_from": "9 m"}, "no design of the ranges makes the swing from 9000 to 800 mm of the slider"),
+        ({"slider_to": "3.1 m"}, "two different slider positions; got 3100 mm twice"),
+        ({"slider_to": None, "slider_travel": "-2 m", "from": "10 deg"}, "leave out those of one"),
+    ],
+)
+def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -> None:
+    motion = {name: value for name, value in {**PLACES, **job}.items() if value is not None}
+    with pytest.raises(JobError, match=words):
+        parse_job({**changed(constraints={}), "motion": motion})
+
+
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
         ({"motion": {"kind": "turn"}}, "turns through has none of what a swing has; got"),
         ({"motion": {"to": None}}, "motion.to: must have a value"),
+        ({"motion": {"swing": "90 deg"}}, "to is where swing leads from from; got all three"),
+        ({"motion": {"slider_from": "3 m"}}, "between two crank angles, or between two places of the slider; got from"),
+        ({"motion": {"crank_side": "right"}}, "asked where the places of the slider state the swing; got right"),
+        ({"motion": {"law": "table", "duration": "3 s"}}, "got no law_times; add for example law_times"),
+        (
+            {"motion": {"law": "table", "duration": "3 s", "law_times": [0, 0.5, 1], "law_shares": [0, 1]}},
+            "have as many values; got 3 and 2",
+        ),
+        ({"constraints": {"swing_angle": {"equals": "90 deg"}}}, "states it, by from and to, the same for all designs"),
+        ({"variables": {**FITTED, "motion": {"to": ["90 deg", "110 deg"]}}}, "its start may vary, within a range; got"),
+        ({"variables": {**FITTED, "motion": {"from": {"choices": ["9 deg", "11 deg"]}}}}, "got a choice"),
         ({"motion": {"to": "11 deg"}}, "two different crank angles"),
         ({"motion": {"to": "400 deg"}}, "less than a turn apart"),
         ({"motion": {"duration": "0 s", "law": "harmonic"}}, "motion.duration: must be positive"),

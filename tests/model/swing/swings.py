@@ -30,6 +30,15 @@ def crank_loads(random: np.random.Generator, *, spring: bool = True) -> tuple[Lo
     return tuple(load for load in loads if random.random() < 0.7)
 
 
+def random_points(random: np.random.Generator) -> tuple[tuple[float, float], ...]:
+    """Return points of a motion that rises and falls in speed, unlike forth and back."""
+    times = np.linspace(0.0, 1.0, 6)
+    bent = times + random.uniform(-0.06, 0.06) * np.sin(np.pi * times) ** 2
+    ways = bent * bent * (3.0 - 2.0 * bent)
+    ways[0], ways[-1] = 0.0, 1.0
+    return tuple(zip(times.tolist(), ways.tolist(), strict=True))
+
+
 Case = tuple[Mechanism, Linkage, Swing]
 
 
@@ -48,6 +57,7 @@ def random_swings(
         rubs = random_friction(random)
         law: Law = get_args(Law)[random.integers(len(get_args(Law)))]
         duration = None if law == "slow" else random.uniform(0.3, 2.0)
+        points = random_points(random) if law == "table" else ()
         theta = np.linspace(start, end, 400)
         across = e - r * np.sin(theta)
         if np.abs(across).max() >= 0.94 * l:
@@ -67,7 +77,8 @@ def random_swings(
             kept = [load for load in machine.loads if not getattr(load, "datum", "").endswith("dead centre")]
             machine = replace(machine, loads=tuple(kept))
         machine = replace(machine, friction=rubs) if friction else machine
+        swing = Swing(start=start, end=end, driver=drives, law=law, duration=duration, points=points)
         if len(found) % 3 == 0:
             machine = replace(machine, loads=(*machine.loads, *crank_loads(np.random.default_rng(len(found)))))
-        found.append((machine, linkage, Swing(start=start, end=end, driver=drives, law=law, duration=duration)))
+        found.append((machine, linkage, swing))
     return found

@@ -25,7 +25,7 @@ def test_designs_pass_where_each_alone_is_taken() -> None:
         designs = np.column_stack(
             [random.uniform(0.5, 1.5, 40), random.uniform(0.5, 3.0, 40), random.uniform(-0.8, 0.8, 40)]
         )
-        found = passes(swing, 1.0 if branch == "open" else -1.0, designs)
+        found = passes(Mechanism(branch=branch), swing, designs)
         for (crank, rod, offset), passed in zip(designs, found.tolist(), strict=True):
             try:
                 require_swing(Mechanism(branch=branch), Linkage(crank, rod, offset, branch), swing)

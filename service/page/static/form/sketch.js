@@ -56,7 +56,7 @@ export function sketch(signal) {
       node.classList.remove("swinging");
       shown = example !== null;
       place.hidden = button.hidden = !shown;
-      if (!example) {
+      if (!example || from_deg === null || to_deg === null) {
         caption.textContent = "No linkage of these ranges turns fully.";
         return;
       }
@@ -72,7 +72,7 @@ export function sketch(signal) {
     swing({ example, from_deg, to_deg }) {
       shown = example !== null;
       place.hidden = button.hidden = !shown;
-      if (!example) {
+      if (!example || from_deg === null || to_deg === null) {
         caption.textContent = "No linkage of these ranges makes the swing.";
         return;
       }

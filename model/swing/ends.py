@@ -1,0 +1,149 @@
+"""Crank angles at which the swings of many designs start and end.
+
+A swing is stated by two crank angles, or by two slider positions. Of these the linkage with the crank pin on a given
+side of the line from crank pivot to slider pin gives the crank angles, theta = atan2(e, x) +- acos((r^2 + d^2 - l^2) /
+(2 r d)), d^2 = x^2 + e^2. Where the start varies, the designs have it among their numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..kernel.arithmetic import STEP
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import Numbers
+from .places import angles_of
+from .swing import STARTS, Swing
+
+Complexes = NDArray[np.complex128]
+_NO_SLOT = -1
+_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Crank angles of n designs at both ends of their swings, rad.
+
+    start, end: (n,), NaN where the slider does not reach its place. slopes: (n, v, 2), their derivatives by the numbers
+    of the designs that `by` names; None unless asked for.
+    """
+
+    start: Array
+    end: Array
+    by: tuple[int, ...] = ()
+    slopes: Array | None = None
+
+    def take(self, rows: Any) -> Ends:
+        """Return those of some designs."""
+        return Ends(self.start[rows], self.end[rows], self.by, None if self.slopes is None else self.slopes[rows])
+
+    @property
+    def low(self) -> Array:
+        """The lesser angle of each, rad."""
+        return np.minimum(self.start, self.end)
+
+    @property
+    def high(self) -> Array:
+        """The greater angle of each, rad."""
+        return np.maximum(self.start, self.end)
+
+    @property
+    def middle(self) -> Array:
+        """The angle half-way, rad."""
+        return 0.5 * (self.start + self.end)
+
+    @property
+    def way(self) -> Array:
+        """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
+        return np.where(self.end > self.start, 1.0, -1.0)
+
+    def within(self, angle: Any) -> Array:
+        """Return crank angles (n,), or one, turned by whole turns into the swings; NaN where they do not reach it."""
+        with np.errstate(invalid="ignore"):
+            first = angle + _TURN * np.ceil((self.low - angle) / _TURN)
+            return np.where(first <= self.high, first, np.nan)
+
+    def extreme(self) -> list[Array]:
+        """Return the ends, and the crank angles normal to the slider line; NaN where a swing has none."""
+        return [self.start, self.end, self.within(0.5 * np.pi), self.within(1.5 * np.pi)]
+
+    def reach(self, designs: Array) -> Array:
+        """Return the greatest distance (n,) of crank pin and slider line over the swings, m."""
+        return farthest(designs, self.extreme())
+
+    def stepped(self, columns: int, column: int | None) -> Complexes:
+        """Return both ends (n c, 2) with an imaginary step of each of c numbers of the designs; the start is last."""
+        moved = np.repeat(np.stack([self.start, self.end], axis=1)[:, None] + 0j, columns, axis=1)
+        assert self.slopes is not None
+        for place, v in enumerate(self.by):
+            moved[:, columns - 1 if v == column else v] += 1j * STEP * self.slopes[:, place]
+        return moved.reshape(-1, 2)
+
+
+def with_start(
+    numbers: Numbers, plain: Complexes, steps: Complexes, designs: Array, column: int
+) -> tuple[Numbers, Complexes]:
+    """Return numbers and stepped blocks with the start of the swing behind them, a number that no kernel takes.
+
+    plain: blocks (n, rows, 1). steps: (n c, rows, 1); none where no derivatives are asked for.
+    """
+    n, rows = plain.shape[:2]
+    if len(steps):
+        own = steps.reshape(n, len(numbers.columns), rows, 1)
+        steps = np.concatenate([own, plain[:, None]], axis=1).reshape(-1, rows, 1)
+    slopes = None
+    if numbers.slopes is not None:
+        slope = np.zeros((len(numbers.slopes), 1, designs.shape[1]))
+        slope[:, 0, column] = 1.0
+        slopes = np.concatenate([numbers.slopes, slope], axis=1)
+    values = np.concatenate([numbers.values, designs[:, column : column + 1]], axis=1)
+    return Numbers(np.append(numbers.columns, _NO_SLOT), values, slopes), steps
+
+
+def farthest(designs: Array, angles: Iterable[Array]) -> Array:
+    """Return the greatest |e - r sin(theta)| (n,) of crank angles (n,), NaN ones left out, m."""
+    r, e = designs[:, 0], designs[:, 2]
+    found = [np.abs(e - r * np.sin(angle)) for angle in angles]
+    return np.asarray(np.fmax.reduce(found))
+
+
+def start_column(mechanism: Mechanism) -> int | None:
+    """Return the column of designs that has the start of their swing; None where it is the same for all."""
+    for place, item in enumerate(mechanism.varying):
+        if item.paths[0] in STARTS.values():
+            return 3 + place
+    return None
+
+
+def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
+    """Return both ends of the swings of designs (n, 3 + k). slopes: whether derivatives are asked for."""
+    sign = 1.0 if mechanism.branch == "open" else -1.0
+    column = start_column(mechanism)
+    plain = _ends(swing, sign, designs, column)
+    if not slopes:
+        return Ends(*plain)
+    by = ((0, 1, 2) if swing.of == "slider" else ()) + (() if column is None else (column,))
+    stepped = np.zeros((len(designs), len(by), 2))
+    for place, v in enumerate(by):
+        moved = designs.astype(np.complex128)
+        moved[:, v] += 1j * STEP
+        stepped[:, place] = np.stack([each.imag for each in _ends(swing, sign, moved, column)], axis=1) / STEP
+    return Ends(*plain, by, stepped)
+
+
+def _ends(swing: Swing, sign: float, designs: Any, column: int | None) -> tuple[Any, Any]:
+    if column is None:
+        first, last = (np.full(len(designs), each) for each in (swing.start, swing.end))
+    else:
+        first = designs[:, column]
+        last = first + (swing.end - swing.start) if swing.follows else np.full(len(designs), swing.end)
+    if swing.of == "crank":
+        return first, last
+    side = 1.0 if swing.side == "left" else -1.0
+    return angles_of(first, sign, side, designs), angles_of(last, sign, side, designs)

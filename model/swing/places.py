@@ -1,0 +1,32 @@
+"""Crank angles that put the slider at a place, with the crank pin on a given side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..kinematics.position import motion
+
+_OFF = 1e-9
+
+
+def angles_of(x: Any, sign: float, side: float, designs: Any) -> Any:
+    """Return the crank angles (n,) of designs (n, 3 + k) that put the slider at x (n,); NaN where none does.
+
+    sign: +1 on the open branch, -1 on the crossed one. side: +1 with the crank pin left of the line from crank pivot to
+    slider pin, -1 right of it. Complex where designs are.
+    """
+    r, l, e = (designs[:, column] + 0.0 for column in range(3))  # -0 counts as 0
+    plain = [np.real(each) for each in (x, r, l, e)]
+    x_0, r_0, l_0, e_0 = plain
+    d = np.hypot(x_0, e_0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        theta = np.arctan2(e_0, x_0) + side * np.arccos((r_0 * r_0 + d * d - l_0 * l_0) / (2.0 * r_0 * d))
+        for _ in range(2):  # acos is rough near its ends
+            m = motion(np.sin(theta), np.cos(theta), r_0, l_0, e_0, sign)
+            theta = np.where(np.abs(m.x - x_0) < _OFF * r_0, theta - (m.x - x_0) / m.x_1, np.nan)
+        if not np.iscomplexobj(designs):
+            return theta
+        m = motion(np.sin(theta), np.cos(theta), r, l, e, sign)
+        return theta + 1j * (np.imag(x) - m.x.imag) / m.x_1.real

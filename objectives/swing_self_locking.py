@@ -1,0 +1,63 @@
+"""Least drive of each way of a limited swing: whether the linkage runs by itself, or locks itself."""
+
+from functools import partial
+
+from .kinds import FORCE, TORQUE
+from .quantity import Group
+from .swing_quantity import SwingLeast
+
+_least = partial(SwingLeast, signed=True, better="high", group=Group.DRIVE, picture="torque")
+_ADVICE = "Below zero the loads push it on, and the drive holds it back; with both ways above zero it locks itself."
+
+LEAST_FORCE_FORTH = _least(
+    name="least_force_forth",
+    title="least actuator force forth",
+    kind=FORCE,
+    back=False,
+    driver="slider",
+    instead="least_torque_forth",
+    place=322,
+    sentence="The least force along its motion that the actuator needs on the way forth, slowly.",
+    advice=_ADVICE,
+    formula="min over the way forth of P sgn(x' w)",
+    example="0 N",
+)
+LEAST_FORCE_BACK = _least(
+    name="least_force_back",
+    title="least actuator force back",
+    kind=FORCE,
+    back=True,
+    driver="slider",
+    instead="least_torque_back",
+    place=323,
+    sentence="The least force along its motion that the actuator needs on the way back, slowly.",
+    advice=_ADVICE,
+    formula="min over the way back of P sgn(x' w)",
+    example="0 N",
+)
+LEAST_TORQUE_FORTH = _least(
+    name="least_torque_forth",
+    title="least torque forth",
+    kind=TORQUE,
+    back=False,
+    driver="crank",
+    instead="least_force_forth",
+    place=324,
+    sentence="The least torque along its motion that the crank needs on the way forth, slowly.",
+    advice=_ADVICE,
+    formula="min over the way forth of T sgn(w)",
+    example="0 N m",
+)
+LEAST_TORQUE_BACK = _least(
+    name="least_torque_back",
+    title="least torque back",
+    kind=TORQUE,
+    back=True,
+    driver="crank",
+    instead="least_force_back",
+    place=325,
+    sentence="The least torque along its motion that the crank needs on the way back, slowly.",
+    advice=_ADVICE,
+    formula="min over the way back of T sgn(w)",
+    example="0 N m",
+)

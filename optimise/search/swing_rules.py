@@ -1,0 +1,119 @@
+"""Lengths that give a swing its exact travel of the slider, or its exact angle of the crank, in closed form.
+
+A pin is at a rod's length from two places at once, so it lies on the perpendicular bisector of these. Of the travel S
+between two crank angles: the slider pin, at the start, is as far from the crank pin there as from the crank pin at the
+end moved back by S. Of the angle between two slider positions: the crank pin, at the start, is as far from the slider
+pin there as from the slider pin at the end turned back by the angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...model.swing.ends import start_column
+from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
+from ..problem.problem import Problem
+from .rule import Rule
+
+
+@dataclass(frozen=True)
+class SwingRule(Rule):
+    """A rule of a swing. of: its formula. root: which of `roots` solutions it gives."""
+
+    of: Callable[..., Any]
+    roots: int
+    root: int = 0
+
+    def formula(self, *known: Any) -> Any:
+        """Return the target for the sources."""
+        return self.of(self.root, *self.wanted, *known)
+
+    @property
+    def solutions(self) -> tuple[Rule, ...]:
+        """The rule for each of its roots."""
+        return tuple(replace(self, root=root) for root in range(self.roots))
+
+
+def swing_rules(problem: Problem, wanted: Mapping[str, float], sign: float) -> Iterator[Rule]:
+    """Yield the rules of the equalities of a swing. wanted: their values. sign: of the offset."""
+    motion = problem.motion
+    if motion is None:
+        return
+    column = start_column(problem.mechanism)
+    free = () if column is None else (problem.mechanism.varying[column - 3].name,)
+    given = (sign, motion.start, motion.end, float(motion.follows))
+    travel, angle = ACTUATOR_TRAVEL.name, SWING_ANGLE.name
+    if motion.of == "crank" and travel in wanted:
+        numbers = (wanted[travel], *given)
+        yield SwingRule(travel, "rod", ("crank", "offset", *free), numbers, _rod_of_travel, 2)
+        yield SwingRule(travel, "offset", ("crank", "rod", *free), numbers, _offset_of_travel, 4)
+    if motion.of == "slider" and angle in wanted:
+        numbers = (wanted[angle], *given)
+        yield SwingRule(angle, "crank", ("rod", "offset", *free), numbers, _crank_of_angle, 4)
+        yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_of_angle, 4)
+
+
+def _ends(start: float, end: float, follows: float, free: tuple[Any, ...]) -> tuple[Any, Any]:
+    first = free[0] if free else start
+    return first, first + (end - start) if follows else end
+
+
+def _sides(root: int) -> tuple[float, float]:
+    """Return the two signs that a root stands for: of the way, and of the solution."""
+    return (1.0, -1.0)[root % 2], (1.0, -1.0)[root // 2]
+
+
+def _pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the crank pin at the start, and at the end moved back by the travel."""
+    first, last = ends
+    way = _sides(root)[0]
+    return r * np.cos(first), r * np.sin(first), r * np.cos(last) - way * travel, r * np.sin(last)
+
+
+def _rod_of_travel(
+    root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
+) -> Any:
+    x_0, y_0, x_1, y_1 = _pins(root, travel, _ends(start, end, follows, free), r)
+    e = sign * a
+    x = 0.5 * (x_1 + x_0) + 0.5 * (y_1 - y_0) * (y_1 + y_0 - 2.0 * e) / (x_1 - x_0)
+    return np.sqrt((x_0 - x) ** 2 + (y_0 - e) ** 2)
+
+
+def _offset_of_travel(
+    root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, l: Any, *free: Any
+) -> Any:
+    x_0, y_0, x_1, y_1 = _pins(root, travel, _ends(start, end, follows, free), r)
+    apart = (x_1 - x_0) ** 2 + (y_1 - y_0) ** 2
+    away = _sides(root)[1] * np.sqrt(l * l / apart - 0.25)
+    return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))
+
+
+def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
+    """Return a point of the bisector of the slider pin at the start, and at the end turned back; and its direction."""
+    first, last = ends
+    turn = _sides(root)[0] * angle
+    cosine, sine = np.cos(turn), np.sin(turn)
+    x_1, y_1 = cosine * last + sine * e, cosine * e - sine * last
+    return 0.5 * (first + x_1), 0.5 * (e + y_1), e - y_1, x_1 - first
+
+
+def _crank_of_angle(
+    root: int, angle: float, sign: float, start: float, end: float, follows: float, l: Any, a: Any, *free: Any
+) -> Any:
+    x, y, u, v = _bisector(root, angle, _ends(start, end, follows, free), sign * a)
+    away = _sides(root)[1] * np.sqrt(l * l / (u * u + v * v) - 0.25)
+    return np.sqrt((x + away * u) ** 2 + (y + away * v) ** 2)
+
+
+def _rod_of_angle(
+    root: int, angle: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
+) -> Any:
+    x, y, u, v = _bisector(root, angle, _ends(start, end, follows, free), sign * a)
+    apart = u * u + v * v
+    along = (x * u + y * v) / apart
+    away = -along + _sides(root)[1] * np.sqrt(along * along + (r * r - x * x - y * y) / apart)
+    return np.sqrt(apart * (away * away + 0.25))
