@@ -28,7 +28,7 @@ from .service_process import service
 
 FOLDER = Path(__file__).parents[1] / "docs" / "screens"
 SCHEMES = ("light", "dark")
-_TALLEST = 2.2
+_TALLEST = 1.8
 """Height that is shown at most, in heights of the screen: what is below repeats what is above."""
 _JOB = Path(__file__).parents[1] / "runs" / "feeder.toml"
 
@@ -52,7 +52,7 @@ def screens(folder: Path, names: Sequence[str] = (), widths: Sequence[int] = WID
                 for width in widths:
                     for scheme in SCHEMES:
                         _take(page, view, width, scheme).save(
-                            folder / f"{view.name}_{width}_{scheme}.webp", quality=60, method=6
+                            folder / f"{view.name}_{width}_{scheme}.webp", quality=50, method=6
                         )
                         made += 1
     return made

@@ -214,7 +214,7 @@ def test_a_job_file_comes_in_and_goes_out_the_same(
     assert text_of(page) == before
 
 
-def test_the_text_and_the_form_are_in_step_and_unknown_parts_survive(form: Open, store: Store) -> None:
+def test_the_text_and_the_form_are_in_step_and_no_part_is_lost(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)
     page.get_by_text("The job as text").click()
@@ -227,7 +227,7 @@ def test_the_text_and_the_form_are_in_step_and_unknown_parts_survive(form: Open,
     page.locator("#job-text").fill(json.dumps(job))
     expect(page.get_by_label("crank speed", exact=True)).to_have_value("90")
     expect(page.get_by_label("direction", exact=True)).to_have_value("-")
-    expect(page.get_by_role("region", name="Other parts")).to_contain_text("also costs.")
+    expect(page.locator("summary", has_text="Costs of tolerances")).to_contain_text("cost 8; at 0.05 mm")
     expect(page.get_by_label("formula 1, requirement", exact=True)).to_have_value("2 * crank + rod")
     page.get_by_label("crank speed", exact=True).fill("80")
     ready(page)
@@ -434,3 +434,29 @@ def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: O
     page.get_by_label("slow stroke", exact=True).select_option("")
     ready(page)
     assert "slow_stroke" not in text_of(page)["constraints"]
+
+
+def test_what_nobody_has_typed_yet_is_asked_for_and_blamed_only_at_the_start(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_label("Another requirement").select_option("footprint")
+    field = page.locator("#f-constraints-footprint-max")
+    needed = page.locator(".needed:visible")
+    expect(needed).to_contain_text("Needs a number", timeout=30_000)
+    assert field.get_attribute("aria-invalid") is None
+    page.get_by_role("button", name="Start the search").click()
+    expect(field).to_have_attribute("aria-invalid", "true")
+    assert store.jobs() == []
+    field.fill("900")
+    ready(page)
+
+
+def test_a_field_takes_the_value_of_another_one_by_its_name(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_label("crank, to", exact=True).fill("=stroke*3/4")
+    expect(page.locator(".understood:visible")).to_contain_text("75 mm")
+    ready(page)
+    assert text_of(page)["variables"]["crank"] == ["20 mm", "75 mm"]
+    page.get_by_label("crank, to", exact=True).fill("=height/2")
+    expect(page.locator(".error:visible").first).to_contain_text("height", timeout=30_000)

@@ -27,6 +27,9 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
     explained?.text,
     error,
   );
+  node.addEventListener("input", ({ target }) => {
+    if (target instanceof HTMLElement) target.dataset.touched = "yes";
+  });
   if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error });
   return node;
 }
@@ -52,8 +55,12 @@ export function explanation(id, label, why) {
   return { button, text };
 }
 
-/** Show on fields what is wrong; return the sentences that belong to no field. @param {Form.Field[]} fields @param {Api.Wrong[]} wrong */
-export function showWrong(fields, wrong) {
+/**
+ * Show on fields what is wrong; return the sentences that belong to no field. What nobody has typed into yet is asked for, not blamed,
+ * unless what is missing counts: once the search is to be started.
+ * @param {Form.Field[]} fields @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given
+ */
+export function showWrong(fields, wrong, { missing = false } = {}) {
   for (const one of fields) say(one, []);
   /** @type {Map<Form.Field, string[]>} */
   const told = new Map();
@@ -65,7 +72,10 @@ export function showWrong(fields, wrong) {
     if (!found) elsewhere.push(path ? `${path}: ${text}` : text);
     else told.set(found, [...(told.get(found) ?? []), below(found, path) + text]);
   }
-  for (const [one, sentences] of told) say(one, sentences);
+  for (const [one, sentences] of told) {
+    if (missing) for (const { dataset } of one.controls) dataset.touched = "yes";
+    say(one, sentences);
+  }
   return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
 }
 
@@ -73,8 +83,10 @@ export function showWrong(fields, wrong) {
 function say(one, found) {
   const unread = one.controls.flatMap(({ dataset }) => dataset.wrong ?? []);
   const sentences = unread.length ? unread : found;
-  const bad = sentences.length > 0;
-  one.error.hidden = !bad;
+  const asked = !unread.length && one.controls.some((control) => control instanceof HTMLInputElement && control.type === "text" && control.value.trim() === "" && !control.dataset.touched);
+  const bad = sentences.length > 0 && !asked;
+  one.error.hidden = !sentences.length;
+  one.error.classList.toggle("needed", asked);
   one.error.textContent = sentences.map(capital).join(" ");
   for (const control of one.controls) {
     if (bad) {

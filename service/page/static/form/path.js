@@ -61,3 +61,12 @@ export function idOf(path, part = "") {
 export function isTable(part) {
   return part !== null && typeof part === "object";
 }
+
+/**
+ * Return the value that a job gives to a name: a length or a requirement that has one value only; null for anything else.
+ * @param {{ at: (path: Form.Path) => unknown }} form @param {string} name @returns {string | number | null}
+ */
+export function valueOf(form, name) {
+  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find((one) => typeof one === "number" || (typeof one === "string" && one !== ""));
+  return typeof found === "string" || typeof found === "number" ? found : null;
+}

@@ -5,6 +5,8 @@ import { factorsOf, join } from "./units.js";
 
 /** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null }} Measure */
 
+const NAME = /[a-z]{3,}(?:_[a-z]+)*/g;
+
 /** What the job had for an input, as it was drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, given: unknown }>} */
 const drawn = new WeakMap();
 
@@ -22,7 +24,7 @@ export function drawnFrom(input, given, select) {
  * @param {HTMLInputElement} input @param {Measure} measure @returns {string | number | undefined}
  */
 export function taken(input, { kind = null, percent = false, select = null } = {}) {
-  const found = read(input.value, { unit: select?.value ?? "", factors: factorsOf(kind), percent });
+  const found = read(valued(input), { unit: select?.value ?? "", factors: factorsOf(kind), percent });
   delete input.dataset.wrong;
   const before = drawn.get(input);
   if (before && before.value === input.value && before.unit === select?.value) {
@@ -40,6 +42,21 @@ export function taken(input, { kind = null, percent = false, select = null } = {
   if (found.said) [input.dataset.said, input.dataset.number] = [found.said, found.number];
   say(input);
   return join(found.number, found.unit);
+}
+
+/**
+ * Return what was typed, after "=" with the values of the job in place of their names, as in "=stroke/2". The form answers the event
+ * "value-of" with the value of a name; what has none stays, and is a formula for the service.
+ * @param {HTMLInputElement} input
+ */
+function valued(input) {
+  const typed = input.value.trim();
+  if (!typed.startsWith("=")) return input.value;
+  return typed.replace(NAME, (name) => {
+    const asked = { name, value: /** @type {string | number | null} */ (null) };
+    input.dispatchEvent(new CustomEvent("value-of", { bubbles: true, detail: asked }));
+    return asked.value === null ? name : `(${asked.value})`;
+  });
 }
 
 /** Put the number that was understood in place of what was typed. @param {HTMLInputElement} input */

@@ -31,6 +31,9 @@ const SAID = [
   [/\[\[?(\w+)\]\]?/g, (whole, table) => (PARTS[table] ? `“${PARTS[table]}”` : whole)],
   [/\b(constraints|objectives)\.(\w+)/g, (_, table, name) => `the ${table === "constraints" ? "requirement on" : "objective"} ${name.replaceAll("_", " ")}`],
   [/\b(?:variables|mechanism|tolerances|motion)\.(?=[a-z])/g, ""],
+  [/must be an? ([a-z ]+): one number and one unit; got ""; write it like /g, (_, kind) => `needs a number: a ${kind}, such as `],
+  [/is missing, but required; (?:add|write) for example /g, "is missing; give a value, such as "],
+  [/require slow_stroke = "(\w+)"(?: among the constraints)?/g, (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
   [/\bgot min (\S+ ?\S*) and max /g, "got at least $1 and at most "],
 ];

@@ -3,13 +3,14 @@
 import { h } from "../lib/dom.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const LEAST = 0.1; // s, of a duration that is told
 const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
 /** Return when a job ended, or since when it runs or waits, in words: exact when pointed at. @param {Api.JobRow} job */
 export function moment({ state, submitted, started, finished }) {
   if (state === "running" && started) return ["begun ", ago(started)];
   if (!finished) return ["asked for ", ago(submitted)];
-  return [ago(finished), started && finished > started ? `, after ${duration(finished - started)}` : null];
+  return [ago(finished), started && finished - started >= LEAST ? `, after ${duration(finished - started)}` : null];
 }
 
 /** Return when a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */

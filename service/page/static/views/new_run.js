@@ -5,7 +5,7 @@ import { keepDraft, kept, newKey } from "../form/draft.js";
 import { showFacts } from "../form/facts.js";
 import { showWrong } from "../form/field.js";
 import { jobFile, presets } from "../form/job_file.js";
-import { at, put, renamed, written } from "../form/path.js";
+import { at, put, renamed, valueOf, written } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
 import { readyKinds } from "../form/units.js";
@@ -153,9 +153,9 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     }
     check(form.job, { now: true });
   }
-  /** @param {Api.Wrong[]} wrong */
-  function mark(wrong) {
-    const { elsewhere, first: worst } = showWrong(form.fields, wrong);
+  /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given */
+  function mark(wrong, given = {}) {
+    const { elsewhere, first: worst } = showWrong(form.fields, wrong, given);
     fill(general, elsewhere.map((sentence) => h("li", {}, sentence)));
     general.hidden = !elsewhere.length;
     return worst;
@@ -183,7 +183,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     event.preventDefault();
     refusal.hidden = true;
     if (checked?.wrong.length) {
-      const worst = mark(checked.wrong);
+      const worst = mark(checked.wrong, { missing: true });
       worst?.controls[0].focus();
       refuse("Correct what is marked first.");
       return;
@@ -228,6 +228,9 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     h("div", { class: "head" }, h("h1", {}, title), h("div", { class: "row" }, h("label", { for: "preset" }, "Begin with a shipped job"), from, over, undo)),
     h("div", { class: "both" }, h("div", {}, body, file.node), h("aside", { class: "beside panel", "aria-label": "What this allows" }, h("h2", {}, "What this allows"), drawn.node, facts, general, h("div", { class: "go" }, status, start, refusal))),
   );
+  whole.addEventListener("value-of", (event) => {
+    if (event instanceof CustomEvent) event.detail.value = valueOf(form, event.detail.name);
+  });
   whole.addEventListener("dragover", (event) => event.preventDefault());
   whole.addEventListener("drop", (event) => {
     event.preventDefault();
