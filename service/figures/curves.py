@@ -20,7 +20,7 @@ from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from .drawing import least_transmission_crank_angle
 from .numerals import shown, with_unit
 from .panels import draw_panel
-from .sheets import Line, over_turn
+from .sheets import CRANK_ANGLE, Line, Panel, over_turn
 from .style import MUTED, SMALL
 
 Array = NDArray[np.float64]
@@ -29,27 +29,16 @@ _TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
-class Curve:
-    """A curve over the cycle. title: with unit. values: (n,), as shown. note: what the point is, if one is marked.
+class Curves:
+    """The curves of one design. angles: (n,), deg. inner, outer: dead centres of a turn, deg.
 
-    point: crank angle in deg and value of the marked extremum, which lies on the curve.
+    panels: one a curve, the slow stroke shaded; a marked extremum is a second line, of one point of the curve.
     """
 
-    title: str
-    values: Array
-    note: str
-    point: tuple[float, float] | None
-
-
-@dataclass(frozen=True)
-class Curves:
-    """The curves of one design. angles: (n,), deg. inner, outer: dead centres of a turn, deg. slow: the slow stroke."""
-
     angles: Array
-    curves: tuple[Curve, ...]
+    panels: tuple[Panel, ...]
     inner: float
     outer: float
-    slow: str
 
     @property
     def last(self) -> float:
@@ -88,32 +77,28 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     _, one = shown_in("mm", system)
     ends = " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres)))
     computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
-    curves = []
+    dead = float(np.degrees(inner)), float(np.degrees(outer))
+    slow = str(linkage.slow_stroke(direction=mechanism.speed or 1.0))
+    across = CRANK_ANGLE + (f" (shaded: {slow} stroke, the slow one)" if slow != "equal" else "")
+    panels = []
     for name, extreme in extremes.items():
         found = computed[name]
         symbol, factor = shown_in(found.shown.symbol, system)
         title, values = with_unit(found.title, symbol), found.shown.factor * factor * found.values
-        if extreme is None:
-            curves.append(Curve(title, values, f"dead centres at {ends}", None))
-            continue
-        word, angle = extreme
-        at = int(np.searchsorted(angles, angle))
-        note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
-        curves.append(Curve(title, values, note, (float(degrees[at]), float(values[at]))))
-    slow = str(linkage.slow_stroke(direction=mechanism.speed or 1.0))
-    return Curves(degrees, tuple(curves), float(np.degrees(inner)), float(np.degrees(outer)), slow)
+        lines, note = [Line("", degrees, values)], f"dead centres at {ends}"
+        if extreme is not None:
+            word, angle = extreme
+            at = int(np.searchsorted(angles, angle))
+            lines.append(Line("", degrees[at : at + 1], values[at : at + 1], points=True))
+            note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
+        shaded = () if slow == "equal" else _slow_spans(*sorted(dead))
+        panels.append(replace(over_turn(title, *lines, note=note), across=across, shaded=shaded))
+    return Curves(degrees, tuple(panels), *dead)
 
 
 def draw_curves(panels: Sequence[Axes], curves: Curves) -> None:
     """Draw each curve into one of the panels, given from top to bottom."""
-    slow = f" (shaded: {curves.slow} stroke, the slow one)" if curves.slow != "equal" else ""
-    for axes, curve in zip(panels, curves.curves, strict=True):
-        lines = [Line("", curves.angles, curve.values)]
-        if curve.point is not None:
-            x, y = curve.point
-            lines.append(Line("", np.array([x]), np.array([y]), points=True))
-        panel = over_turn(curve.title, *lines, note=curve.note)
-        panel = replace(panel, across=panel.across + slow, shaded=_slow_spans(curves))
+    for axes, panel in zip(panels, curves.panels, strict=True):
         draw_panel(axes, panel, across=axes is panels[-1])
         ends = (curves.inner, curves.outer)
         for angle in (end + turn for turn in np.arange(0.0, curves.last, 360.0) for end in ends):
@@ -140,9 +125,6 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
         )
 
 
-def _slow_spans(curves: Curves) -> tuple[tuple[float, float], ...]:
+def _slow_spans(low: float, high: float) -> tuple[tuple[float, float], ...]:
     """Return the crank angles of the slow stroke: the greater part between the dead centres."""
-    if curves.slow == "equal":
-        return ()
-    low, high = sorted((curves.inner, curves.outer))
     return ((low, high),) if high - low > 180.0 else ((0.0, low), (high, 360.0))

@@ -67,7 +67,7 @@ def design_sheet(
             y -= 0.2 * _ROWS / tall
 
     curves = cycle_curves(mechanism, linkage, torque=torque, system=system)
-    count = len(curves.curves)
+    count = len(curves.panels)
     height = (_HEIGHT - _TOP - _BOTTOM + _GAP) / count - _GAP
     width = _WIDTH - _SPLIT - _RIGHT
     feet = [_HEIGHT - _TOP - height - index * (height + _GAP) for index in range(count)]

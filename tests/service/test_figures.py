@@ -29,6 +29,7 @@ from slidercrank.service.figures.numerals import shown
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
 from slidercrank.service.figures.sheet import design_sheet
+from slidercrank.service.figures.sheets import Panel
 from slidercrank.service.figures.style import colours, dress, new_figure, place
 from tests.service import fronts
 
@@ -51,6 +52,10 @@ def curves_of(name: str, speed: float = 10.0 * math.pi) -> tuple[Mechanism, Link
     return mechanism, linkage, cycle_curves(mechanism, linkage)
 
 
+def point_of(panel: Panel) -> tuple[float, float] | None:
+    return (float(panel.lines[1].x[0]), float(panel.lines[1].y[0])) if len(panel.lines) > 1 else None
+
+
 @pytest.mark.parametrize("speed", [10.0 * math.pi, -3.0])
 @pytest.mark.parametrize("name", LINKAGES)
 def test_curves_are_those_of_the_cycle(name: str, speed: float) -> None:
@@ -63,20 +68,21 @@ def test_curves_are_those_of_the_cycle(name: str, speed: float) -> None:
         motion.slider_velocity,
         motion.slider_acceleration,
     ]
-    for curve, values in zip(curves.curves, expected, strict=True):
+    for curve, values in zip(curves.panels, expected, strict=True):
         # The angle is turned into degrees and back: a rounding of it, on a steep curve.
-        np.testing.assert_allclose(curve.values, values, rtol=1e-9, atol=1e-9 * np.abs(values).max())
+        np.testing.assert_allclose(curve.lines[0].y, values, rtol=1e-9, atol=1e-9 * np.abs(values).max())
 
 
 @pytest.mark.parametrize("name", LINKAGES)
 def test_marked_points_lie_on_their_curve_and_are_its_extremum(name: str) -> None:
     _, _, curves = curves_of(name)
-    for curve in curves.curves:
-        if curve.point is None:
+    for curve in curves.panels:
+        marked = point_of(curve)
+        if marked is None:
             continue
-        angle, value = curve.point
-        assert value == curve.values[curves.angles == angle][0]
-        size = np.abs(curve.values)
+        angle, value = marked
+        assert value == curve.lines[0].y[curves.angles == angle][0]
+        size = np.abs(curve.lines[0].y)
         best = size.min() if curve.note.startswith("least") else size.max()
         assert abs(value) == pytest.approx(best, rel=1e-12)
 
@@ -85,7 +91,7 @@ def test_marked_points_lie_on_their_curve_and_are_its_extremum(name: str) -> Non
 def test_marked_values_are_those_of_the_table(name: str) -> None:
     mechanism, linkage, curves = curves_of(name)
     row = analyse(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
-    torque, transmission, _, speed, acceleration = (curve.point for curve in curves.curves)
+    torque, transmission, _, speed, acceleration = (point_of(curve) for curve in curves.panels)
     assert torque is not None
     assert abs(torque[1]) == pytest.approx(row["peak_torque_Nm"], rel=1e-12)
     assert torque[0] == pytest.approx(row["peak_torque_angle_deg"], rel=1e-12)
@@ -101,20 +107,20 @@ def test_marked_values_are_those_of_the_table(name: str) -> None:
 
 def test_dead_centres_are_the_ends_of_the_position_curve() -> None:
     _, linkage, curves = curves_of("offset")
-    position = curves.curves[2]
+    position = curves.panels[2]
     for angle, x in zip((curves.inner, curves.outer), linkage.dead_centres, strict=True):
-        assert position.values[np.isclose(curves.angles, angle, rtol=1e-13)][0] == pytest.approx(1e3 * x, rel=1e-12)
+        assert position.lines[0].y[np.isclose(curves.angles, angle, rtol=1e-13)][0] == pytest.approx(1e3 * x, rel=1e-12)
 
 
 def test_without_a_speed_velocity_is_per_crank_speed() -> None:
     linkage = LINKAGES["offset"]
     curves = cycle_curves(Mechanism(), linkage, torque=False)
-    assert [curve.title.split(",")[0] for curve in curves.curves] == [
+    assert [curve.title.split(",")[0] for curve in curves.panels] == [
         *("transmission angle", "slider position", "slider velocity per crank speed"),
         "slider acceleration per crank speed",
     ]
     expected = 1e3 * linkage.at(np.radians(curves.angles), speed=1.0).slider_velocity
-    np.testing.assert_allclose(curves.curves[2].values, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(curves.panels[2].lines[0].y, expected, rtol=1e-9, atol=1e-9)
 
 
 def drawn(figure: Figure) -> list[Text]:

@@ -64,11 +64,10 @@ def test_every_topic_draws_both_turns(figure: Callable[[Mechanism, Linkage], She
 def test_the_sheet_of_a_design_has_the_torque_of_both_turns_and_its_peak_in_the_second() -> None:
     found = cycle_curves(MACHINE, LINKAGE)
     assert (found.angles[0], found.angles[-1], found.last) == (0.0, 720.0, 720.0)
-    torque = found.curves[0]
-    assert torque.point is not None
-    assert torque.point[0] > 360.0
+    torque, peak = found.panels[0].lines
+    assert peak.x[0] > 360.0
     wanted = cycle(MACHINE, LINKAGE, np.radians(found.angles)).torque
-    assert np.abs(torque.values - wanted).max() <= 1e-9 * np.abs(wanted).max()
+    assert np.abs(torque.y - wanted).max() <= 1e-9 * np.abs(wanted).max()
     assert cycle_curves(Mechanism(speed=300.0, slider_mass=0.5), LINKAGE).last == 360.0
 
 
