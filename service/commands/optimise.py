@@ -68,7 +68,7 @@ def optimise(
 
     compile_ahead(*_SEARCH)
     from ..jobs.own_run import told
-    from ..store.database import without_secrets
+    from ..store.address import without_secrets
     from ..workers.heartbeat import Heartbeat
     from ..workers.worker import versions_file
 
@@ -131,7 +131,7 @@ def optimise(
 
 def _again_command(run: str, runs: Path | None, store: str | None) -> str:
     """Return the command that resumes a run, with the places that were named but without passwords."""
-    from ..store.database import without_secrets
+    from ..store.address import without_secrets
 
     places = [*(["--runs", str(runs)] if runs else []), *(["--store", without_secrets(store)] if store else [])]
     return shlex.join(["slidercrank", "optimise", "--resume", run, *places])

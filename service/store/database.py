@@ -15,23 +15,20 @@ from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
-from urllib.parse import quote
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
-from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
+from sqlalchemy import URL, Connection, Engine, create_engine, event
+from sqlalchemy.exc import DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
-from ...model.errors import InputError, StoreError
+from ...model.errors import StoreError
 from ...model.extras import NamingExtra
 from ..resources.disk import LEAST, free, room
+from .address import HIDDEN, secrets_of, shown_url, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
 _SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
 _IDLE = 0.1  # s after which a connection has to prove that it is alive: no server restarts sooner
-_OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
-_HIDDEN = "***"
-"""In place of a password, and of options of an address other than the open ones: any may be a secret."""
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
@@ -59,9 +56,9 @@ class Database:
 
         Raises `InputError` for an address of another kind, `StoreError` where nothing can be opened.
         """
-        url = _url(address)
-        self.name = _shown(url)
-        self._secrets = _secrets(url)
+        url = url_of(address)
+        self.name = shown_url(url)
+        self._secrets = secrets_of(url)
         self.sqlite = url.get_backend_name() == "sqlite"
         self._file = Path(url.database) if self.sqlite and url.database else None
         if self._file is not None:
@@ -160,7 +157,7 @@ class Database:
 
     def _without_secrets(self, text: str) -> str:
         for secret in self._secrets:
-            text = text.replace(secret, _HIDDEN)
+            text = text.replace(secret, HIDDEN)
         return text
 
     def _use_write_ahead_log(self) -> None:
@@ -200,49 +197,6 @@ def may_use(path: Path) -> bool:
 def remedy_of_rights(path: Path) -> str:
     """Return the command that restores the rights that `may_use` misses."""
     return f"chmod u+rw {path}, as the user who owns it"
-
-
-def without_secrets(text: str) -> str:
-    """Return a word of a command line as it may be shown: an address, also after `--option=`, without its secrets."""
-    option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
-    if "://" not in value:
-        return text
-    try:
-        return option + equals + _shown(make_url(value))
-    except (ArgumentError, ValueError):
-        return f"{option}{equals}{value.partition('://')[0]}://{_HIDDEN}"
-
-
-def _shown(url: URL) -> str:
-    hidden = {name: value if name in _OPEN else _HIDDEN for name, value in url.query.items()}
-    text = url.set(query=hidden).render_as_string(hide_password=True)
-    return text.replace(quote(_HIDDEN), _HIDDEN).replace("+psycopg://", "://", 1)
-
-
-def _secrets(url: URL) -> list[str]:
-    """Return the secret parts of a database address, the longest first."""
-    values = [value for name, value in url.query.items() if name not in _OPEN]
-    each = [url.password, *(one for value in values for one in ([value] if isinstance(value, str) else value))]
-    return sorted({str(one) for one in each if one}, key=len, reverse=True)
-
-
-def _url(address: str | PathLike[str]) -> URL:
-    text = str(address)
-    if "://" not in text:
-        return URL.create("sqlite", database=str(Path(text)))
-    try:
-        url = make_url(text)
-    except (ArgumentError, ValueError):
-        url = URL.create("unreadable")
-    scheme = url.drivername.partition("+")[0]
-    if scheme in ("postgresql", "postgres"):
-        return url.set(drivername="postgresql+psycopg")
-    if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
-        return url.set(drivername="sqlite")
-    raise InputError(
-        f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
-        "give one of these"
-    )
 
 
 def _sqlite(url: URL) -> Engine:

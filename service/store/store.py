@@ -8,7 +8,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import Any
 
-from sqlalchemy import Connection, and_, delete, func, insert, select, update
+from sqlalchemy import Connection, and_, delete, func, select, update
 
 from ...model.errors import InputError, NotFound, StoreError
 from ..runs.result import Result
@@ -17,20 +17,19 @@ from ..runs.stored_runs import result_from
 from . import queue
 from .claim import Claim
 from .clock import Jumps, now
-from .database import Database
-from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State, Worker
+from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State
 from .rows import add_events, become, damaged, news_of, require_resumable, the_job, the_record
-from .schema import artefacts, designs, events, exact, jobs, workers
+from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
 from .serialisation import plain, rows_of, unpacked_exact
+from .workers import Workers
 
 MOST_QUEUED = 10_000
 MOST_ATTEMPTS = 3
 LEASE = 30.0
-_FORGOTTEN = 7 * 86_400.0
 
 
-class Store(Database):
+class Store(Workers):
     """An open store. Threads may share it; processes open their own. Also a context manager, which closes it.
 
     Every method raises `StoreError` when the database refuses or cannot be reached, and `NotFound` for a job that is
@@ -290,30 +289,3 @@ class Store(Database):
                     return None
             job = queue.claim_next(connection, worker, lease)
         return None if job is None else Claim(self, job, lease)
-
-    def greet(self, worker: str) -> None:
-        """Note that a worker is there; forget those that have been silent for days."""
-        with self.writing() as connection:
-            seen = update(workers).where(workers.c.id == worker).values(seen=now())
-            if not connection.execute(seen).rowcount:
-                connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
-                connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
-
-    def part(self, worker: str) -> None:
-        """Note that a worker has left."""
-        with self.writing() as connection:
-            connection.execute(delete(workers).where(workers.c.id == worker))
-
-    def workers_at_work(self) -> int:
-        """Return how many workers were heard of lately, busy or not."""
-        return sum(worker.at_work for worker in self.workers())
-
-    def workers(self) -> list[Worker]:
-        """Return all workers that came and have not left, the one heard of last first.
-
-        One that was heard of in the future, by a clock set back since, counts as silent for as long.
-        """
-        silent = func.abs(now() - workers.c.seen).label("silent")
-        query = select(*workers.c, silent).order_by(silent)
-        with self.reading() as connection:
-            return [Worker(**row._mapping) for row in connection.execute(query)]

@@ -17,8 +17,9 @@ from sqlalchemy import Connection, create_engine, text
 
 from slidercrank.model.errors import InputError, LeaseLost, MissingExtra, StoreError
 from slidercrank.service.store import Artefact, Store
+from slidercrank.service.store.address import without_secrets
 from slidercrank.service.store.backup import back_up
-from slidercrank.service.store.database import Database, Unavailable, without_secrets
+from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
 from tests.service.conftest import Command

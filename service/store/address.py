@@ -1,0 +1,61 @@
+"""Addresses of stores: which database one is of, and how it is shown without its secrets."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from urllib.parse import quote
+
+from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
+
+from ...model.errors import InputError
+
+_OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
+HIDDEN = "***"
+"""In place of a password, and of options of an address other than the open ones: any may be a secret."""
+
+
+def without_secrets(text: str) -> str:
+    """Return a word of a command line as it may be shown: an address, also after `--option=`, without its secrets."""
+    option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
+    if "://" not in value:
+        return text
+    try:
+        return option + equals + shown_url(make_url(value))
+    except (ArgumentError, ValueError):
+        return f"{option}{equals}{value.partition('://')[0]}://{HIDDEN}"
+
+
+def shown_url(url: URL) -> str:
+    """Return an address as it may be shown."""
+    hidden = {name: value if name in _OPEN else HIDDEN for name, value in url.query.items()}
+    text = url.set(query=hidden).render_as_string(hide_password=True)
+    return text.replace(quote(HIDDEN), HIDDEN).replace("+psycopg://", "://", 1)
+
+
+def secrets_of(url: URL) -> list[str]:
+    """Return the secret parts of a database address, the longest first."""
+    values = [value for name, value in url.query.items() if name not in _OPEN]
+    each = [url.password, *(one for value in values for one in ([value] if isinstance(value, str) else value))]
+    return sorted({str(one) for one in each if one}, key=len, reverse=True)
+
+
+def url_of(address: str | PathLike[str]) -> URL:
+    """Return what is at an address. Raises `InputError` for one of another kind of database."""
+    text = str(address)
+    if "://" not in text:
+        return URL.create("sqlite", database=str(Path(text)))
+    try:
+        url = make_url(text)
+    except (ArgumentError, ValueError):
+        url = URL.create("unreadable")
+    scheme = url.drivername.partition("+")[0]
+    if scheme in ("postgresql", "postgres"):
+        return url.set(drivername="postgresql+psycopg")
+    if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
+        return url.set(drivername="sqlite")
+    raise InputError(
+        f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
+        "give one of these"
+    )

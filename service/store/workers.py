@@ -1,0 +1,43 @@
+"""The workers of a store: who solves its jobs, and when each was heard of last."""
+
+from __future__ import annotations
+
+from sqlalchemy import delete, func, insert, select, update
+
+from .clock import now
+from .database import Database
+from .records import Worker
+from .schema import workers
+
+_FORGOTTEN = 7 * 86_400.0  # s
+
+
+class Workers(Database):
+    """A database with its table of workers."""
+
+    def greet(self, worker: str) -> None:
+        """Note that a worker is there; forget those that have been silent for days."""
+        with self.writing() as connection:
+            seen = update(workers).where(workers.c.id == worker).values(seen=now())
+            if not connection.execute(seen).rowcount:
+                connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
+                connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
+
+    def part(self, worker: str) -> None:
+        """Note that a worker has left."""
+        with self.writing() as connection:
+            connection.execute(delete(workers).where(workers.c.id == worker))
+
+    def workers_at_work(self) -> int:
+        """Return how many workers were heard of lately, busy or not."""
+        return sum(worker.at_work for worker in self.workers())
+
+    def workers(self) -> list[Worker]:
+        """Return all workers that came and have not left, the one heard of last first.
+
+        One that was heard of in the future, by a clock set back since, counts as silent for as long.
+        """
+        silent = func.abs(now() - workers.c.seen).label("silent")
+        query = select(*workers.c, silent).order_by(silent)
+        with self.reading() as connection:
+            return [Worker(**row._mapping) for row in connection.execute(query)]
