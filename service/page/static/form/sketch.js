@@ -56,7 +56,7 @@ export function sketch(signal) {
       node.classList.remove("swinging");
       shown = example !== null;
       place.hidden = button.hidden = !shown;
-      if (!example || from_deg === null || to_deg === null) {
+      if (!example) {
         caption.textContent = "No linkage of these ranges turns fully.";
         return;
       }
