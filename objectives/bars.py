@@ -105,7 +105,7 @@ class OfBars(Quantity):
         """Return the quantity for designs (n, 3 + k); NaN without what it is of; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        found = self._joined(mechanism, dimensions, 1, gradients)
+        found = self.joined(mechanism, dimensions, 1, gradients)
         first = (np.argmin if self.least else np.argmax)(found.values, axis=1)
         rows = np.arange(len(first))
         return Values(found.values[rows, first], None if found.gradients is None else found.gradients[rows, first])
@@ -114,12 +114,13 @@ class OfBars(Quantity):
         """Return the local peaks of every part; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        found = self._joined(mechanism, dimensions, KEPT, True)
+        found = self.joined(mechanism, dimensions, KEPT, True)
         assert found.gradients is not None
         order = np.argsort(found.values if self.least else -found.values, axis=1, kind="stable")
         return Pieces(found.values, found.gradients, found.labels, self.least).at(order)
 
-    def _joined(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Part:
+    def joined(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Part:
+        """Return all parts side by side, with labels that tell them apart; see `parts`."""
         parts = self.parts(mechanism, designs, kept, gradients)
         return Part(
             np.concatenate([part.values for part in parts], axis=1),

@@ -15,7 +15,7 @@ Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
 
 _BATCHES = 4
-_LARGEST = 512  # designs of a batch: the chunks of kernels, see `batches.in_chunks`
+_LARGEST = 10_000  # designs of a batch: the largest fronts, whose tables ask for the same again and again
 
 
 def remembered(

@@ -35,6 +35,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
+from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .of_shaft import averages_of_shaft
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
@@ -210,6 +211,14 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
     work over a turn. Several cylinders and a profile of the speed count as `of_shaft` says.
     """
+    known = _of_batch(mechanism, designs, kind, gradients)
+    slopes = (known.mean_gradients, known.rms_gradients)
+    return Averages(known.mean.copy(), known.rms.copy(), *(None if each is None else each.copy() for each in slopes))
+
+
+@remembered_batch
+def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
+    """Return averages that are kept: of one batch mean and RMS torque, power, energy and more are asked for."""
     designs = turning(designs)
     if is_shaft(mechanism):
         return Averages(*averages_of_shaft(mechanism, kind, designs, gradients=gradients))

@@ -33,6 +33,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
+from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .of_shaft import turn_work_of_shaft
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
@@ -177,6 +178,7 @@ def _integrate(
                         slopes[n, k, v] += sign * f[k] * slip
 
 
+@remembered_batch
 def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> TurnWork:
     """Return the means of fully turning designs (n, 3 + k): crank, rod, offset, m, then the machine's varying numbers.
 
