@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,18 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.machine.strength import Material, Strength
-from slidercrank.objectives.needs import A_BAR, COMPRESSOR, COUPLES, CRANK_BAR, CYLINDER, LOSSES, ROD_BAR, RUBS, WEARS
+from slidercrank.objectives.needs import (
+    A_BAR,
+    COMPRESSOR,
+    COUPLES,
+    CRANK_BAR,
+    CYLINDER,
+    LOSSES,
+    ROD_BAR,
+    RUBS,
+    WEARS,
+    Need,
+)
 from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
 from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
 from slidercrank.objectives.needs import STRENGTH as STRONG
@@ -143,18 +155,28 @@ def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """Return a machine that has what a quantity is of.
 
     Two cylinders for a rocking couple, a compressor more for the gas of one, bars for their strength; for losses a
-    crank pivot that rubs, which locks no design, and a load that resists more than any other one drives.
+    crank pivot that rubs, which locks no design, and a load that resists more than any other one drives. Quantities of
+    the same needs get the same one: what they have in common is computed once.
     """
-    if COUPLES in quantity.needs:
+    return _kept(_fitted(set(quantity.needs), machine))
+
+
+@lru_cache(maxsize=64)
+def _kept(machine: Mechanism) -> Mechanism:
+    return machine
+
+
+def _fitted(needs: set[Need], machine: Mechanism) -> Mechanism:
+    if COUPLES in needs:
         return replace(machine, arrangement=Arrangement(phases=(0.0, 2.0), places=(-0.05, 0.06)))
-    if {LOSSES, RUBS} & set(quantity.needs):
+    if {LOSSES, RUBS} & needs:
         resistance = StrokeForce(outward=-3000.0, inward=3000.0)
         return replace(machine, friction=RUBBING_PIVOT, loads=(*machine.loads, resistance))
-    if BARS_OF & set(quantity.needs):
+    if BARS_OF & needs:
         bar = Bar(width=0.03, depth=0.02, density=7800.0)
         crank, rod = (link if isinstance(link, Bar) else bar for link in (machine.crank, machine.rod))
         return replace(machine, strength=STRENGTH, crank=crank, rod=rod)
-    return replace(machine, loads=(*machine.loads, AIR)) if CYLINDER_OF & set(quantity.needs) else machine
+    return replace(machine, loads=(*machine.loads, AIR)) if CYLINDER_OF & needs else machine
 
 
 def random_designs(count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0) -> Array:

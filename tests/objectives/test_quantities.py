@@ -96,9 +96,9 @@ def test_quantity_is_the_greatest_of_its_pieces(quantity: Quantity, machine: Mec
 
 @pytest.mark.parametrize(("quantity", "machine"), CASES)
 def test_a_design_is_judged_alike_alone_and_in_a_batch(quantity: Quantity, machine: Mechanism) -> None:
-    together = quantity.evaluate(machine, DESIGNS, gradients=True)
+    together = quantity.evaluate(machine, DESIGNS[:41], gradients=True)  # no multiple of what a processor does at once
     assert together.gradients is not None
-    for n in (0, 7, 199):
+    for n in (0, 7, 40):
         alone = quantity.evaluate(machine, DESIGNS[n : n + 1], gradients=True)
         assert alone.gradients is not None
         assert alone.values[0] == together.values[n]
