@@ -33,8 +33,8 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
 HEAVY = f"""{ROBUST}samples = 65536
 [optimiser]
 method = "random"
-evaluations = 400000
-designs = 198
+evaluations = 60000
+designs = 58
 """
 """A job whose Monte Carlo is worth the way to a cluster."""
 STAYS = ("slidercrank serve", "slidercrank worker", "dask ")
