@@ -1,9 +1,12 @@
 """Set up once for all tests: fixed random cases."""
 
 import gc
+import os
 
 import pytest
 from hypothesis import settings
+
+from tests.order import shared_out
 
 # Kernels may compile within a test, so that no deadline holds; the same cases come in every run.
 settings.register_profile("fixed", deadline=None, derandomize=True)
@@ -15,8 +18,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put slow tests first: they wait most of their time, and the others fill their pauses instead of ending sooner."""
-    items.sort(key=lambda item: item.get_closest_marker("slow") is None)
+    """Put tests into the order that fills the workers of pytest-xdist."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if workers > 1:
+        slow = {item: True for item in items if item.get_closest_marker("slow")}
+        items[:] = shared_out(items, workers, lambda item: item.nodeid.partition("::")[0], slow)
 
 
 def pytest_collection_finish() -> None:
