@@ -56,7 +56,10 @@ _OF_PINS = {
 
 
 def of_pin(pin: str, before: tuple[Need, ...], after: tuple[Need, ...] = (), *, bears: bool = True) -> dict[str, Any]:
-    """Return what quantities of a pin share. before, after: needs besides its own. bears: on the bars that it joins."""
+    """Return the facts that quantities of a pin share.
+
+    before, after: needs besides its own. bears: on the bars that it joins.
+    """
     picture, bar, loaded = _OF_PINS[pin]
     if not bears:
         return {"pin": pin, "picture": picture, "needs": (*before, loaded, *after)}

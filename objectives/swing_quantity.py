@@ -136,7 +136,7 @@ class SwingIntegral(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingForm(SwingQuantity):
-    """A closed form of lengths and ends: the least transmission angle, the way of the slider, the angle of the crank.
+    """A closed form of lengths and ends: least transmission angle, way of the slider, angle of the crank.
 
     stated: whose ends must not be stated, as they say it already; None where it does not matter.
     """

@@ -60,7 +60,7 @@ def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenA
 
 
 def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
-    """Return the way (n,) of the slider from one end to the other, m, and its slopes (n, 3 + k)."""
+    """Return the way (n,) of the slider between the ends, m, and its slopes (n, 3 + k)."""
     ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
 
     def way(sizes: Any, first: Any, last: Any) -> Any:
@@ -72,7 +72,7 @@ def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, 
 
 
 def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
-    """Return the angle (n,) of the crank from one end to the other, rad, and its slopes (n, 3 + k)."""
+    """Return the angle (n,) of the crank between the ends, rad, and its slopes (n, 3 + k)."""
     ends = ends_of(mechanism, swing, designs, slopes=True)
     assert ends.slopes is not None
     slopes = np.zeros(designs.shape)
@@ -139,7 +139,7 @@ def _angles(swing: Swing, ends: Ends, sign: float, designs: Array) -> DrivenAngl
 
 
 def _derived(of: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None]) -> tuple[Array, Array]:
-    """Return a function (n,) of the three sizes and of crank angles, and its derivatives (n, 3 + k) by complex steps.
+    """Return a function (n,) of sizes and crank angles, and its derivatives (n, 3 + k) by complex steps.
 
     angles: each (n,) with the end, 0 or 1, of the swing that it moves with; None where it stays.
     """

@@ -78,7 +78,7 @@ class Ends:
         return farthest(designs, self.extreme())
 
     def stepped(self, columns: int, column: int | None) -> Complexes:
-        """Return both ends (n c, 2) with an imaginary step of each of c numbers of the designs; the start is last."""
+        """Return both ends (n c, 2), the start last, with an imaginary step of each of c numbers."""
         moved = np.repeat(np.stack([self.start, self.end], axis=1)[:, None] + 0j, columns, axis=1)
         assert self.slopes is not None
         for place, v in enumerate(self.by):

@@ -12,7 +12,7 @@ _OFF = 1e-9
 
 
 def angles_of(x: Any, sign: float, side: float, designs: Any) -> Any:
-    """Return the crank angles (n,) of designs (n, 3 + k) that put the slider at x (n,); NaN where none does.
+    """Return the crank angles (n,) of designs that put the slider at x (n,); NaN where none does.
 
     sign: +1 on the open branch, -1 on the crossed one. side: +1 with the crank pin left of the line from crank pivot to
     slider pin, -1 right of it. Complex where designs are.

@@ -107,7 +107,9 @@ def _terms(
 
 
 class Span:
-    """A part of the cycle on which every term is smooth: from `low` to `high`, rad, turning one way, +1 or -1."""
+    """A part of the cycle, from `low` to `high`, rad, on which every term is smooth.
+
+    It is passed one way, +1 or -1."""
 
     low: float
     high: float

@@ -148,7 +148,7 @@ class Ranges:
 
 
 class _Corner(NamedTuple):
-    """A corner of ranges: crank, rod and size of the offset, m, its sign, and whether it is at the edge of turning."""
+    """A corner of ranges: crank, rod, size and sign of the offset; whether it is at the edge of turning."""
 
     crank: float
     rod: float

@@ -11,7 +11,7 @@ from ..problem.violation import constraints_of
 
 
 def valueless(part: Problem, designs: Array) -> str:
-    """Return which quantity has no value for any of some designs (n, 3 + v), and a remedy; "" where each has one.
+    """Return the quantity without a value for any of some designs (n, 3 + v), with a remedy, or "".
 
     part: a problem without choices. The designs must move as asked.
     """
@@ -26,6 +26,6 @@ def valueless(part: Problem, designs: Array) -> str:
 
 
 def valueless_in_all(problem: Problem, designs: Array) -> str:
-    """Return what `valueless` says if it says something in every variant of a problem."""
+    """Return the answer of `valueless` if there is one in every variant of a problem."""
     said = [valueless(part, designs) for part in problem.parts()] if len(designs) else []
     return said[0] if said and all(said) else ""

@@ -91,7 +91,7 @@ _SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
 
 
 def _stated(keys: set[str]) -> Stated:
-    """Return what the ends of a swing are of. Raises `InputError` unless there is a start, and an end or a span."""
+    """Return the kind of the ends of a swing. Raises `InputError` unless there is a start, and an end or a span."""
     found = [of for of in _STARTS if keys & {_STARTS[of], _ENDS[of], _SPANS[of]}]
     if len(found) > 1:
         raise InputError(

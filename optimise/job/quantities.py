@@ -146,7 +146,7 @@ def _pattern_of(schema: dict[str, Any]) -> None:
 
 
 def _bare(path: str, value: object) -> tuple[str, object]:
-    """Return the path of a key that dots made tables of, of several the first, and what is given for it."""
+    """Return the first path of a key that dots made tables of, and the value given for it."""
     while isinstance(value, Mapping) and value and not {*WORDS, "target"} & set(value):
         key, value = next(iter(value.items()))
         path = f"{path}.{key}"

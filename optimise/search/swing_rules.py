@@ -1,4 +1,4 @@
-"""Lengths that give a swing its exact travel of the slider, or its exact angle of the crank, in closed form.
+"""Lengths that give a swing its exact travel, or its exact angle of the crank, in closed form.
 
 A pin is at a rod's length from two places at once, so it lies on the perpendicular bisector of these. Of the travel S
 between two crank angles: the slider pin, at the start, is as far from the crank pin there as from the crank pin at the
@@ -93,7 +93,7 @@ def _offset_of_travel(
 
 
 def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
-    """Return a point of the bisector of the slider pin at the start, and at the end turned back; and its direction."""
+    """Return a point and the direction of the bisector of the slider pin at start and turned-back end."""
     first, last = ends
     turn = _sides(root)[0] * angle
     cosine, sine = np.cos(turn), np.sin(turn)

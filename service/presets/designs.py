@@ -1,4 +1,4 @@
-"""A design of each shipped job, near the knee of its front: to show what kind of machine it is without solving it."""
+"""A design of each shipped job, near the knee of its front, to show its machine without solving it."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def secrets_of(url: URL) -> list[str]:
 
 
 def url_of(address: str | PathLike[str]) -> URL:
-    """Return what is at an address. Raises `InputError` for one of another kind of database."""
+    """Return the database at an address. Raises `InputError` for one of another kind of database."""
     text = str(address)
     if "://" not in text:
         return URL.create("sqlite", database=str(Path(text)))

@@ -57,7 +57,7 @@ def value(name: str, machine: Mechanism, design: np.ndarray) -> float:
 
 
 def printed(number: str) -> pytest.approx:  # type: ignore[valid-type]
-    """Return what a number that is printed may have been before it was rounded to its digits."""
+    """Return the values that are rounded to the digits of a printed number."""
     digits = len(number.partition("e")[0].partition(".")[2])
     return pytest.approx(float(number), rel=0.0, abs=0.5001 * 10.0**-digits)
 

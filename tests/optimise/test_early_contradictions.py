@@ -1,4 +1,4 @@
-"""What no design can meet is refused, or told, before a search: linear rules together, options, functions."""
+"""Contradictions that are refused, or told, before a search: linear rules together, options, functions."""
 
 from __future__ import annotations
 

@@ -222,7 +222,7 @@ def test_points_that_cannot_be_evaluated_are_never_asked_for() -> None:
 
 
 def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
-    """A pin's diameter that no row has: the Hessian of all else stays as it is, however many rows hold the step."""
+    """A pin's diameter that no row has leaves the Hessian of all else as it is."""
     random = np.random.default_rng(5)
     for _ in range(20):
         root = random.standard_normal((4, 4))

@@ -40,7 +40,7 @@ def problem_of(of: str, branch: Branch, value: float, *, free: bool, rod: Range,
 @pytest.mark.parametrize("of", ["crank", "slider"])
 @pytest.mark.parametrize("free", [False, True])
 def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free: bool) -> None:
-    """Designs of a known travel or angle lie on a sheet; what a sheet gives, and swings, has it to 1e-12."""
+    """Designs of a known travel or angle lie on a sheet, whose own designs have it to 1e-12."""
     random, met, found, targets = np.random.default_rng(31), 0, 0, set()
     for _ in range(24):
         branch: Branch = "open" if random.random() < 0.6 else "crossed"

@@ -1,4 +1,4 @@
-"""What of a boom, an inverted slider-crank, a slider-crank says: lengths, lever and errors of its actuator."""
+"""A boom, which is an inverted slider-crank, as a slider-crank: lengths, lever and errors of its actuator."""
 
 from __future__ import annotations
 

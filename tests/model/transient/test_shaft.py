@@ -124,7 +124,7 @@ def test_what_is_not_covered_is_refused_in_a_sentence() -> None:
 
 @pytest.mark.parametrize("name", ["one of four strokes", "a V of compressors"])
 def test_a_motion_under_a_motor_settles_into_steady_running(name: str) -> None:
-    """Energy balances on the way; a cycle of two turns repeats after two, and so do the cylinders of a V."""
+    """Energy balances on the way; a cycle of two turns, also of a V, repeats after two."""
     machine = MACHINES[name]
     motor = Drive(motor=LinearMotor(stall_torque=900.0, no_load_speed=1.05 * abs(machine.speed)), flywheel=0.6)
     start = State(speed=0.98 * machine.speed)

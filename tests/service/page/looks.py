@@ -1,4 +1,4 @@
-"""Measurements of a view as it stands: width, clipped text, text over other text, and the size of what is clicked."""
+"""Measurements of a view: width, clipped text, text over other text, and the size of what is clicked."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every view on every width of screen: nothing wider than the window, clipped, over other text, or too small to hit."""
+"""Every view on every width of screen: nothing too wide, clipped, over other text, or too small to hit."""
 
 from __future__ import annotations
 
