@@ -5,21 +5,28 @@ On a quiet machine: a run's time is on the pictures of the page, and the courses
 
 from __future__ import annotations
 
+import math
 import shutil
 import sys
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.figures.front import draw_front
+from slidercrank.service.figures.panels import save_sheet
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
+from slidercrank.service.topics.cylinders import analysis as cylinders
+from slidercrank.service.topics.indicator import analysis as indicator
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 
@@ -29,6 +36,8 @@ FOLDER = Path(__file__).parents[1] / "docs"
 MOST_SECONDS = 5.0
 """Time of the feeder's search that is shown at most: on a quiet machine it takes about one."""
 _JOB = Path(__file__).parents[1] / "runs" / "feeder.toml"
+_COMPRESSOR = Linkage(0.03, 0.11, -0.01)
+"""Of docs/machines.md."""
 _KNEE_ANGLE = 120  # deg, where all forces of the feeder are clear of each other
 
 
@@ -55,6 +64,14 @@ def page(folder: Path) -> None:
         opened(f"jobs/{job}/designs/{design}", 1000, _with_forces).screenshot(path=folder / "page_design.png")
 
 
+def compressor(folder: Path) -> None:
+    """Draw pressure and volume of the shipped compressor, and the torque of two of them on one crankshaft."""
+    machine = load_job(_JOB.with_name("compressor.toml")).mechanism
+    two = replace(machine, arrangement=Arrangement(phases=(0.0, math.pi), places=(-0.05, 0.05)))
+    save_sheet(indicator.figure(machine, _COMPRESSOR), folder / "compressor_indicator.png")
+    save_sheet(cylinders.figure(two, _COMPRESSOR), folder / "compressor_cylinders.png")
+
+
 def methods(folder: Path) -> None:
     """Measure every method on the shipped jobs."""
     from . import methods as measured  # its peers are of the benchmark extra
@@ -65,6 +82,8 @@ def methods(folder: Path) -> None:
 
 PICTURES: dict[str, Callable[[Path], None]] = {
     "feeder_knee.png": knee,
+    "compressor_indicator.png": compressor,
+    "compressor_cylinders.png": compressor,
     "page_front.png": page,
     "page_design.png": page,
     "methods.png": methods,

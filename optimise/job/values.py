@@ -112,6 +112,22 @@ class Physical(_Read):
         return described(self.kind, self.sign)
 
 
+@dataclass(frozen=True)
+class GasPressure(Physical):
+    """Marks the absolute pressure of a gas: one below vacuum is mostly that of a gauge."""
+
+    def read(self, value: object) -> float:
+        """Return the pressure, Pa; raises InputError."""
+        pressure = to_si(value, self.kind)
+        if pressure < 0.0 or (pressure == 0.0 and self.sign == "positive"):
+            rule = "above vacuum, 0" if self.sign == "positive" else "at or above vacuum, 0"
+            raise InputError(
+                f"an absolute pressure must be {rule}; got {shown(value)}; to what a gauge shows add the pressure "
+                "around it, about 1.01325 bar"
+            )
+        return pressure
+
+
 def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
     """Return the JSON Schema of a physical value: a number in SI, or a string with a unit."""
     number: dict[str, Any] = {"type": "number"}
@@ -249,7 +265,9 @@ Torque = Annotated[float, Physical(kinds.TORQUE)]
 PositiveTorque = Annotated[float, Physical(kinds.TORQUE, "positive")]
 Pressure = Annotated[float, Physical(kinds.PRESSURE, "positive")]
 WearCoefficient = Annotated[float, Physical(kinds.WEAR, "positive")]
-LeastPressure = Annotated[float, Physical(kinds.PRESSURE, "zero or more")]
+AbsolutePressure = Annotated[float, GasPressure(kinds.PRESSURE, "positive")]
+LeastPressure = Annotated[float, GasPressure(kinds.PRESSURE, "zero or more")]
+EnergyDensity = Annotated[float, Physical(kinds.PRESSURE, "zero or more")]
 Volume = Annotated[float, Physical(kinds.VOLUME, "zero or more")]
 Number = Annotated[float, Physical(kinds.RATIO)]
 Fraction = Annotated[float, Physical(kinds.RATIO, "zero or more")]

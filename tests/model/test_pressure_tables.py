@@ -132,7 +132,15 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"pressures": ["8 bar", "-0.2 bar", "1 bar"]}, 'pressures.*must be zero or more; got "-0.2 bar"'),
+        (
+            {"pressures": ["8 bar", "-0.2 bar", "1 bar"]},
+            'pressures.*at or above vacuum, 0; got "-0.2 bar"; to what a gauge shows add',
+        ),
+        ({"back_pressure": "-1 bar"}, 'back_pressure.*at or above vacuum, 0; got "-1 bar"'),
+        (
+            {"pressure_angles": ["0 deg", "40 deg", "360 deg"]},
+            "must come back to the first one after 360 deg; got 2 bar at the end and 8 bar at the start",
+        ),
         ({"bore": "0 mm"}, "bore: must be positive"),
         ({"piston_rod": "100 mm"}, "thinner than the bore; got 100 mm"),
         (

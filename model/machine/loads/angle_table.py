@@ -146,7 +146,13 @@ class AngleTable(Load):
 def _of_pressures(
     pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
 ) -> AngleTable:
-    forces = piston_forces(pressure_angles, head=head, **pressures)
+    forces, given = piston_forces(pressure_angles, head=head, **pressures), pressures["pressures"]
+    period = 2.0 * _TURN if cycle == "720 deg" else _TURN
+    if abs(pressure_angles[-1] - pressure_angles[0] - period) <= _ROUNDING and given[0] != given[-1]:
+        raise InputError(
+            f"pressures must come back to the first one after {cycle}; got {1e-5 * given[-1]:.6g} bar at the end and "
+            f"{1e-5 * given[0]:.6g} bar at the start; correct one of the two and leave out the last point"
+        )
     return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during)
 
 

@@ -152,7 +152,7 @@ Engine.tables = (
         (
             BORE,
             Entry("compression_ratio", "PositiveRatio", "greatest volume over the least one", 8.0),
-            Entry("intake", "Pressure", "absolute pressure at the start of compression", "1 bar"),
+            Entry("intake", "AbsolutePressure", "absolute pressure at the start of compression", "1 bar"),
             Entry(
                 "peak_pressure",
                 "LeastPressure",
@@ -162,7 +162,7 @@ Engine.tables = (
             ),
             Entry(
                 "heat",
-                "LeastPressure",
+                "EnergyDensity",
                 "heat set free at the top per swept volume, J/m^3; this or peak_pressure",
                 "1.2 MJ/m^3",
                 default=0.0,
