@@ -15,7 +15,7 @@ from ....model.cycle.locked_angles import verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import alone
+from ....model.machine.members import alone, is_shaft
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
@@ -39,11 +39,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes no net
     work.
     """
-    mechanism = alone(mechanism)
+    whole, mechanism = is_shaft(mechanism), alone(mechanism)
     friction, found = mechanism.friction, verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
     values: dict[str, Any] = {
+        "one_cylinder_at_constant_speed": whole,
         "verdict": "drives" if found.holds is None and not found.locks else _word(found.holds),
         "self_locking_margin_deg": plain(math.degrees(found.margin)),
         "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
@@ -105,7 +106,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         ("friction heat a turn", heat, "J", share),
         ("efficiency", *((None, "%", why) if efficiency is None else (100.0 * efficiency, "%", ""))),
     ]
-    text.show_lines(console, f"Friction: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", lines)
+    of = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""
+    text.show_lines(console, f"Friction{of}: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", lines)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
