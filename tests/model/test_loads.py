@@ -171,3 +171,9 @@ def test_wrong_load_is_refused(make: Any, message: str) -> None:
 def test_unknown_word_in_a_load_is_refused(make: Any, message: str) -> None:
     with pytest.raises(InputError, match=message):
         make()
+
+
+def test_a_table_that_lies_beyond_its_dead_centre_is_refused() -> None:
+    with pytest.raises(InputError, match=r"zero or more; got -12 mm to 0 mm, .* turn the table round"):
+        PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4), datum="outer dead centre")
+    PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4))

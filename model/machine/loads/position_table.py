@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...checks import keep_tuples
+from ...errors import InputError
 from .cylinder import PRESSURES, Head, piston_forces
 from .load import (
     DATUM,
@@ -31,7 +32,8 @@ from .load import (
 class PositionTable(Load):
     """A force tabulated over slider position, interpolated linearly, constant beyond the ends of the table.
 
-    positions: increasing, m, from the datum. forces: N, positive outward. during: the force acts in these strokes.
+    positions: increasing, m, from the datum: of a dead centre distances, zero or more. forces: N, positive outward.
+    during: the force acts in these strokes.
     """
 
     positions: tuple[float, ...]
@@ -46,6 +48,12 @@ class PositionTable(Load):
         require_table("positions", self.positions, self.forces)
         require_word("datum", self.datum, Datum)
         require_word("during", self.during, During)
+        if self.datum != "crank pivot" and self.positions[-1] <= 0.0:
+            ends = f"{1e3 * self.positions[0]:g} mm to {1e3 * self.positions[-1]:g} mm"
+            raise InputError(
+                f"positions from the {self.datum} are distances from it, zero or more; got {ends}, of which only the "
+                "last force would ever act; turn the table round"
+            )
 
     def numbers(self) -> tuple[float, float, float, float]:
         """Return factors of one in the strokes in which the force acts."""

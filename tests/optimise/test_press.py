@@ -1,0 +1,42 @@
+"""The shipped press presses: its tool resists the last 10 mm of the slow stroke, and the drive gives the work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.linkage.loaded_stroke import loaded_stroke
+from slidercrank.optimise.job import load_job
+
+PRESS = load_job(Path(__file__).parents[2] / "runs/press.toml").part(0)
+LENGTHS = (0.0263, 0.126, 0.059)
+
+
+def test_the_tool_resists_the_last_millimetres_and_the_drive_gives_the_work() -> None:
+    design = np.array([*LENGTHS, 0.046, 0.053, 0.025])
+    curves = PRESS.analyse(design).cycle(720)
+    left = float(Linkage(*LENGTHS).dead_centres[1]) - curves["slider_position_m"]
+    outward = curves["slider_velocity_m_s"] > 1e-6
+    tool = curves["load_N"].where(outward) + 80.0  # less the seals
+    assert tool[outward & (left > 0.0121)].abs().max() < 1e-9
+    full = tool[outward & (left > 0.0011) & (left < 0.0099)]
+    assert len(full) > 20
+    assert full.to_numpy() == pytest.approx(-20e3)
+    assert (curves["load_N"][curves["slider_velocity_m_s"] < -1e-6] == 80.0).all()
+    power, energy = PRESS.evaluate([design], ["mean_power", "delivered_work"])[0]
+    assert power > 0.0
+    # 20 kN over 9 mm, ramps of 20 and 17 kN at the mean, and 80 N of seals over 120 mm.
+    assert abs(energy) == pytest.approx(20e3 * 9e-3 + 10e3 * 2e-3 + 17e3 * 1e-3 + 80.0 * 2.0 * stroke(), rel=1e-6)
+
+
+def test_the_slow_stroke_is_the_loaded_one() -> None:
+    design = np.array([[*LENGTHS, 0.046, 0.053, 0.025]])
+    assert loaded_stroke(PRESS.mechanism, design).tolist() == ["outward"]
+    assert PRESS.slow_stroke == "outward"
+
+
+def stroke() -> float:
+    return float(Linkage(*LENGTHS).stroke)
