@@ -128,6 +128,11 @@ def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
     """Return the swing of options, else of a job's [motion]."""
     from ...model.swing.swing import Swing
 
+    if given.get("law") == "table":
+        raise InputError(
+            "a motion by a table is that of a job; got --law table; give its points in [motion] of JOB, law_times and "
+            "law_shares, and leave --law out"
+        )
     if motion is not None:
         if given.get("law") == "slow":
             given.setdefault("duration", None)

@@ -69,3 +69,23 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     page.get_by_label("the crank", exact=True).select_option("")
     expect(page.get_by_role("complementary")).to_contain_text("turns fully")
     assert "motion" not in text_of(page)
+
+
+def test_a_swing_is_stated_by_places_of_the_slider_or_by_its_angle(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    page.get_by_label("stated by", exact=True).select_option("crank angle and swing")
+    page.get_by_label("swing", exact=True).fill("90")
+    ready(page)
+    assert text_of(page)["motion"] | {"from": "11.16 deg", "swing": "90 deg"} == text_of(page)["motion"]
+    assert "to" not in text_of(page)["motion"]
+    beside = page.get_by_role("complementary")
+    expect(beside).to_contain_text("from 11.16° to 101.16°, the slider travels")
+    page.get_by_label("stated by", exact=True).select_option("two slider positions")
+    page.get_by_label("from slider position", exact=True).fill("3100")
+    page.get_by_label("to slider position", exact=True).fill("800")
+    page.get_by_label("side of the crank pin", exact=True).select_option("left")
+    motion = text_of(page)["motion"]
+    assert (motion["slider_from"], motion["slider_to"]) == ("3100 mm", "800 mm")
+    assert not {"from", "to", "swing"} & set(motion)
+    require_accessible(page)

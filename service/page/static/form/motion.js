@@ -7,6 +7,14 @@ import { isTable } from "./path.js";
 import { speed } from "./speed.js";
 
 const PATH = ["motion"];
+/** What states the ends of a swing: the keys of it, and what a new one begins with. @type {Record<string, Record<string, string>>} */
+const ENDS = {
+  "two crank angles": { from: "0 deg", to: "60 deg" },
+  "crank angle and swing": { from: "0 deg", swing: "60 deg" },
+  "two slider positions": { slider_from: "300 mm", slider_to: "200 mm" },
+  "slider position and travel": { slider_from: "300 mm", slider_travel: "-100 mm" },
+};
+const LABELS = { from: "from crank angle", to: "to crank angle", swing: "swing", slider_from: "from slider position", slider_to: "to slider position", slider_travel: "travel of the slider" };
 const FIRST = { kind: "swing", from: "0 deg", to: "60 deg", driver: "slider" };
 
 /** Return whether the crank of a job swings. @param {Form.Whole} form */
@@ -17,6 +25,23 @@ export function swings(form) {
 /** Return whether a quantity can be asked of the motion of a job. @param {Form.Whole} form @param {Api.Quantity} quantity */
 export function fits(form, { motion }) {
   return motion === "" || motion === (swings(form) ? "swing" : "turn");
+}
+
+/** Return what states the ends of the swing of a job. @param {Form.Whole} form */
+function stated(form) {
+  const given = /** @param {string} key */ (key) => form.at([...PATH, key]) !== undefined;
+  if (given("slider_travel")) return "slider position and travel";
+  if (given("slider_from") || given("slider_to")) return "two slider positions";
+  return given("swing") ? "crank angle and swing" : "two crank angles";
+}
+
+/** State the ends of the swing in another way; a start of the same kind stays. @param {Form.Whole} form @param {string} how */
+function state(form, how) {
+  const before = { .../** @type {Record<string, unknown>} */ (form.at(PATH)) };
+  const kept = Object.fromEntries(Object.entries(before).filter(([key]) => !(key in LABELS) && (key !== "crank_side" || how.includes("slider"))));
+  const wanted = ENDS[how] ?? {};
+  form.put(PATH, { ...kept, ...Object.fromEntries(Object.entries(wanted).map(([key, first]) => [key, before[key] ?? first])) });
+  form.redraw();
 }
 
 /** Return the fields of the motion; turning: those that only a crank that turns through has. @param {Form.Whole} form @param {Dom.Child} turning */
@@ -32,14 +57,19 @@ export function motion(form, turning) {
     made?.querySelector("select")?.addEventListener("change", () => form.redraw());
     return made;
   };
+  const how = stated(form);
+  const [usual, ...others] = Object.keys(ENDS);
+  const ways = choice({ ...form, at: () => (how === usual ? undefined : how), put: (_, value) => state(form, String(value ?? usual)) }, [...PATH, "ends"], { options: others, fallback: usual, label: "stated by", why: "Two crank angles; one and how far the crank turns, so that the start may vary; or positions of the slider, so that the angle follows from the lengths." });
   return [
     kind,
-    own("from", "from crank angle"),
-    own("to", "to crank angle"),
+    ways,
+    ...Object.keys(ENDS[how] ?? {}).map((key) => own(key, LABELS[/** @type {keyof typeof LABELS} */ (key)])),
+    how.includes("slider") ? own("crank_side", "side of the crank pin") : null,
     choosing("driver", "driven end"),
     own("margin", "margin from dead points"),
     choosing("law", "motion over time"),
     slow ? null : own("duration", "duration of one way"),
+    ...(form.at([...PATH, "law"]) === "table" ? [own("law_times", "shares of the time"), own("law_shares", "shares of the way")] : []),
     form.at([...PATH, "driver"]) === "slider" ? own("actuator_tolerance", "tolerance of the actuator") : null,
     turning,
     h("details", { class: "more" }, h("summary", {}, "Crank speed, of no matter to a swing"), h("div", { class: "fields" }, speed(form))),
