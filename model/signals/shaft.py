@@ -29,6 +29,7 @@ from .watch import inputs_of, watch_of
 _NEAR = 1e-9  # rad: so near to where a turn of two begins a breakpoint may be of either
 _CONTACTS = 24  # panels of a turn in which the guide's force may change sides, of 16 samples each
 _HALVINGS = 60
+_BESIDE = 1e-12  # rad
 
 
 class Shaft:
@@ -137,6 +138,28 @@ class Shaft:
         return np.asarray(found[2][:, 0] == 1)
 
     def _follow(
+        self,
+        kind: int,
+        members: Whole,
+        row: Whole,
+        inside: Array,
+        angle: Array,
+        rate: Array | None,
+        wanted: bool,
+    ) -> tuple[Array, Array, Whole]:
+        """Return curve, sizes and strokes; for an angle where every force vanishes at once those beside it."""
+        found = self._asked(kind, members, row, inside, angle, rate, wanted)
+        lost = np.asarray(~np.isfinite(found[0]).all(axis=(1, 2)))
+        if lost.any():
+            beside = angle[lost] + np.copysign(_BESIDE, inside[lost, None] - angle[lost])
+            own = None if rate is None else rate[lost]
+            again = self._asked(kind, members, row[lost], inside[lost], beside, own, wanted)
+            there = np.isfinite(found[0][lost]).all(axis=2)
+            found[0][lost] = np.where(there[:, :, None], found[0][lost], again[0])
+            found[1][lost] = np.where(there, found[1][lost], again[1])
+        return found
+
+    def _asked(
         self,
         kind: int,
         members: Whole,

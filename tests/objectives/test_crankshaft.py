@@ -78,7 +78,7 @@ def test_peaks_and_averages_of_the_whole_are_those_of_polynomials_through_its_su
     assert QUANTITIES["torque_fluctuation"].evaluate(machine, design).values[0] == pytest.approx(whole.fluctuation)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(8), 84])  # of 84 all forces vanish where the guide changes sides
 def test_peaks_along_a_profile_are_those_of_its_curves(seed: int) -> None:
     """Every second machine has friction; its guide changes sides elsewhere than at constant speed."""
     machine, linkage = random_uneven(seed, friction=seed % 2 == 0)
