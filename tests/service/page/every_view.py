@@ -66,7 +66,7 @@ def fill(store: Store, results: tuple[Result, Result], tables: dict[str, Any]) -
     store.submit({**tables, "name": "Sieve of the second line"}, name="Sieve of the second line")
     return [
         View("runs", "/", (".runs .run .thumbnail circle",)),
-        View("new_run", "/new?preset=feeder", (".beside .status.good", ".sketch svg")),
+        View("new_run", "/new?preset=feeder", (".beside .status.good:text-is('Ready to start.')", ".sketch svg")),
         View("live", f"/jobs/{claim.job.id}", (".points circle", ".log li")),
         View("no_solution", f"/jobs/{none}", (".outcome",)),
         View("front", f"/jobs/{first}", ("table.designs tbody tr", ".linkage svg", ".marks li")),

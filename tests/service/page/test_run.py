@@ -224,6 +224,17 @@ def test_what_is_done_with_a_run_that_was_deleted_elsewhere_is_said(open_page: O
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
 
 
+def test_the_table_of_a_run_is_a_few_steps_of_the_tab_key_from_its_head(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, f"#/jobs/{solved.number}", reduced_motion="reduce")
+    expect(page.locator("table.designs tbody tr").first).to_be_visible(timeout=30_000)
+    page.locator("#main").focus()
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("button", name="Skip to the table of designs")).to_be_focused()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.closest('.the-table') !== null")
+
+
 def test_a_number_of_no_run_is_said(open_page: Open, store: Store) -> None:
     page = open_page(store, "#/jobs/99", expected=("404",))
     expect(page.get_by_text("there is no job 99; list the jobs")).to_be_visible()

@@ -44,7 +44,7 @@ export async function show(place, { parts, signal }) {
     asked?.catch(() => {}); // who waits for it says so
     const held = focused(head);
     drawHead(job);
-    if (held) first(head, "button, summary, a")?.focus();
+    if (held) first(head, "button:not(.skip), summary, a")?.focus();
     if (watched) return;
     if (live) {
       const { watch } = await import("../jobs/live.js");
@@ -66,8 +66,18 @@ export async function show(place, { parts, signal }) {
     const { summary } = job;
     const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
+      summary?.designs ? h("button", { type: "button", class: "skip", onclick: toTable }, "Skip to the table of designs") : null,
       h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
       h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), signal })));
+  }
+
+  /** Past all that can be done with charts, which takes some sixty steps of the Tab key. */
+  function toTable() {
+    const table = first(body, ".the-table");
+    if (!table) return;
+    table.tabIndex = -1;
+    table.focus();
+    table.scrollIntoView();
   }
 
   function gone() {
