@@ -154,7 +154,7 @@ class Shaft:
             beside = angle[lost] + np.copysign(_BESIDE, inside[lost, None] - angle[lost])
             own = None if rate is None else rate[lost]
             again = self._asked(kind, members, row[lost], inside[lost], beside, own, wanted)
-            there = np.isfinite(found[0][lost]).all(axis=2)
+            there = np.asarray(np.isfinite(found[0][lost]).all(axis=2))
             found[0][lost] = np.where(there[:, :, None], found[0][lost], again[0])
             found[1][lost] = np.where(there, found[1][lost], again[1])
         return found
