@@ -117,8 +117,8 @@ def _motion(problem: Problem) -> list[str]:
     start, end = (f"{factor * value:.6g}" for value in (swing.start, swing.end))
     ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from {start} to {end} {unit} and back"
     if start_column(problem.mechanism) is not None:
-        span = f"{factor * (swing.end - swing.start):.6g} {unit} on" if swing.follows else f"{end} {unit}"
-        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from where a design starts to {span}, and back"
+        moved = f"by {factor * (swing.end - swing.start):.6g} {unit}" if swing.follows else f"to {end} {unit}"
+        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings {moved} from where a design starts, and back"
     if swing.of == "slider":
         ends += f", the crank pin {swing.side} of the line to the slider pin"
     timed = "" if swing.duration is None else f", {swing.duration:.6g} s a way"
