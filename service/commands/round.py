@@ -64,14 +64,15 @@ def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> 
     heads = [f">{number}" for number in range(1, len(designs) + 1)]
     rows = table("quantity", "unit", ">given", *heads, ruled=True, padding=(0, 2, 0, 0), pad_edge=True)
     wanted = [found.problem.quantity(item.quantity) for item in found.problem.objectives]
-    objectives = {of.field: of.stem for of in wanted}
+    objectives = {of.field: of for of in wanted}
     for key in given:
         name, factor = key_in(key, units)
         column = find_column(name, {key_in(each, units)[0]: None for each in given})
         numbers = [f"{factor * row[key]:.6g}" for row in designs]
-        rows.add_row(column.title, column.unit, f"{factor * given[key]:.6g}", *numbers)
+        title = objectives[key].title if key in objectives else column.title  # of a formula as it is written
+        rows.add_row(title, column.unit, f"{factor * given[key]:.6g}", *numbers)
         if key in objectives:
-            percents = [row[f"change_{objectives[key]}_percent"] for row in designs]
+            percents = [row[f"change_{objectives[key].stem}_percent"] for row in designs]
             rows.add_row("  change", column.unit, "", *(f"{factor * row[f'change_{key}']:+.3g}" for row in designs))
             rows.add_row("", "%", "", *(_percent(percent) for percent in percents))
     rows.add_row(

@@ -132,3 +132,15 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
     assert words in done.stderr
     assert done.stderr.startswith("slidercrank: ")
     assert done.stderr.count("\n") == 1
+
+
+def test_a_formula_is_named_as_it_is_written(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text().replace('stroke = { equals = "280 mm" }', BAND)
+    job.write_text(text.replace("[objectives]", '[objectives]\n"max(rod, 2 * crank)" = "minimise"'))
+    done = command("optimise", job, "--runs", tmp_path / "runs", "--no-figures")
+    assert done.exit_code == 0, done.output
+    done = command("round", "latest", 1, "--runs", tmp_path / "runs", "--to", "0.5 mm", "--count", "1")
+    assert done.exit_code == 0, done.output
+    assert "max(rod, 2 * crank)" in done.stdout
+    assert "max rod 2" not in done.stdout
