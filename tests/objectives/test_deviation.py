@@ -71,14 +71,13 @@ def test_no_other_shift_leaves_less(rows: int) -> None:
     linkage = linkage_of(random_designs(1, seed=rows, least_margin=0.1)[0], machine.branch)
     angles = random.uniform(0.0, 2.0 * math.pi, rows)
     true = computed(machine, linkage, angles + 0.7)
+    shifts = np.linspace(-math.pi, math.pi, 721 if rows < 100 else 91)
+    shifted = [computed(machine, linkage, angles + shift) for shift in shifts]
     for name in ("slider_position", "torque", "guide"):
         values = true[name] + random.normal(0.0, 0.2 * true[name].std(), rows)
         found = one(machine, linkage, angles, name, values)
         assert found.fit is not None
-        least = min(
-            (values - computed(machine, linkage, angles + shift)[name]).std()
-            for shift in np.linspace(-math.pi, math.pi, 721 if rows < 100 else 91)
-        )
+        least = min((values - curves[name]).std() for curves in shifted)
         assert found.fit.rms <= least * (1.0 + 1e-9)
         off = values + found.fit.value - computed(machine, linkage, angles + found.fit.crank_angle)[name]
         assert math.sqrt(np.mean(off**2)) == pytest.approx(found.fit.rms, rel=1e-9)
