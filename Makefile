@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: run test test-slow test-all test-rounding lint check docs benchmark pictures screens requests faults clean
+.PHONY: run test test-slow test-all test-rounding test-changed lint lint-style lint-types check docs benchmark pictures screens requests faults clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.installed
@@ -35,14 +35,22 @@ ROUNDING ?= tests/optimise/test_shipped_jobs.py tests/optimise/test_known_optima
 test-rounding: $(VENV)/.installed-test
 	NUMBA_CPU_NAME=generic OPENBLAS_CORETYPE=Nehalem $(BIN)/python -m pytest $(ROUNDING)
 
-lint: $(VENV)/.installed-test
+lint: lint-style lint-types
+
+lint-style: $(VENV)/.installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+
+lint-types: $(VENV)/.installed-test
 	$(BIN)/mypy
 
 # While working: lint, types, and the tests of what differs from a branch. tests/changed.py says which these are.
 BASE ?= main
-check: $(VENV)/.installed-test lint
+CHECKS := lint-types test-changed lint-style
+check: $(VENV)/.installed-test
+	@$(MAKE) --no-print-directory --jobs=$$(getconf _NPROCESSORS_ONLN) --output-sync=target $(CHECKS)
+
+test-changed: $(VENV)/.installed-test
 	@files=$$($(BIN)/python -m tests.changed $(BASE)) || exit; \
 	if test -z "$$files"; then echo 'no test belongs to what differs from $(BASE)'; \
 	else $(BIN)/python -m pytest -q -m 'not slow' $$files; code=$$?; test $$code -eq 5 || exit $$code; fi

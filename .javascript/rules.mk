@@ -2,7 +2,8 @@
 # Without node they are left out, and make says so.
 .PHONY: lint-javascript test-javascript clean-javascript
 lint: lint-javascript
-test check: test-javascript
+test: test-javascript
+CHECKS += lint-javascript test-javascript
 clean: clean-javascript
 
 JAVASCRIPT := .javascript
