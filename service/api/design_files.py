@@ -17,8 +17,10 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
+from ..store.kept import kept_of
 from .exports import SEALED, download, of_type
 from .figures import require_figures
+from .kept import alternatives_of
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
@@ -88,7 +90,7 @@ def report_design(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric"
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
 
-    content = _made(shown, f"report {units}", lambda: html_file(_report(shown, store, units)))
+    content = _made(shown, f"report {units} {_kept(shown, store)}", lambda: html_file(_report(shown, store, units)))
     return _file(shown, "html", "text/html; charset=utf-8", content, label="-report")
 
 
@@ -97,7 +99,7 @@ def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric")
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file
 
-    content = _made(shown, f"pdf {units}", lambda: pdf_file(_report(shown, store, units)))
+    content = _made(shown, f"pdf {units} {_kept(shown, store)}", lambda: pdf_file(_report(shown, store, units)))
     return _file(shown, "pdf", "application/pdf", content, label="-report")
 
 
@@ -130,8 +132,14 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
         known=found.front,
         changed=shown.variation(),
         system=units,
+        alternatives=alternatives_of(found, store),
     )
     return design_report(subject)
+
+
+def _kept(shown: ShownDesign, store: Store) -> int:
+    """Return a number that is another one once a kept design of the job has changed: the report tells of them."""
+    return hash(tuple(kept_of(store, shown.found.job.id)))
 
 
 def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:

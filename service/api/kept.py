@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, Field
@@ -23,6 +23,10 @@ from .models import UnitsAsked, Whole
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
+
+if TYPE_CHECKING:
+    from ..report.subject import Alternative
+    from ..store import Store
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
@@ -127,6 +131,18 @@ def export_kept(found: FrontDep, store: StoreDep, units: UnitsAsked = "metric") 
         head |= {"note": one.note, "reason": one.reason, "outside_the_job": ", ".join(varied.outside)}
         rows.append(head | rows_in([varied.row], units)[0])
     return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{found.result.run}-kept.csv")
+
+
+def alternatives_of(found: StoredFront, store: Store) -> list[Alternative]:
+    """Return the kept designs of a job as a report has them."""
+    from ..report.subject import Alternative
+
+    said = []
+    for one in kept_of(store, found.job.id):
+        varied = _varied(found, _design(found, one))
+        words: dict[str, Any] = {"name": one.name, "note": one.note, "decided": one.decided, "reason": one.reason}
+        said.append(Alternative(**words, row=varied.row, broken=varied.broken, outside=varied.outside))
+    return said
 
 
 def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:

@@ -149,7 +149,11 @@ class StoredFronts:
             self._kept.popitem(last=False)
 
 
-def _front(number: JobNumber, fronts: Annotated[StoredFronts, part_of_app("fronts")]) -> StoredFront:
+FrontsDep = Annotated[StoredFronts, part_of_app("fronts")]
+"""The fronts of all jobs."""
+
+
+def _front(number: JobNumber, fronts: FrontsDep) -> StoredFront:
     return fronts.of(number)
 
 

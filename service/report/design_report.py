@@ -11,6 +11,7 @@ from ..designs.columns import DIMENSIONS, find_column
 from ..designs.turning import require_turning
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
+from .decision_section import decision_section
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
@@ -29,13 +30,14 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
     """
     require_turning(subject.design.part, "a report")
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(made))
-    tolerances = tolerance_section(subject)
+    tolerances, decision = tolerance_section(subject), decision_section(subject)
     return Report(
         title=f"{subject.result.name}: {subject.name}",
         subtitle=f"Design report for review; run {subject.run}",
         made=when,
         sections=(
             _summary(subject),
+            *([] if decision is None else [decision]),
             job_section(subject),
             search_section(subject),
             front_section(subject),

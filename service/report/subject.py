@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import Any
@@ -17,6 +17,22 @@ from ..designs.variation import Variation
 from ..runs.result import Result, Row
 
 
+@dataclass(frozen=True, kw_only=True)
+class Alternative:
+    """A design that was kept, and perhaps decided for. row: metric. reason: why, or why not.
+
+    broken, outside: columns of requirements that it misses, and of ranges that it leaves.
+    """
+
+    name: str
+    note: str
+    decided: bool
+    reason: str
+    row: Row
+    broken: Sequence[str] = ()
+    outside: Sequence[str] = ()
+
+
 @dataclass(frozen=True)
 class Subject:
     """One design of a run. metric: the result as it is kept. number: of the design, from 1. run: what it is called.
@@ -24,7 +40,7 @@ class Subject:
     versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
     known: the front of the result, where there is one already. changed: the design with other lengths than it has in
     the front; None for the design as it is. system: of the units of the report. measured: curves to put beside those of
-    the design.
+    the design. alternatives: the designs that were kept of the run.
     """
 
     problem: Problem
@@ -38,6 +54,7 @@ class Subject:
     changed: Variation | None = None
     system: System = "metric"
     measured: Measured | None = None
+    alternatives: Sequence[Alternative] = ()
 
     @cached_property
     def result(self) -> Result:

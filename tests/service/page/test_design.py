@@ -194,7 +194,7 @@ def test_the_other_lengths_follow_to_keep_what_is_asked_exactly(opened: Opened, 
     expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
     expect(page.locator(".verdict")).not_to_contain_text("stroke")
     assert float(page.get_by_label("Crank", exact=True).input_value()) != pytest.approx(row["crank_mm"], rel=1e-4)
-    stroke = page.get_by_role("region", name="Motion").locator("td[data-design='What if'][data-key='stroke_mm']")
+    stroke = page.get_by_role("region", name="All numbers").locator("td[data-design='What if'][data-key='stroke_mm']")
     expect(stroke).to_have_text("280")
 
 
@@ -243,7 +243,7 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     turns = {str(place_of(crank)).split("rotate")[1] for crank in page.locator(".mechanism .link.crank").all()}
     assert turns == {"(-10.000)"}
     assert page.locator("figure[data-key='torque_Nm'] .curve").count() == 3
-    columns = page.get_by_role("region", name="Dimensions").locator("thead th").all_inner_texts()
+    columns = page.get_by_role("region", name="All numbers").locator("thead th").all_inner_texts()
     assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change", "Unit"]
     page.get_by_label("Take design 1 away").click()
     expect(page.locator(".machine .mechanism")).to_have_count(2)

@@ -276,8 +276,22 @@ def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) ->
     cells = page.get_by_role("row").filter(has_text="best time ratio").get_by_role("cell")
     best = max(float(row["time_ratio"]) for row in better)  # type: ignore[arg-type]
     expect(cells.nth(1)).to_have_text(f"{best:.5g} best")
-    expect(page.get_by_role("img", name="The fronts of 2 runs")).to_be_visible()
+    picture = page.get_by_role("img", name="The fronts of 2 runs")
+    expect(picture).to_be_visible()
+    expect(page.locator(".compare")).to_contain_text(
+        "Run 2 matches or beats every design of run 1, to 2 % of each range."
+    )
+    expect(page.locator(".compare")).to_contain_text("The jobs are the same but for their names.")
     require_accessible(page)
+    picture.locator(".series-1 circle").first.hover()
+    expect(page.locator(".readout")).to_contain_text("Run 1, design")
+    cells.nth(1).get_by_role("link").click()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("Design", timeout=30_000)
+    page.go_back()
+    picture.locator(".series-2 rect").first.click()
+    page.wait_for_url("**/#/jobs/2/designs/*")
+    page.evaluate("location.hash = '#/help'")
+    expect(page.get_by_role("heading", level=1)).to_have_text("Help", timeout=30_000)
     store.delete(2)
     gone = open_page(store, "#/compare?jobs=1,2", expected=("404",))
     expect(gone.get_by_text("Run 2 is not there any more.")).to_be_visible()

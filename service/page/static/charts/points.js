@@ -6,6 +6,7 @@ import { headed } from "../front/columns.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 340];
+const NEAR = 14; // pixels of the picture
 const AREA = { left: 76, right: 14, top: 12, bottom: 46 };
 /** @type {((x: number, y: number) => SVGElement)[]} */
 const SHAPES = [
@@ -17,11 +18,13 @@ const SHAPES = [
 
 /**
  * Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape.
- * held: ranges of the axes in the units that are shown, where they are not those of the points.
+ * held: ranges of the axes in the units that are shown, where they are not those of the points. told.at: of the point that is pointed
+ * at, by its series and its place there, null for none; told.open: of one that is clicked on.
  * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
  * @param {[Page.Range, Page.Range] | null} held
+ * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} [told]
  */
-export function points(series, x, y, label, held = null) {
+export function points(series, x, y, label, held = null, told = undefined) {
   const drawn = series.map((one) => one.points.filter(isPoint));
   const places = drawn.flat();
   /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
@@ -34,13 +37,52 @@ export function points(series, x, y, label, held = null) {
   const up = axis(1, y, HEIGHT - AREA.bottom, AREA.top);
   const bottom = HEIGHT - AREA.bottom;
   const middle = (AREA.top + bottom) / 2;
-  return svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
+  const picture = svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
     across.ticks.map((tick) => [svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }), svg("text", { x: across.at(tick), y: bottom + 18, "text-anchor": "middle" }, across.text(tick))]),
     up.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick))]),
     svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, headed(x)),
     svg("text", { class: "title", x: 17, y: middle, transform: `rotate(-90 17 ${middle})`, "text-anchor": "middle" }, headed(y)),
     drawn.map((own, index) => svg("g", { class: `series-${1 + (index % 6)}` }, own
       .map(([a, b]) => SHAPES[index % SHAPES.length](round(across.at(inShown(a, x.unit))), round(up.at(inShown(b, y.unit))))))));
+  if (told) pointed(picture, series, (point) => [across.at(inShown(point[0], x.unit)), up.at(inShown(point[1], y.unit))], told);
+  return picture;
+}
+
+/**
+ * Mark the point under the pointer, and tell of it.
+ * @param {SVGSVGElement} picture @param {{ points: Api.Row[string][][] }[]} series @param {(point: Page.Point) => Page.Point} place
+ * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} told
+ */
+function pointed(picture, series, place, { at, open }) {
+  const all = series.flatMap((one, number) => one.points.flatMap((point, row) => (isPoint(point) ? [{ number, row, at: place(point) }] : [])));
+  const ring = svg("circle", { class: "ring", r: 8, cx: -99, cy: -99 });
+  picture.append(ring);
+  /** @param {MouseEvent} event */
+  const under = ({ clientX, clientY }) => {
+    const box = picture.getBoundingClientRect();
+    const [x, y] = [((clientX - box.left) * WIDTH) / box.width, ((clientY - box.top) * HEIGHT) / box.height];
+    /** @type {(typeof all)[0] | null} */
+    let nearest = null;
+    let least = NEAR * NEAR;
+    for (const one of all) {
+      const distance = (one.at[0] - x) ** 2 + (one.at[1] - y) ** 2;
+      if (distance < least) [nearest, least] = [one, distance];
+    }
+    return nearest;
+  };
+  /** @param {(typeof all)[0] | null} one */
+  const mark = (one) => {
+    ring.setAttribute("cx", String(one ? one.at[0] : -99));
+    ring.setAttribute("cy", String(one ? one.at[1] : -99));
+    picture.style.cursor = one ? "pointer" : "default";
+    at(one?.number ?? null, one?.row ?? 0);
+  };
+  picture.addEventListener("pointermove", (event) => mark(under(event)));
+  picture.addEventListener("pointerleave", () => mark(null));
+  picture.addEventListener("click", (event) => {
+    const one = under(event);
+    if (one) open(one.number, one.row);
+  });
 }
 
 /** Whether a point has a place: what is not defined has none. @type {(point: readonly unknown[]) => point is Page.Point} */

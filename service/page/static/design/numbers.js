@@ -16,9 +16,18 @@ const MET = 1e-8; // of a bound: designs meet their constraints to this
  * @param {{ designs: Shown[], columns: Api.Column[], requirements: Api.Requirement[], slow: string | null | undefined, names: Record<string, string> }} given
  */
 export function showNumbers(place, { designs, columns, requirements, slow, names }) {
-  const groups = groupsOf(columns).map(({ title, columns: own }) =>
-    h("section", { class: "panel group" }, h("h3", {}, title), table(title, designs, own, names)));
-  fill(place, h("h2", {}, "All numbers"), h("div", { class: designs.length > 1 ? "groups several" : "groups" }, groups, limits(designs, requirements, slow, names), quality(designs, columns)));
+  /** @param {Api.Column} column */
+  const known = ({ key }) => designs.some(({ row }) => row[key] !== null && row[key] !== undefined);
+  const groups = groupsOf(columns);
+  const shown = groups.map(({ title, columns: own }) => ({ title, columns: own.filter(known) })).filter(({ columns: own }) => own.length > 0);
+  const missing = groups.flatMap(({ columns: own }) => own.filter((column) => !known(column)));
+  const several = designs.length > 1;
+  const tables = several
+    ? h("section", { class: "panel group together" }, table("All numbers", designs, shown, names))
+    : shown.map((group) => h("section", { class: "panel group" }, h("h3", {}, group.title), table(group.title, designs, [group], names)));
+  const without = missing.length > 0 && h("section", { class: "panel group" }, h("details", {}, h("summary", {}, `${missing.length} quantities that this machine does not have`),
+    table("Quantities without a value", designs, [{ title: "", columns: missing }], names)));
+  fill(place, h("h2", {}, "All numbers"), several && tables, h("div", { class: "groups" }, !several && tables, limits(designs, requirements, slow, names), quality(designs, columns), without));
 }
 
 /** Return a link to the help of a column. @param {{ key: string, title: string }} column @param {Record<string, string>} names */
@@ -46,15 +55,20 @@ export function difference(value, from) {
   return `${percent > 0 ? "+" : "−"}${Math.abs(percent) >= 1000 ? Math.round(Math.abs(percent)) : Number(Math.abs(percent).toPrecision(3))} %`;
 }
 
-/** @param {string} caption @param {Shown[]} designs @param {Api.Column[]} columns @param {Record<string, string>} names */
-function table(caption, designs, columns, names) {
+/**
+ * Return a table of designs, the groups one below the other; the others with their change from the first.
+ * @param {string} caption @param {Shown[]} designs @param {{ title: string, columns: Api.Column[] }[]} groups @param {Record<string, string>} names
+ */
+function table(caption, designs, groups, names) {
   const [first, ...others] = designs;
   const head = h("tr", {}, h("th", { scope: "col" }, "Quantity"), heading(first), others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]), h("th", { scope: "col" }, "Unit"));
-  const rows = columns.map((column) =>
+  /** @param {Api.Column} column */
+  const line = (column) =>
     h("tr", {}, h("th", { scope: "row" }, helpLink(column, names)), cell(first.row[column.key], column, { name: first.name }),
       others.map(({ row, name }) => [cell(row[column.key], column, { name }), h("td", { class: "number quiet" }, difference(row[column.key], first.row[column.key]))]),
-      h("td", { class: "quiet" }, unitOf(column.unit))));
-  return scrolled(caption, h("table", {}, h("caption", { class: "hidden" }, caption), h("thead", { class: others.length ? null : "hidden" }, head), h("tbody", {}, rows)));
+      h("td", { class: "quiet" }, unitOf(column.unit)));
+  const bodies = groups.map(({ title, columns }) => h("tbody", {}, groups.length > 1 && h("tr", { class: "group-title" }, h("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), columns.map(line)));
+  return scrolled(caption, h("table", {}, h("caption", { class: "hidden" }, caption), h("thead", { class: others.length ? null : "hidden" }, head), bodies));
 }
 
 /** @param {Shown} design */

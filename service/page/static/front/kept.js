@@ -72,6 +72,14 @@ export function keptPanel(explorer) {
     return changed ? link(["jobs", job.id, "designs", design], Object.fromEntries(LENGTHS.map((key) => [key, cells[key]]))) : explorer.hrefOf(design - 1);
   }
 
+  /** Return the link to the report of a kept design, with the alternatives and the reasons; null where it has no view. @param {Api.Kept} one */
+  function reportOf(one) {
+    const { design, changed, cells, name } = one;
+    if (!hrefOf(one)) return null;
+    const lengths = changed ? Object.fromEntries(LENGTHS.map((key) => [key, Number(cells[key])])) : {};
+    return h("a", { class: "button", download: "", "aria-label": `Report of the decision for ${name}`, href: address(`jobs/${job.id}/designs/${design}/report.html`, { ...lengths, units: apiSystem() }) }, "Report of the decision");
+  }
+
   /** @param {Api.Kept} one */
   function line(one) {
     const { number, name } = one;
@@ -82,11 +90,11 @@ export function keptPanel(explorer) {
       h("td", {}, h("button", { type: "button", class: "star", "aria-pressed": String(one.star), "aria-label": `Star of ${name}`, "data-act": `star-${number}`, onclick: () => change(number, { star: !one.star }) }, one.star ? "★" : "☆")),
       h("th", { scope: "row" }, href ? h("a", { href }, name) : name,
         one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"), one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement")),
-      data.objectives.map(({ column, unit }) => h("td", { class: "number", "data-key": column, "data-value": String(one.cells[column]) }, withUnit(one.cells[column], unit, 5))),
+      data.objectives.map(({ column, unit }) => h("td", { class: "number", "data-key": column, "data-value": String(one.cells[column] ?? "") }, withUnit(one.cells[column], unit, 5))),
       words("note", "Note on"),
       h("td", {}, h("input", { type: "radio", name: "decided", checked: one.decided, "aria-label": `Decided for ${name}`, "data-act": `decided-${number}`, onchange: () => change(number, { decided: true }) })),
       words("reason", "Why, or why not,"),
-      LENGTHS.map((key) => h("td", { class: "number quiet", "data-key": key, "data-value": String(one.cells[key]) }, withUnit(one.cells[key], "mm", 6))),
+      LENGTHS.map((key) => h("td", { class: "number quiet", "data-key": key, "data-value": String(one.cells[key] ?? "") }, withUnit(one.cells[key], "mm", 6))),
       h("td", {}, h("button", { type: "button", class: "small", "aria-label": `Drop ${name}`, title: "Drop", onclick: () => drop(one) }, "×")));
   }
 
@@ -98,7 +106,7 @@ export function keptPanel(explorer) {
     for (const node of [stars, file]) node.hidden = designs.length === 0;
     file.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
     const decided = designs.find((one) => one.decided);
-    fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`]);
+    fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`, " ", reportOf(decided)]);
     why.hidden = !decided;
     const heads = ["", "name", ...data.objectives.map(({ title }) => title), "note", "decided", "because, or why not", "crank", "rod", "offset", ""];
     const words = 2 + data.objectives.length; // where those that are no numbers begin

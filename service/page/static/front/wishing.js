@@ -202,7 +202,7 @@ export function wishingPanel(explorer) {
     return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "All numbers of the wished design" }, h("table", {}, h("caption", { class: "hidden" }, "All numbers of the wished design"),
       h("thead", {}, h("tr", {}, ["Quantity", "wished design", `design ${near}`].map((title, n) => h("th", { scope: "col", class: n ? "number" : null }, title)))),
       h("tbody", {}, shown.map(({ key, title, unit }) => h("tr", {}, h("th", { scope: "row" }, title),
-        h("td", { class: "number", "data-key": key, "data-value": String(wished[key]) }, withUnit(wished[key], unit)), h("td", { class: "number quiet" }, withUnit(beside[key], unit)))))));
+        h("td", { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") }, withUnit(wished[key], unit)), h("td", { class: "number quiet" }, withUnit(beside[key], unit)))))));
   }
 
   /** Offer the wishes that were made before. */

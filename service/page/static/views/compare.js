@@ -1,11 +1,11 @@
 import { points, sign } from "../charts/points.js";
 import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
-import { keep, link } from "../lib/address.js";
+import { go, keep, link } from "../lib/address.js";
 import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
-import { grouped, text, withUnit } from "../lib/numbers.js";
+import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 
 export const title = "Compare runs";
@@ -37,6 +37,9 @@ export async function show(place, { query, signal }) {
   /** @type {{ x: string, y: string }} */
   const axes = { x: chosen("x", shared[0]), y: chosen("y", shared[1]) };
   const picture = h("div");
+  const readout = h("p", { class: "quiet readout" });
+  const words = h("ul");
+  const differences = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of differences" });
   const table = h("div", { class: "scroll" });
 
   /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
@@ -52,11 +55,28 @@ export async function show(place, { query, signal }) {
 
   function drawPicture() {
     const [x, y] = [axes.x, axes.y].map(known);
-    const series = runs.map(({ data, job }) => ({ name: job.name, points: spread(data.count).map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]) }));
-    fill(picture, points(series, x, y, `The fronts of ${runs.length} runs`));
+    const shown = runs.map(({ data }) => spread(data.count));
+    const series = runs.map(({ data, job }, n) => ({ name: job.name, points: shown[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]) }));
+    fill(picture, points(series, x, y, `The fronts of ${runs.length} runs`, null, {
+      at: (n, place) => tell(n === null ? null : { n, row: shown[n][place] }),
+      open: (n, place) => go(["jobs", runs[n].job.id, "designs", shown[n][place] + 1]),
+    }));
+    tell(null);
+  }
+
+  /** Say what a design has that is pointed at. @param {{ n: number, row: number } | null} one */
+  function tell(one) {
+    if (!one) return fill(readout, "Point at a design to read it; click to open it.");
+    const { job, data } = runs[one.n];
+    fill(readout, h("strong", {}, `Run ${job.id}, design ${one.row + 1}`), ` ${[...objectives.keys()].filter((key) => data.has(key)).map((key) => `${known(key).title} ${withUnit(data.cell(key, one.row), known(key).unit, 4)}`).join(" · ")}`);
   }
 
   function drawTable() {
+    /** Return the design that is best in an objective of its own; null where the run has another. @param {(typeof runs)[0]} run @param {string} key */
+    const bestDesign = ({ front }, key) => {
+      const own = front.objectives.find((objective) => objective.column === key);
+      return own ? front.extremes[own.quantity] : null;
+    };
     /** @param {string} key @param {string} sense @param {number | null | undefined} target @returns {Api.Row[string][]} */
     const best = (key, sense, target) => runs.map(({ front, data }) => {
       const own = front.objectives.find((objective) => objective.column === key);
@@ -72,7 +92,7 @@ export async function show(place, { query, signal }) {
       const { unit } = known(column);
       return h("tr", {},
         h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(known(column))}`)),
-        values.map((value) => h("td", { class: "number" }, text(value, unit, 5), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
+        values.map((value, n) => h("td", { class: "number", "data-key": column, "data-value": String(value) }, toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
     });
     /** @param {string} name @param {(run: (typeof runs)[0]) => Dom.Child} value */
     const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
@@ -83,6 +103,25 @@ export async function show(place, { query, signal }) {
         plain("evaluated", ({ front }) => grouped(front.evaluations)),
         plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
         plain("seed", ({ front }) => String(front.seed)))));
+  }
+
+  /** Return words that lead to a design, counted from 0; alone without one. @param {number} job @param {number | null} row @param {string} words */
+  function toDesign(job, row, words) {
+    return row === null ? words : h("a", { href: link(["jobs", job, "designs", row + 1]) }, words);
+  }
+
+  /** Say who is better where, and what differs between the jobs. */
+  async function drawWords() {
+    try {
+      const found = await get("comparison", { job: runs.map(({ job }) => String(job.id)), units: apiSystem() }, signal);
+      fill(words, found.sentences.map((sentence) => h("li", {}, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`)));
+      if (!found.differences.length) return fill(differences, h("p", { class: "quiet" }, "The jobs are the same but for their names."));
+      fill(differences, h("table", {}, h("caption", { class: "hidden" }, "What differs between the jobs"),
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Place in the job"), runs.map(({ job }) => h("th", { scope: "col" }, `run ${job.id}`)))),
+        h("tbody", {}, found.differences.map(({ place, values }) => h("tr", {}, h("th", { scope: "row" }, place), values.map((value) => h("td", {}, value ?? "–")))))));
+    } catch (problem) {
+      if (!isAbort(problem)) fill(words, h("li", { class: "error" }, sentenceOf(problem)));
+    }
   }
 
   /** @param {string} label @param {"x" | "y"} name */
@@ -98,13 +137,16 @@ export async function show(place, { query, signal }) {
     missing.map((sentence) => h("p", { class: "error" }, sentence)),
     runs.length < 2 ? h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")) : h("div", { class: "columns compare" },
       h("section", { class: "panel", "aria-labelledby": "fronts-title" }, h("h2", { id: "fronts-title" }, "Fronts"),
-        shared.length > 1 ? [h("div", { class: "row picks" }, pick("Across", "x"), pick("Up", "y")), picture,
+        shared.length > 1 ? [h("div", { class: "row picks" }, pick("Across", "x"), pick("Up", "y")), picture, readout,
           h("div", { class: "legend" }, runs.map(({ job }, index) => h("span", {}, sign(index), ` ${job.name} (run ${job.id})`)))] : h("p", {}, "These runs share fewer than two objectives, so their fronts have no picture in common.")),
-      h("section", { class: "panel", "aria-labelledby": "best-title" }, h("h2", { id: "best-title" }, "Side by side"), table)));
+      h("section", { class: "panel", "aria-labelledby": "best-title" }, h("h2", { id: "best-title" }, "Side by side"), table),
+      h("section", { class: "panel", "aria-labelledby": "words-title" }, h("h2", { id: "words-title" }, "Who is better where"), words),
+      h("section", { class: "panel", "aria-labelledby": "differences-title" }, h("h2", { id: "differences-title" }, "What differs between the jobs"), differences)));
   const draw = () => {
     if (runs.length < 2) return;
     if (shared.length > 1) drawPicture();
     drawTable();
+    drawWords();
   };
   draw();
   window.addEventListener("units", draw, { signal });

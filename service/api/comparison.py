@@ -1,0 +1,57 @@
+"""Runs against each other: what differs between their jobs, and who is better where, in words."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from ...model.errors import InputError
+from ..designs.comparing import compared_in_words
+from ..jobs.differences import differences
+from .models import LARGEST, UnitsAsked, Whole
+from .problems import problem_responses
+from .settings import StoreDep
+from .stored_fronts import FrontsDep
+
+router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+
+MOST = 6
+_Number = Annotated[Whole, Query(ge=1, le=LARGEST)]
+
+
+class DifferenceModel(BaseModel):
+    """A place at which jobs differ. values: what each job has there, null for nothing."""
+
+    place: str = Field(examples=["variables.rod"])
+    values: list[str | None] = Field(examples=[["50 mm to 250 mm", "50 mm to 300 mm"]])
+
+
+class ComparisonModel(BaseModel):
+    """Runs against each other. sentences: who is better where; only of runs with designs."""
+
+    jobs: list[int] = Field(examples=[[1, 2]])
+    differences: list[DifferenceModel]
+    sentences: list[str] = Field(examples=[["run 2 matches or beats every design of run 1, to 2 % of each range"]])
+
+
+@router.get("/comparison")
+def compare_runs(
+    job: Annotated[list[_Number], Query(min_length=2, max_length=MOST, description="its number; repeatable")],
+    store: StoreDep,
+    fronts: FrontsDep,
+    units: UnitsAsked = "metric",
+) -> ComparisonModel:
+    """Say what differs between the jobs of runs, and which of their fronts is better where."""
+    if len(set(job)) < len(job):
+        raise InputError(f"each run is compared once; got {', '.join(map(str, job))}; leave out what is there twice")
+    places = differences([store.tables(number) for number in job])
+    results = [(f"run {number}", fronts.of(number).result) for number in job]
+    solved = [(name, result) for name, result in results if result.designs]
+    names, known = [name for name, _ in solved], [result for _, result in solved]
+    return ComparisonModel(
+        jobs=job,
+        differences=[DifferenceModel(place=place, values=list(values)) for place, values in places],
+        sentences=compared_in_words(names, known, units) if len(solved) > 1 else [],
+    )

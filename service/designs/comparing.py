@@ -1,0 +1,113 @@
+"""Several fronts in words: who reaches most, who beats whom, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...objectives.kinds import System, shown_in
+from ..runs.result import Result, Wanted
+from .picking_options import minimised_values
+
+if TYPE_CHECKING:
+    from ...model.arrays import Array
+
+_SAME = 1e-6
+"""Share of an objective's range that counts as equal: designs are exact to about that."""
+NEAR = 0.02
+"""Share of an objective's range within which a design matches another: two samples of one front lie side by side."""
+_TO = f"to {100 * NEAR:g} % of each range"
+
+
+def compared_in_words(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
+    """Return what there is to say of fronts against each other, in sentences.
+
+    names: of the runs. results: with designs. Only objectives that all runs have, in the same sense, are compared.
+    """
+    shared = _shared(results)
+    if not shared:
+        return ["The runs share no objective, so that none is better than another"]
+    fronts = [_values(result, shared) for result in results]
+    span = np.ptp(np.concatenate(fronts), axis=0)
+    span[span == 0.0] = 1.0
+    said = [_best(names, results, wanted, index, fronts, span, system) for index, wanted in enumerate(shared)]
+    for a in range(len(names)):
+        for b in range(len(names)):
+            if a != b:
+                said += _against(names[a], names[b], results[a], shared, fronts[a] / span, fronts[b] / span, system)
+    return said
+
+
+def _shared(results: Sequence[Result]) -> list[Wanted]:
+    kinds = [{(item.quantity, item.sense, item.target): item for item in result.objectives} for result in results]
+    return [item for key, item in kinds[0].items() if all(key in other for other in kinds[1:])]
+
+
+def _values(result: Result, shared: Sequence[Wanted]) -> Array:
+    """Return the shared objectives of a result (n, m), as they are minimised; infinite where one is not defined."""
+    order = [item.quantity for item in result.objectives]
+    values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
+    return np.asarray(np.where(np.isfinite(values), values, np.inf))
+
+
+def _best(
+    names: Sequence[str],
+    results: Sequence[Result],
+    wanted: Wanted,
+    index: int,
+    fronts: Sequence[Array],
+    span: Array,
+    system: System,
+) -> str:
+    """Return who comes farthest in one objective, and how far the others come."""
+    rows = [int(np.argmin(front[:, index])) for front in fronts]
+    least = np.array([front[row, index] for front, row in zip(fronts, rows, strict=True)])
+    values = [
+        _said(result.designs[row][wanted.column], wanted, system) for result, row in zip(results, rows, strict=True)
+    ]
+    first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index]]
+    title = f"best {wanted.title}"
+    if len(first) == len(names):
+        return f"{title}: all reach {values[0]}"
+    rest = [f"{values[n]} of {names[n]}" for n in range(len(names)) if n not in first]
+    return f"{title}: {' and '.join(names[n] for n in first)} with {values[first[0]]}, against {', '.join(rest)}"
+
+
+def _against(
+    name: str, other: str, result: Result, shared: Sequence[Wanted], own: Array, others: Array, system: System
+) -> list[str]:
+    """Return how many designs of one front the other one does not match, and where these are."""
+    free = unmatched(own, others)
+    count, total = int(free.sum()), len(own)
+    if count == 0:
+        return [f"{other} matches or beats every design of {name}, {_TO}"]
+    if count == total:
+        return [f"{other} matches none of the {total} designs of {name}, {_TO}"]
+    where = [text for n, wanted in enumerate(shared) if (text := _where(result, free, wanted, own[:, n], system))]
+    place = f": where {', '.join(where)}" if where else ", spread over the whole front"
+    return [f"{name} has {count} of {total} designs that {other} does not match, {_TO}{place}"]
+
+
+def unmatched(own: Array, others: Array) -> NDArray[np.bool_]:
+    """Return which designs (n, m) no other one (k, m) matches or beats; scaled objectives, as they are minimised."""
+    return np.array([not bool((others <= point + NEAR).all(axis=1).any()) for point in own])
+
+
+def _where(result: Result, free: NDArray[np.bool_], wanted: Wanted, values: Array, system: System) -> str:
+    """Return in which part of an objective's range the chosen designs are; empty if in most of it."""
+    low, high = values[free].min(), values[free].max()
+    inside = (values >= low) & (values <= high)
+    if inside.mean() > 0.7:
+        return ""
+    cells = [result.designs[row][wanted.column] for row in np.flatnonzero(free)]
+    numbers = [float(cell) for cell in cells if isinstance(cell, float)]
+    ends = [_said(end, wanted, system) for end in (min(numbers), max(numbers))]
+    return f"{wanted.title} is {ends[0]}" if ends[0] == ends[1] else f"{wanted.title} is {ends[0]} to {ends[1]}"
+
+
+def _said(value: object, wanted: Wanted, system: System) -> str:
+    unit, factor = shown_in(wanted.unit, system)
+    return f"{value * factor:.4g} {unit}".rstrip() if isinstance(value, float) else "not defined"

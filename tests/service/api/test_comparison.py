@@ -1,0 +1,108 @@
+"""Runs against each other over the API: differences of their jobs, and who is better where, against brute force."""
+
+from __future__ import annotations
+
+import random
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import httpx
+import pytest
+
+from slidercrank.service.designs.comparing import NEAR
+from slidercrank.service.jobs.differences import differences
+from slidercrank.service.store import Store
+from tests.service import fronts
+from tests.service.api.fixed_front import API, Solved, client_of, put_in
+
+TABLES = tomllib.loads(fronts.JOB)
+KEYS = ("time_ratio", "least_transmission_angle_deg")
+"""Both are maximised."""
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
+    with Store(tmp_path_factory.mktemp("comparison") / "store.db") as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def client(store: Store) -> Iterator[httpx.Client]:
+    with client_of(store) as opened:
+        yield opened
+
+
+def moved(solved: Solved, chance: random.Random) -> list[dict[str, Any]]:
+    """Return the designs with other values of the objectives, drawn at random."""
+    return [{**row, KEYS[0]: chance.uniform(1, 2), KEYS[1]: chance.uniform(30, 60)} for row in solved.result.designs]
+
+
+def test_jobs_differ_where_they_say_other_things() -> None:
+    other = tomllib.loads(fronts.JOB)
+    other["name"] = "Another"
+    other["variables"]["rod"][1] = "700 mm"
+    other["load"] = [{"force": "200 N", "opposes": "motion"}]
+    del other["constraints"]["transmission_angle"]
+    assert differences([TABLES, other]) == [
+        ("variables.rod", ("60 mm to 600 mm", "60 mm to 700 mm")),
+        ("constraints.transmission_angle.min", ("40 deg", None)),
+        ("load.1.force", (None, "200 N")),
+        ("load.1.opposes", (None, "motion")),
+    ]
+    assert differences([TABLES, TABLES]) == []
+
+
+def test_sentences_count_the_designs_that_the_other_run_does_not_match(
+    client: httpx.Client, store: Store, solved: Solved
+) -> None:
+    chance = random.Random(5)
+    for _ in range(4):
+        rows = [moved(solved, chance) for _ in range(2)]
+        numbers = [put_in(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
+        sentences = client.get(f"{API}/comparison", params={"job": numbers}).json()["sentences"]
+        for index in (0, 1):
+            own, other, first, second = rows[index], rows[1 - index], numbers[index], numbers[1 - index]
+            near = {
+                key: NEAR * (max(row[key] for row in own + other) - min(row[key] for row in own + other))
+                for key in KEYS
+            }
+            free = [row for row in own if not any(all(one[k] >= row[k] - near[k] for k in KEYS) for one in other)]
+            about = [one for one in sentences if re.search(rf"run {first}\b.* that run {second} does not match", one)]
+            if 0 < len(free) < len(own):
+                assert about[0].startswith(f"run {first} has {len(free)} of {len(own)} designs")
+                for title, low, high in re.findall(r"(time ratio) is ([\d.]+) to ([\d.]+)", about[0]):
+                    ends = [row[KEYS[0]] for row in free]
+                    assert (float(low), float(high)) == pytest.approx((min(ends), max(ends)), rel=1e-3), title
+            elif free:
+                assert (
+                    f"run {second} matches none of the {len(own)} designs of run {first}, to 2 % of each range"
+                    in sentences
+                )
+            else:
+                assert f"run {second} matches or beats every design of run {first}, to 2 % of each range" in sentences
+
+
+def test_the_best_of_each_objective_is_said_with_who_has_it(client: httpx.Client, store: Store, solved: Solved) -> None:
+    better = [{**row, KEYS[0]: float(str(row[KEYS[0]])) + 1.0} for row in solved.result.designs]
+    first = put_in(store, solved.result, TABLES)
+    second = put_in(store, replace(solved.result, exact=None), TABLES, designs=better)
+    found = client.get(f"{API}/comparison", params={"job": [first, second]}).json()
+    most = max(float(str(row[KEYS[0]])) for row in solved.result.designs)
+    assert f"best time ratio: run {second} with {most + 1:.4g}, against {most:.4g} of run {first}" in found["sentences"]
+    assert any(one.startswith("best least transmission angle: all reach") for one in found["sentences"])
+    assert found["differences"] == []
+
+
+def test_runs_without_designs_have_no_sentences_and_one_run_twice_is_refused(
+    client: httpx.Client, store: Store, solved: Solved
+) -> None:
+    first = put_in(store, solved.result, TABLES)
+    empty = put_in(store, replace(solved.result, designs=[], exact=None, extremes={}, knee=None), TABLES)
+    assert client.get(f"{API}/comparison", params={"job": [first, empty]}).json()["sentences"] == []
+    for jobs, sentence in (([first, first], "each run is compared once"), ([first], "at least 2"), ([first, 999], "")):
+        answer = client.get(f"{API}/comparison", params={"job": jobs})
+        assert answer.status_code in (404, 422)
+        assert sentence in answer.text

@@ -1,0 +1,128 @@
+"""Every number of a changed design on the page equals API, CSV and Python: what-ifs, rounded, wished and kept ones."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.optimise.job import load_job
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from tests.service.api.fixed_front import API, Solved, served
+from tests.service.page.conftest import watch
+
+LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
+NUMBERS = "nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"
+Row = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def opened(
+    browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[tuple[Page, str, str]]:
+    """Return a page, the address of its service and of the job in the API; nothing may go wrong on the page."""
+    wrong: list[str] = []
+    path = tmp_path_factory.mktemp("same") / "store.db"
+    back_up(solved.store, path)
+    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
+    with Store(path) as store, served(store) as address, contextlib.closing(context):
+        page = context.new_page()
+        watch(page, address, wrong)
+        yield page, address, f"{address}{API}/jobs/{solved.number}"
+    assert wrong == []
+
+
+def require_python(row: Row, solved: Solved) -> None:
+    """Compare a row with what the library says of its lengths."""
+    lengths = np.array([[row[key] / 1e3 for key in LENGTHS]])
+    expected = analyse(load_job(solved.job).mechanism, lengths).iloc[0]
+    known = [key for key in row if key in expected and isinstance(row[key], float)]
+    assert len(known) > 30
+    for key in known:
+        # A millimetre is a thousandth of a metre only to rounding, which forces near a jump amplify.
+        assert expected[key] == pytest.approx(row[key], rel=1e-9, abs=1e-9), key
+
+
+def require_shown(shown: list[tuple[str, str]], row: Row) -> None:
+    """Compare the cells of a table with a row."""
+    assert shown
+    for key, text in shown:
+        value = row[key]
+        assert (text == "") if value is None else (text == value) if isinstance(value, str) else float(text) == value, (
+            key
+        )
+
+
+def numbers_of(page: Page, address: str, number: int, lengths: dict[str, float]) -> list[tuple[str, str]]:
+    """Open a design with other lengths; return its column of all numbers."""
+    query = "&".join(f"{key}={value!r}" for key, value in lengths.items())
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{number}/designs/3?{query}")
+    cells = page.locator(".numbers [data-design='What if'][data-value]")
+    expect(cells.first).to_be_attached(timeout=30_000)
+    found: list[tuple[str, str]] = cells.evaluate_all(NUMBERS)
+    return found
+
+
+def test_numbers_of_a_what_if(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    lengths = {key: float(str(solved.result.designs[2][key])) for key in LENGTHS}
+    lengths["rod_mm"] *= 1.03
+    row = httpx.post(f"{api}/designs/3/what-if", json={**lengths, "angles": 0}, timeout=60.0).json()["design"]
+    shown = numbers_of(page, address, solved.number, lengths)
+    assert {key for key, _ in shown} >= set(row) - {key for key in row if key.startswith("slack_")}
+    require_shown(shown, row)
+    require_python(row, solved)
+
+
+def test_numbers_of_a_rounded_design(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    body = {"to": ["0.5 mm"], "count": 1}
+    (rounded,) = httpx.post(f"{api}/designs/3/rounded", json=body, timeout=60.0).json()["rounded"]["designs"]
+    lengths = {key: rounded[key] for key in LENGTHS}
+    row = httpx.post(f"{api}/designs/3/what-if", json={**lengths, "angles": 0}, timeout=60.0).json()["design"]
+    for key in ("time_ratio", "least_transmission_angle_deg", *LENGTHS):
+        assert rounded[key] == pytest.approx(row[key], rel=1e-12)
+    require_shown(numbers_of(page, address, solved.number, lengths), row)
+    require_python(row, solved)
+
+
+def test_numbers_of_a_wished_design_that_is_kept(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{solved.number}?wish.time_ratio=1.3")
+    answer = page.locator(".wish-answer")
+    table = answer.locator("details table")
+    expect(table).to_be_attached(timeout=60_000)
+    wished = httpx.post(f"{api}/wish", json={"at": {"time_ratio": "1.3"}}, timeout=60.0).json()
+    require_shown(table.locator("[data-value]").evaluate_all(NUMBERS), wished["design"])
+    require_python(wished["design"], solved)
+    reached = answer.get_by_role("table", name="Wished and reached").locator("[data-value]").evaluate_all(NUMBERS)
+    assert {key: float(value) for key, value in reached} == {
+        one["quantity"]: one["reached"] for one in wished["objectives"]
+    }
+    answer.get_by_text("Keep this design").click()
+    answer.get_by_label("Name").fill("Wished")
+    answer.get_by_role("button", name="Keep", exact=True).click()
+    line = page.locator(".kept tbody tr")
+    expect(line).to_contain_text("Wished", timeout=30_000)
+    (kept,) = httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]
+    require_shown(line.locator("[data-value]").evaluate_all(NUMBERS), kept["cells"])
+    shared = wished["design"].keys() & kept["cells"].keys()  # how optimal it is was found by the search alone
+    assert len(shared) > 40
+    for key, value in ((key, wished["design"][key]) for key in shared):
+        alike = pytest.approx(value, rel=1e-9, abs=1e-9) if isinstance(value, float) else value
+        assert kept["cells"][key] == alike, key
+    (row,) = csv.DictReader(io.StringIO(httpx.get(f"{api}/kept.csv", timeout=60.0).text))
+    for key, value in kept["cells"].items():
+        if isinstance(value, float):
+            assert float(row[key]) == value, key
