@@ -8,11 +8,12 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from ..designs.binding import binding_limits, widened
+from ..designs.nearby import SHARE, nearby
 from .job_requests import Asked, IdempotencyKey
 from .jobs import SUBMITTED, submitted
 from .problems import problem_responses
 from .settings import SettingsDep, StoreDep
-from .stored_fronts import FrontDep
+from .stored_fronts import LONGEST, FrontDep, Length
 
 router = APIRouter(tags=["fronts"])
 
@@ -59,6 +60,15 @@ class Widening(BaseModel, extra="forbid", strict=True):
     limits: list[OtherLimit] = Field(min_length=1, max_length=50)
 
 
+class Nearby(BaseModel, extra="forbid", strict=True):
+    """Lengths that a copy of a job varies around. share: of each length, on either side."""
+
+    crank_mm: Length = Field(examples=[40.0])
+    rod_mm: Length = Field(examples=[64.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
+    share: float = Field(SHARE, gt=0.0, le=0.9, allow_inf_nan=False, examples=[0.1])
+
+
 @router.get("/jobs/{number}/binding", responses=problem_responses(409))
 def list_binding(found: FrontDep, store: StoreDep) -> BindingModel:
     """Give the limits of a job on which designs of its front rest: what a wider one may gain."""
@@ -86,5 +96,22 @@ def run_widened(
     """Queue a copy of a job with wider limits; the copy knows the job that it came from."""
     job = found.job
     tables = widened(found.problem, store.tables(job.id), [(one.of, one.side, one.value) for one in asked.limits])
+    copy = Asked(tables=tables, priority=job.priority, limits=job.limits)
+    return submitted(copy, store, settings, response, idempotency_key, origin=job.id)
+
+
+@router.post("/jobs/{number}/nearby", **{**SUBMITTED, "responses": problem_responses(409, 415, 429)})
+def run_nearby(
+    found: FrontDep,
+    asked: Nearby,
+    store: StoreDep,
+    settings: SettingsDep,
+    response: Response,
+    idempotency_key: IdempotencyKey = None,
+) -> dict[str, Any]:
+    """Queue a copy of a job that searches around given lengths, also outside of its ranges."""
+    job = found.job
+    lengths = (asked.crank_mm, asked.rod_mm, asked.offset_mm)
+    tables = nearby(found.problem, store.tables(job.id), lengths, share=asked.share)
     copy = Asked(tables=tables, priority=job.priority, limits=job.limits)
     return submitted(copy, store, settings, response, idempotency_key, origin=job.id)

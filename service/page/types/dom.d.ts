@@ -9,7 +9,7 @@ declare namespace Dom {
     [Name in keyof HTMLElementEventMap as `on${Name}`]?: (event: HTMLElementEventMap[Name] & { currentTarget: Of }) => unknown;
   };
   type Named =
-    | "accept" | "alt" | "autocomplete" | "autofocus" | "checked" | "class" | "colspan" | "cx" | "cy" | "d" | "datetime" | "disabled" | "download"
+    | "accept" | "alt" | "autocomplete" | "autofocus" | "checked" | "class" | "colspan" | "cx" | "cy" | "d" | "datetime" | "disabled" | "download" | "draggable"
     | "for" | "height" | "hidden" | "href" | "id" | "inputmode" | "max" | "maxlength" | "method" | "min" | "name" | "novalidate" | "open" | "placeholder"
     | "r" | "required" | "reversed" | "role" | "rows" | "rx" | "scope" | "selected" | "spellcheck" | "src" | "step" | "tabindex" | "text-anchor"
     | "title" | "transform" | "type" | "value" | "viewBox" | "width" | "x" | "x1" | "x2" | "y" | "y1" | "y2";

@@ -3,6 +3,7 @@
 import { inShown, text } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
+import { histograms } from "./histogram.js";
 import { line, nearestLine } from "./lines.js";
 import { layers, rgb } from "./paint.js";
 import { colours, scale } from "./scale.js";
@@ -138,6 +139,7 @@ export function parallel(chart) {
     stack.clear(OVER);
     const context = contexts[OVER];
     const { ink, axes, across, scales, heights, height } = view;
+    histograms(context, view, chart.limits.mask, ROOM);
     context.font = "12px Inter, system-ui, sans-serif";
     context.textBaseline = "middle";
     axes.forEach(({ key }, axis) => {

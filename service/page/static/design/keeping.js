@@ -1,14 +1,15 @@
 /** Keep a design that is none of the list: with a name and a note, in the store. */
 
-import { link } from "../lib/address.js";
+import { go, link } from "../lib/address.js";
 import { post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 
 /**
  * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(): it is.
- * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown }} given
+ * lengths(): that a search may begin near to; without it none is offered.
+ * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} given
  */
-export function keeping({ job, design, dimensions, kept = () => {} }) {
+export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
   const name = h("input", { type: "text", maxlength: 200, autocomplete: "off", placeholder: "Kept" });
   const note = h("input", { type: "text", maxlength: 4000, autocomplete: "off" });
   const said = h("p", { class: "quiet", role: "status" });
@@ -27,5 +28,21 @@ export function keeping({ job, design, dimensions, kept = () => {} }) {
       button.disabled = false;
     }
   }
-  return h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form);
+  const failed = h("p", { class: "bad", role: "alert" });
+
+  /** @param {HTMLButtonElement} near @param {Page.Lengths} around */
+  async function search(near, around) {
+    near.disabled = true;
+    failed.textContent = "";
+    try {
+      const { id } = await post(`jobs/${job}/nearby`, around);
+      go(["jobs", id]);
+    } catch (error) {
+      failed.textContent = sentenceOf(error);
+    } finally {
+      near.disabled = false;
+    }
+  }
+  return h("div", { class: "row keep-or-search" }, h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
+    lengths && h("button", { type: "button", title: "A run of its own, whose lengths vary by a tenth around these", onclick: ({ currentTarget }) => search(currentTarget, lengths()) }, "Search near this"), failed);
 }

@@ -43,7 +43,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
-  const keep = keeping({ job, design: Number(path.split("/").pop()), dimensions: () => (moved() ? { ...(answer ? lengthsOf(answer.design) : lengths) } : null) });
+  const keep = keeping({ job, design: Number(path.split("/").pop()), dimensions: () => (moved() ? { ...(answer ? lengthsOf(answer.design) : lengths) } : null), lengths: () => ({ ...(answer ? lengthsOf(answer.design) : lengths) }) });
   fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, keep, picture);
   const map = frontMap(picture, { objectives, front });
   /** @type {Api.WhatIf | null} */

@@ -39,7 +39,16 @@ export function axisFields(explorer) {
         doing();
         first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
       } }, sign);
-    return h("div", { class: "axis-head" },
+    return h("div", {
+      class: "axis-head", draggable: "true", "data-axis": key,
+      ondragstart: ({ dataTransfer }) => dataTransfer?.setData("text/axis", String(index)),
+      ondragover: (event) => event.dataTransfer?.types.includes("text/axis") && event.preventDefault(),
+      ondrop: (event) => {
+        event.preventDefault();
+        const from = Number(event.dataTransfer?.getData("text/axis"));
+        if (from !== index) explorer.moveAxis(from, index - from);
+      },
+    },
       h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
       h("span", { class: "way" }, wayOf(key, flipped)),
       h("div", { class: "axis-acts" },

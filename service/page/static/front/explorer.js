@@ -211,6 +211,7 @@ export class Explorer {
       this.count.textContent = `${grouped(chosen)} of ${grouped(this.data.count)} designs chosen`;
       this.clearing.disabled = this.limits.open;
       this.saving.draw();
+      this.scatterPanel.together.draw();
     }
     if (what === "all") {
       this.width = this.place.clientWidth;

@@ -4,6 +4,7 @@ import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { ends } from "../lib/numbers.js";
 import { headed } from "./columns.js";
+import { correlations } from "./correlation.js";
 
 /**
  * @import { Explorer } from "./explorer.js"
@@ -26,12 +27,13 @@ export function scatterPanel(explorer, dots) {
     h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
+  const together = correlations(explorer);
   const before = h("div", { class: "legend before", hidden: true });
   const place = h("section", { class: "panel trade-off", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
     h("div", { class: "row picks" }, picks.map(({ node }) => node), drag),
     h("div", { class: "dots" }, dots.place),
-    key, before,
+    key, before, together.place,
     h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
 
   function draw() {
@@ -72,5 +74,5 @@ export function scatterPanel(explorer, dots) {
     fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades", title: "viridis: equal steps look alike" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
   }
 
-  return { place, draw, legend };
+  return { place, draw, legend, together };
 }

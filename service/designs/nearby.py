@@ -1,0 +1,40 @@
+"""The job of a search near a design: its ranges lie around the lengths of that design, also outside of the job."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import deepcopy
+from typing import Any
+
+from ...model.errors import InputError
+from ...optimise.problem.problem import Problem
+from .columns import DIMENSIONS
+
+SHARE = 0.1
+"""Of a length, on either side of it."""
+_LONGEST_NAME = 80  # of a job
+
+
+def nearby(
+    problem: Problem, tables: Mapping[str, Any], lengths: tuple[float, float, float], *, share: float = SHARE
+) -> dict[str, Any]:
+    """Return the tables of a job whose crank, rod and offset vary around lengths, mm. What the job fixes stays so.
+
+    share: of each length, on either side; of the offset at least that share of the crank. Raises `InputError` where
+    the job fixes all three.
+    """
+    part = problem.parts()[0]
+    free = [name for name in DIMENSIONS if (of := getattr(part, name)).lower < of.upper]
+    if not free:
+        raise InputError("a search near a design needs a length that varies; this job fixes all three; give it a range")
+    job = deepcopy(dict(tables))
+    given = dict(zip(DIMENSIONS, lengths, strict=True))
+    for name in free:
+        room = share * max(abs(given[name]), given[DIMENSIONS[0]])
+        if name != DIMENSIONS[2]:
+            room = share * given[name]
+        job["variables"][name] = [f"{given[name] - room:.6g} mm", f"{given[name] + room:.6g} mm"]
+    sizes = ", ".join(f"{given[name]:.4g}" for name in DIMENSIONS)
+    name = f"{tables['name']}, near {sizes} mm"
+    job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
+    return job
