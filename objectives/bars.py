@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import PINS, of_numbers
+from ..model.machine.numbers import PINS
 from ..model.machine.raw import Raw
 from ..model.machine.remembered import remembered_batch
 from ..model.machine.strength import Strength
@@ -160,11 +160,6 @@ def pin_force(mechanism: Mechanism, designs: Array, pin: str, kept: int, gradien
     """Return the greatest force of a pin over the cycle, N."""
     found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)
     return Part(found.values, found.gradients, np.nan_to_num(found.angles))
-
-
-def closed(mechanism: Mechanism, designs: Array, formula: Formula, gradients: bool) -> tuple[Array, Array | None]:
-    """Return a closed form of the machine's numbers, (n,), and its gradients; see `of_numbers`."""
-    return of_numbers(mechanism, designs, formula, gradients=gradients)
 
 
 def net_section(link: str, pin: str) -> Formula:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from .bars import LINKS, Formula, OfBars, Part, closed, constant, strength_of, stress
+from ..model.machine.numbers import of_numbers
+from .bars import LINKS, Formula, OfBars, Part, constant, strength_of, stress
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, STRENGTH
 from .quantity import Array
@@ -45,7 +46,7 @@ class BucklingSafety(OfBars):
             pressed = stress(mechanism, designs, name, _COMPRESSION, kept, gradients, bending=False)
             for side in (own.width, own.depth):
                 critical = critical_stress(own.length, side, own.held, material.elasticity, material.yield_strength)
-                found.append(pressed.into(closed(mechanism, designs, critical, gradients)))
+                found.append(pressed.into(of_numbers(mechanism, designs, critical, gradients=gradients)))
         return found
 
 

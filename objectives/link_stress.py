@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ..model.machine.mechanism import Mechanism
-from .bars import LINKS, NEAR, OfBars, Part, closed, constant, net_section, over, pin_force, strength_of, stress
+from ..model.machine.numbers import of_numbers
+from .bars import LINKS, NEAR, OfBars, Part, constant, net_section, over, pin_force, strength_of, stress
 from .kinds import PRESSURE, RATIO
 from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array
@@ -33,7 +34,7 @@ class LinkStress(OfBars):
             found.append(along.into(constant(own, designs, gradients)) if self.least else along)
             for pin in (NEAR, LINKS[name].far):
                 force = forces[pin]
-                area = closed(mechanism, designs, net_section(name, pin), gradients)
+                area = of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
                 if self.least:
                     found.append(force.into(_scaled(area, own / strength.eye_concentration)))
                 else:

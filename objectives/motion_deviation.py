@@ -42,19 +42,19 @@ class MotionDeviation(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""
         if not gradients:
-            return Values(fit(self._given, _sign(mechanism), self.measure, dimensions[:, :3]).values, None)
+            return Values(fit(self._given, mechanism.sign, self.measure, dimensions[:, :3]).values, None)
         found = self.pieces(mechanism, dimensions)
         return Values(found.values[:, 0], found.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
-        found = fit_pieces(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
+        found = fit_pieces(self._given, mechanism.sign, self.measure, dimensions[:, :3])
         more = dimensions.shape[1] - 3  # what varies besides the dimensions does not move the slider
         return Pieces(found.values, np.pad(found.gradients, ((0, 0), (0, 0), (0, more))), found.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return the best fit's phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
-        found: Fit = fit(self._given, _sign(mechanism), self.measure, dimensions[:, :3])
+        found: Fit = fit(self._given, mechanism.sign, self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
         if self._given.phase == "free":
@@ -98,7 +98,3 @@ DEVIATIONS = {each.name: each for each in (MOTION_DEVIATION, MOTION_DEVIATION_RM
 def motion_deviations(target: TargetMotion) -> tuple[MotionDeviation, ...]:
     """Return the quantities that a target motion makes."""
     return tuple(replace(each, target=target) for each in DEVIATIONS.values())
-
-
-def _sign(mechanism: Mechanism) -> float:
-    return 1.0 if mechanism.branch == "open" else -1.0

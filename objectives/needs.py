@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 from ..model.cycle.gas_cycle import compressors, cylinders
@@ -76,6 +77,7 @@ def _pivot_loaded(machine: Mechanism) -> bool:
     return pivot_loaded(machine.fullest)
 
 
+_defining = partial(Need, without="undefined")
 _MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
     "it comes from masses and loads; got none that matter; add for example "
@@ -83,10 +85,9 @@ _LOADS = (
 )
 _SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
 
-TOLERANCES = Need(
+TOLERANCES = _defining(
     _tolerances,
     'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
-    without="undefined",
 )
 FRICTION = Need(
     _friction,
@@ -109,11 +110,10 @@ WORK = Need(
     "always resists (viscous, drag) and none that differs between the strokes; use {instead}, or add what the machine "
     "works against",
 )
-LOAD_WORK = Need(
+LOAD_WORK = _defining(
     load_works_over_a_turn,
     "an efficiency is the share of the energy that reaches the load; got no load that takes net work over a turn; add "
     'for example [[load]] force = "200 N", opposes = "motion"',
-    without="undefined",
 )
 _RUBS = "add for example [friction] guide = 0.1"
 RUBS = Need(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")
@@ -122,17 +122,15 @@ LOSSES = Need(
     f"without friction nothing is lost, and the efficiency of every design is 1; got none; {_RUBS}",
     without="equal",
 )
-CYLINDER = Need(
+CYLINDER = _defining(
     lambda machine: bool(cylinders(machine)),
     "it comes from a cylinder; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
-    without="undefined",
 )
-COMPRESSOR = Need(
+COMPRESSOR = _defining(
     lambda machine: bool(compressors(machine)),
     "it comes from a compressor or pump; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
-    without="undefined",
 )
 
 SHAKES = Need(
@@ -141,50 +139,42 @@ SHAKES = Need(
     "in pairs; use peak_rocking_couple, or leave it out",
 )
 """Cylinders whose shaking forces leave something."""
-COUPLES = Need(
+COUPLES = _defining(
     couples,
     "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got none; add for "
     'example [mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',
-    without="undefined",
 )
-ONE_CYLINDER = Need(
+ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,
     "a stroke is of one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
-    without="undefined",
 )
-EVEN_SPEED = Need(
+EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
     "strength and wear are those at a constant speed; got a speed profile; leave it out for them",
-    without="undefined",
 )
 
-STRENGTH = Need(
+STRENGTH = _defining(
     lambda machine: machine.strength is not None,
     "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
     "docs/sizing.md",
-    without="undefined",
 )
-WEARS = Need(
+WEARS = _defining(
     lambda machine: machine.strength is not None and machine.strength.wear_coefficient is not None,
     "it comes from pins and a wear coefficient; got none; add for example "
     '[sections] wear_coefficient = "1e-9 mm^2/N", with pins and [sections.material] as in docs/sizing.md',
-    without="undefined",
 )
 _BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'
-ROD_BAR = Need(
+ROD_BAR = _defining(
     lambda machine: isinstance(machine.rod, Bar),
     _BAR.replace("{}", "it is of a rod given by its section", 1).replace("{}", "rod", 1),
-    without="undefined",
 )
-CRANK_BAR = Need(
+CRANK_BAR = _defining(
     lambda machine: isinstance(machine.crank, Bar),
     _BAR.replace("{}", "it is of a crank given by its section", 1).replace("{}", "crank", 1),
-    without="undefined",
 )
-A_BAR = Need(
+A_BAR = _defining(
     lambda machine: isinstance(machine.rod, Bar) or isinstance(machine.crank, Bar),
     _BAR.replace("{}", "it is of links given by their sections", 1).replace("{}", "rod", 1),
-    without="undefined",
 )
 
 

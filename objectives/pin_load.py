@@ -9,8 +9,8 @@ from functools import partial
 from typing import Any
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import PINS
-from .bars import LINKS, NEAR, Formula, OfBars, Part, closed, over, pin_force
+from ..model.machine.numbers import PINS, of_numbers
+from .bars import LINKS, NEAR, Formula, OfBars, Part, over, pin_force
 from .kinds import PRESSURE
 from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
 from .quantity import Array
@@ -26,7 +26,7 @@ class PinPressure(OfBars):
         """Return the pressure in each bar that the pin bears in; see `OfBars`."""
         force = pin_force(mechanism, designs, self.pin, kept, gradients)
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
-        return [over(force, closed(mechanism, designs, area, gradients)) for area in areas]
+        return [over(force, of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class PinShear(OfBars):
         """Return the stress; see `OfBars`."""
         slot = PINS[self.pin]
         force = pin_force(mechanism, designs, self.pin, kept, gradients)
-        area = closed(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients)
+        area = of_numbers(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients)
         return [over(force, area)]
 
 

@@ -11,10 +11,11 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import alone
+from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
-from .bars import LINKS, Formula, OfBars, Part, closed
+from .bars import LINKS, Formula, OfBars, Part
 from .kinds import LENGTH, PRESSURE_SPEED
 from .needs import EVEN_SPEED, SPEED, STRENGTH, WEARS
 from .pin_load import of_pin
@@ -43,7 +44,7 @@ class PinRubbing(OfBars):
         mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)
         return [
-            mean.times(closed(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients))
+            mean.times(of_numbers(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients=gradients))
             for name in self.bars(mechanism)
         ]
 

@@ -156,6 +156,11 @@ class Mechanism:
         return replace(self, varying=()) if self.varying else self
 
     @property
+    def sign(self) -> float:
+        """+1 on the open branch, -1 on the crossed one."""
+        return 1.0 if self.branch == "open" else -1.0
+
+    @property
     def direction(self) -> float:
         """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
 

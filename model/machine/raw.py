@@ -68,7 +68,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
         names = ", ".join(item.name for item in mechanism.varying)
         raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
     raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # takes parts sooner than an array
-    raw[Raw.BRANCH] = 1.0 if mechanism.branch == "open" else -1.0
+    raw[Raw.BRANCH] = mechanism.sign
     raw[Raw.SPEED] = mechanism.speed
     raw[Raw.ACCELERATION] = mechanism.acceleration
     raw[Raw.SLIDER_MASS] = mechanism.slider_mass

@@ -82,7 +82,7 @@ def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Ar
 
 
 def _sign(mechanism: Mechanism) -> float:
-    return 1.0 if mechanism.branch == "open" else -1.0
+    return mechanism.sign
 
 
 def _closing(designs: Array, ends: Ends) -> Mask:

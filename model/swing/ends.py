@@ -123,7 +123,7 @@ def start_column(mechanism: Mechanism) -> int | None:
 
 def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
     """Return both ends of the swings of designs (n, 3 + k). slopes: whether derivatives are asked for."""
-    sign = 1.0 if mechanism.branch == "open" else -1.0
+    sign = mechanism.sign
     column = start_column(mechanism)
     plain = _ends(swing, sign, designs, column)
     if not slopes:

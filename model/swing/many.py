@@ -78,7 +78,7 @@ class Many:
         self.rubs = mechanism.fullest.friction.acts and not free
         self.path: Path = path_of(self.swing, rubbing=self.rubs, forces=forces)
         self.designs, self.count = designs, len(designs)
-        self.sign = 1.0 if mechanism.branch == "open" else -1.0
+        self.sign = mechanism.sign
         self.ends: Ends = ends_of(mechanism, self.swing, designs, slopes=slopes)
         numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
         self.blocks, self.steps = derived(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
@@ -266,7 +266,7 @@ def _sorted(own: Pieces) -> Pieces:
 
 def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can swing as asked; see `require_swing` of one."""
-    sign = 1.0 if mechanism.branch == "open" else -1.0
+    sign = mechanism.sign
     found = passes(mechanism, swing, designs)
     if swing.driver == "crank" and mechanism.fullest.friction.crank_pin.circle and found.any():
         # The rod turns as fast as the crank where the slider is at the pivot.

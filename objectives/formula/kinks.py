@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.arrays import Mask
+from ...model.arrays import Mask, Whole
 from ..quantity import Array, Pieces
 from .expression import Number
 from .slopes import BINARY, UNARY, partials, sum_of
@@ -41,6 +41,15 @@ class Side:
         """The active piece alone."""
         return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.there[:, :1])
 
+    def at(self, places: Whole) -> Side:
+        """Return the pieces at some places (n, m) of each design."""
+        return Side(
+            np.take_along_axis(self.values, places, axis=1),
+            np.take_along_axis(self.gradients, places[:, :, None], axis=1),
+            np.take_along_axis(self.labels, places, axis=1),
+            np.take_along_axis(self.there, places, axis=1),
+        )
+
     def padded(self, width: int) -> Side:
         """Return the side with places for more pieces, which are not there."""
         room = [(0, 0), (0, width - self.values.shape[1])]
@@ -59,12 +68,7 @@ class Side:
         worth = np.where(right, -self.values if above else self.values, np.inf)
         worth[:, 0] = -np.inf
         order = np.argsort(worth, axis=1, kind="stable")[:, :_KEPT]
-        return Side(
-            np.take_along_axis(self.values, order, axis=1),
-            np.take_along_axis(self.gradients, order[:, :, None], axis=1),
-            np.take_along_axis(self.labels, order, axis=1),
-            np.take_along_axis(right, order, axis=1),
-        )
+        return replace(self, there=right).at(order)
 
 
 @dataclass(frozen=True)
@@ -218,12 +222,7 @@ def _extreme(function: str, arguments: list[Both]) -> Both:
     all_of = [item.padded(width) for item in wide]
     together = Side(*(np.concatenate([getattr(s, f) for s in all_of], axis=1) for f in Side.__dataclass_fields__))
     places = np.argsort(np.arange(together.values.shape[1]) != (first * width)[:, None], axis=1, kind="stable")
-    together = Side(
-        np.take_along_axis(together.values, places, axis=1),
-        np.take_along_axis(together.gradients, places[:, :, None], axis=1),
-        np.take_along_axis(together.labels, places, axis=1),
-        np.take_along_axis(together.there, places, axis=1),
-    ).ordered(above=greatest)
+    together = together.at(places).ordered(above=greatest)
     held = [item.below if greatest else item.above for item in arguments]
     width = max(item.values.shape[1] for item in held)
     narrow = held[0].padded(width)

@@ -78,7 +78,7 @@ class Designs:
         self.mechanism = mechanism
         self.crank, self.rod, self.offset = (dimensions[:, v, None] for v in range(3))
         self._dimensions = dimensions
-        self._branch = 1.0 if mechanism.branch == "open" else -1.0
+        self._branch = mechanism.sign
 
     def __len__(self) -> int:
         return len(self._dimensions)

@@ -299,7 +299,7 @@ class Problem:
         """
         if self.slow_stroke is None:
             return None
-        side = self.mechanism.direction * (1.0 if self.mechanism.branch == "open" else -1.0)
+        side = self.mechanism.direction * self.mechanism.sign
         return side if self.slow_stroke == "inward" else -side
 
     def part(self, variant: int) -> Problem:
