@@ -25,7 +25,7 @@ export function axes({ x, y, across, height }, width) {
       svg("line", { class: tick === 0 ? "zero" : "grid", x1: ROOM.left, x2: width - ROOM.right, y1: y.at(tick), y2: y.at(tick) }),
       svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
     ]),
-    ticks.map((tick, n) => svg("text", { x: x.at(tick), y: height - 6, "text-anchor": !turn && x.at(tick) > width - 3 * ROOM.right ? "end" : "middle" }, turn ? `${tick}°` : n === ticks.length - 1 ? `${x.text(tick)} ${across.unit}` : x.text(tick))),
+    ticks.map((tick, n) => svg("text", { x: x.at(tick), y: height - 6, "text-anchor": x.at(tick) > width - 3 * ROOM.right ? "end" : "middle" }, turn ? `${tick}°` : n === ticks.length - 1 ? `${x.text(tick)} ${across.unit}` : x.text(tick))),
   );
 }
 
