@@ -1,4 +1,4 @@
-"""The page and its files: HTML, style, modules, font."""
+"""The page and its files: HTML, style, modules, typeface."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from fastapi import APIRouter, Request, Response
 
 from ...model.errors import NotFound
 from .bundle import joined_modules, joined_styles
+from .typeface import typeface
 
 router = APIRouter(include_in_schema=False)
 
@@ -35,15 +36,22 @@ _TYPES = {
     ".js": "text/javascript; charset=utf-8",
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
-    ".woff2": "font/woff2",
 }
-_COMPRESSED = (".woff2",)
+_HEADERS = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+"""Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once."""
 
 
 @router.get("/")
 async def show_page(request: Request) -> Response:
     """Return the document; its modules ask the API for everything else."""
     return _answer(request, "index.html")
+
+
+@router.get("/page/inter.woff")
+def fetch_typeface(request: Request) -> Response:
+    """Return the typeface; in a thread, since the first time takes seconds."""
+    content = typeface()
+    return tagged(request, f'W/"{tag_of(content)}"', lambda: Response(content, media_type="font/woff"), _HEADERS)
 
 
 @router.get("/page/{name:path}")
@@ -54,11 +62,11 @@ async def fetch_page_file(request: Request, name: str) -> Response:
 
 @dataclass(frozen=True)
 class _File:
-    """A file of the page. compressed: None where that saves nothing. tag: another one for another content."""
+    """A file of the page, as it is and compressed. tag: another one for another content."""
 
     media_type: str
     content: bytes
-    compressed: bytes | None
+    compressed: bytes
     tag: str
 
 
@@ -66,15 +74,13 @@ def _answer(request: Request, name: str) -> Response:
     file = _FILES.get(name)
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
-    # Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once.
-    headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
 
     def answer() -> Response:
-        if file.compressed is not None and "gzip" in request.headers.get("accept-encoding", ""):
+        if "gzip" in request.headers.get("accept-encoding", ""):
             return Response(file.compressed, media_type=file.media_type, headers={"Content-Encoding": "gzip"})
         return Response(file.content, media_type=file.media_type)
 
-    return tagged(request, file.tag, answer, headers)
+    return tagged(request, file.tag, answer, _HEADERS)
 
 
 def tagged(
@@ -100,18 +106,15 @@ def files_of(folder: Path) -> dict[str, _File]:
 
     The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
     """
-    paths = sorted(path for path in folder.rglob("*") if path.suffix in _TYPES)
-    contents = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
-    texts = {name: content.decode() for name, content in contents.items() if not name.endswith(_COMPRESSED)}
+    paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
+    texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}
     styles = {name: text for name, text in texts.items() if name.endswith(".css")}
     joined = {"app.js": joined_modules(texts, "app.js"), "style.css": joined_styles(styles)}
-    made = {name: text.encode() for name, text in joined.items()}
-    return {name: _file(Path(name).suffix, content) for name, content in {**contents, **made}.items()}
+    return {name: _file(Path(name).suffix, text.encode()) for name, text in {**texts, **joined}.items()}
 
 
 def _file(kind: str, content: bytes) -> _File:
-    compressed = None if kind in _COMPRESSED else gzip.compress(content, mtime=0)
-    return _File(_TYPES[kind], content, compressed, f'W/"{tag_of(content)}"')
+    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), f'W/"{tag_of(content)}"')
 
 
 _FILES = files_of(Path(__file__).parent / "static")

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import tomllib
+import importlib.metadata
+import io
 from urllib.parse import urlsplit
 
 import httpx
-import pytest
+from fontTools.ttLib import TTFont
 from playwright.sync_api import expect
 
 from slidercrank.service.api.settings import Settings
+from slidercrank.service.page.typeface import typeface
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import served
 from tests.service.api.serving import TOKEN
@@ -18,8 +20,8 @@ from tests.service.page.conftest import Open
 
 
 def test_every_file_comes_with_a_policy_that_allows_nothing_from_elsewhere(store: Store) -> None:
-    with served(store) as address, httpx.Client(base_url=address) as client:
-        for name in ("", "page/app.js", "page/style.css", "page/icon.svg", "page/fonts/inter.woff2"):
+    with served(store) as address, httpx.Client(base_url=address, timeout=30.0) as client:
+        for name in ("", "page/app.js", "page/style.css", "page/icon.svg", "page/inter.woff"):
             response = client.get(f"/{name}")
             assert response.status_code == 200, name
             policy = response.headers["content-security-policy"]
@@ -51,13 +53,14 @@ def test_the_page_weighs_less_than_250_kB_and_brings_its_own_typeface(open_page:
     assert 100_000 < weight < 250_000
 
 
-def test_the_licence_of_the_typeface_lies_beside_it(pytestconfig: pytest.Config) -> None:
-    fonts = pytestconfig.rootpath / "service/page/static/fonts"
-    assert {file.name for file in fonts.iterdir()} == {"inter.woff2", "LICENSE.txt"}
-    assert "SIL OPEN FONT LICENSE Version 1.1" in (fonts / "LICENSE.txt").read_text(encoding="utf-8")
-    with (pytestconfig.rootpath / "pyproject.toml").open("rb") as file:
-        project = tomllib.load(file)["project"]
-    assert "service/page/static/fonts/LICENSE.txt" in project["license-files"]
+def test_the_typeface_has_the_letters_of_the_page_in_all_weights_under_its_open_licence() -> None:
+    with TTFont(io.BytesIO(typeface())) as font:
+        assert set("äéßµθωφΔ·°²₁−×→≤≥√∞") <= {chr(code) for code in font.getBestCmap()}
+        assert {axis.axisTag: (axis.minValue, axis.maxValue) for axis in font["fvar"].axes}["wght"] == (100, 900)
+    licence = importlib.metadata.files("fontpkg-inter") or []
+    texts = [file.read_text() for file in licence if file.name == "LICENSE"]
+    assert all("SIL OPEN FONT LICENSE Version 1.1" in text for text in texts)
+    assert texts
 
 
 def test_without_the_token_a_browser_is_told_where_it_is(open_page: Open, store: Store) -> None:
