@@ -97,7 +97,7 @@ def _given(mechanism: Mechanism) -> list[str]:
         lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
         lines.append(
             "of all cylinders: torque, power, work, energy, volumes and shaking; of the one that has the most: forces "
-            "of the joints, stresses, motion of the slider"
+            "of the joints, motion of the slider; of one whose line is not turned: stresses and wear"
         )
     if any(mechanism.gravity):
         x, y = mechanism.gravity
