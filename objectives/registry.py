@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import copyreg
 import difflib
 import pkgutil
 from collections.abc import Iterable
 from importlib import import_module
+from typing import Any
 
 from ..model.errors import InputError
 from .quantity import Quantity
@@ -25,6 +27,19 @@ FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared(_
 """Every quantity of the product, also those whose values need a table of the job."""
 QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.items() if not quantity.table}
 """Quantities that every problem has."""
+
+
+def _of_product(name: str) -> Quantity:
+    return FACTS[name]
+
+
+def _reduced(of: Quantity) -> tuple[Any, ...] | str:
+    """Return how a quantity is pickled: one of the product by its name, since its formulas may be without one."""
+    return (_of_product, (of.name,)) if FACTS.get(of.name) is of else object.__reduce_ex__(of, 4)
+
+
+for _kind in {type(of) for of in FACTS.values()}:
+    copyreg.pickle(_kind, _reduced)
 
 
 def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:

@@ -138,7 +138,7 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
 
 
 def _kept(shown: ShownDesign, store: Store) -> int:
-    """Return a number that is another one once a kept design of the job has changed: the report tells of them."""
+    """Return a number of the state of a job's kept designs, which reports tell of: another one after each change."""
     return hash(tuple(kept_of(store, shown.found.job.id)))
 
 

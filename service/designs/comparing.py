@@ -23,7 +23,7 @@ _TO = f"to {100 * NEAR:g} % of each range"
 
 
 def compared_in_words(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
-    """Return what there is to say of fronts against each other, in sentences.
+    """Compare fronts with each other in sentences.
 
     names: of the runs. results: with designs. Only objectives that all runs have, in the same sense, are compared.
     """

@@ -1,4 +1,4 @@
-"""The job of a search near a design: its ranges lie around the lengths of that design, also outside of the job."""
+"""The job of a search near a design: ranges around its lengths, also outside of the job."""
 
 from __future__ import annotations
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pickle
+from dataclasses import replace
+
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.registry import QUANTITIES, quantity
+from slidercrank.objectives.registry import FACTS, QUANTITIES, quantity
 
 # Names in job files are promises: they never change.
 NAMES = {
@@ -41,3 +44,12 @@ def test_unknown_quantity_is_answered_with_all() -> None:
         quantity(3)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="no quantity is called 'xyz'; choose from time_ratio, peak_torque, "):
         quantity("xyz")
+
+
+def test_a_quantity_of_the_product_is_itself_where_another_process_takes_it_up() -> None:
+    assert all(pickle.loads(pickle.dumps(of)) is of for of in FACTS.values())
+
+
+def test_a_changed_quantity_keeps_its_change_where_another_process_takes_it_up() -> None:
+    changed = replace(QUANTITIES["time_ratio"], title="another title")
+    assert pickle.loads(pickle.dumps(changed)).title == "another title"

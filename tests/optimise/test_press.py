@@ -1,4 +1,4 @@
-"""The shipped press presses: its tool resists the last 10 mm of the slow stroke, and the drive gives the work."""
+"""The shipped press presses: its tool resists the end of the slow stroke, and the drive gives the work."""
 
 from __future__ import annotations
 

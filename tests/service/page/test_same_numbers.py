@@ -29,7 +29,7 @@ Row = dict[str, Any]
 def opened(
     browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Page, str, str]]:
-    """Return a page, the address of its service and of the job in the API; nothing may go wrong on the page."""
+    """Return a page, its address and that of the job in the API; nothing may go wrong there."""
     wrong: list[str] = []
     path = tmp_path_factory.mktemp("same") / "store.db"
     back_up(solved.store, path)
