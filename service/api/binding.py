@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.binding import binding_limits, widened
 from ..designs.nearby import SHARE, nearby
-from .job_requests import Asked, IdempotencyKey
-from .jobs import SUBMITTED, submitted
+from .jobs import SUBMITTED, QueueDep
 from .problems import problem_responses
-from .settings import SettingsDep, StoreDep
+from .settings import StoreDep
 from .stored_fronts import LONGEST, FrontDep, Length
 
 router = APIRouter(tags=["fronts"])
+_COPIED = {**SUBMITTED, "responses": problem_responses(409, 415, 429)}
 
 _OF = Annotated[str, Field(max_length=500, description="its place in the job", examples=["variables.rod"])]
 _Side = Literal["lower", "upper"]
@@ -84,34 +84,16 @@ def list_binding(found: FrontDep, store: StoreDep) -> BindingModel:
     return BindingModel(job=found.job.id, count=len(found.result.designs), limits=told)
 
 
-@router.post("/jobs/{number}/widened", **{**SUBMITTED, "responses": problem_responses(409, 415, 429)})
-def run_widened(
-    found: FrontDep,
-    asked: Widening,
-    store: StoreDep,
-    settings: SettingsDep,
-    response: Response,
-    idempotency_key: IdempotencyKey = None,
-) -> dict[str, Any]:
+@router.post("/jobs/{number}/widened", **_COPIED)
+def run_widened(found: FrontDep, asked: Widening, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job with wider limits; the copy knows the job that it came from."""
-    job = found.job
-    tables = widened(found.problem, store.tables(job.id), [(one.of, one.side, one.value) for one in asked.limits])
-    copy = Asked(tables=tables, priority=job.priority, limits=job.limits)
-    return submitted(copy, store, settings, response, idempotency_key, origin=job.id)
+    wider = [(one.of, one.side, one.value) for one in asked.limits]
+    return queue.put_copy(found.job, widened(found.problem, queue.store.tables(found.job.id), wider))
 
 
-@router.post("/jobs/{number}/nearby", **{**SUBMITTED, "responses": problem_responses(409, 415, 429)})
-def run_nearby(
-    found: FrontDep,
-    asked: Nearby,
-    store: StoreDep,
-    settings: SettingsDep,
-    response: Response,
-    idempotency_key: IdempotencyKey = None,
-) -> dict[str, Any]:
+@router.post("/jobs/{number}/nearby", **_COPIED)
+def run_nearby(found: FrontDep, asked: Nearby, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job that searches around given lengths, also outside of its ranges."""
-    job = found.job
     lengths = (asked.crank_mm, asked.rod_mm, asked.offset_mm)
-    tables = nearby(found.problem, store.tables(job.id), lengths, share=asked.share)
-    copy = Asked(tables=tables, priority=job.priority, limits=job.limits)
-    return submitted(copy, store, settings, response, idempotency_key, origin=job.id)
+    tables = nearby(found.problem, queue.store.tables(found.job.id), lengths, share=asked.share)
+    return queue.put_copy(found.job, tables)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, Any
 
@@ -17,12 +18,12 @@ from starlette.exceptions import HTTPException
 from ...model.errors import InputError, NotFound
 from ..jobs.submission import job_json
 from ..page.router import tag_of, tagged
-from ..store import Job, State, Store
+from ..store import Job, State
 from .exports import download, formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown, Whole
 from .problems import problem_responses, tagged_json
-from .settings import Settings, SettingsDep, StoreDep
+from .settings import SettingsDep, StoreDep
 from .throttle import READING, limit_submissions
 
 router = APIRouter(tags=["jobs"])
@@ -40,16 +41,37 @@ _Number = Annotated[Whole, Field(ge=1, le=LARGEST)]
 FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
 
 
+@dataclass(frozen=True)
+class Queue:
+    """The queue of jobs as one request sees it. idempotency_key: of the submission."""
+
+    store: StoreDep
+    settings: SettingsDep
+    response: Response
+    idempotency_key: IdempotencyKey = None
+
+    def put(self, asked: Asked, *, origin: int | None = None) -> dict[str, Any]:
+        """Queue a job and return its record. origin: the job that it is a changed copy of."""
+        with READING:
+            problem = given_problem(asked.tables, self.settings.allowed_quantities)
+        files = [asked.source or job_json(asked.tables)]
+        of: dict[str, Any] = {"priority": asked.priority, "key": self.idempotency_key, "limits": asked.limits}
+        job = self.store.submit(asked.tables, name=problem.name, files=files, origin=origin, **of)
+        self.response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+        return job.record()
+
+    def put_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
+        """Queue a copy of a job with other tables, and return its record."""
+        return self.put(Asked(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
+
+
+QueueDep = Annotated[Queue, Depends()]
+
+
 @router.post("/jobs", **SUBMITTED)
-def submit_job(
-    asked: Annotated[Asked, Depends(asked_for)],
-    store: StoreDep,
-    settings: SettingsDep,
-    response: Response,
-    idempotency_key: IdempotencyKey = None,
-) -> dict[str, Any]:
+def submit_job(asked: Annotated[Asked, Depends(asked_for)], queue: QueueDep) -> dict[str, Any]:
     """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
-    return submitted(asked, store, settings, response, idempotency_key)
+    return queue.put(asked)
 
 
 @router.get("/jobs", response_model=JobPage)
@@ -107,22 +129,15 @@ def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 
 
 @router.post("/jobs/{number}/clone", **SUBMITTED)
-def clone_job(
-    number: JobNumber,
-    clone: Clone,
-    store: StoreDep,
-    settings: SettingsDep,
-    response: Response,
-    idempotency_key: IdempotencyKey = None,
-) -> dict[str, Any]:
+def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job, with changes."""
-    job = store.job(number)
+    job = queue.store.job(number)
     asked = Asked(
-        tables=merged(store.tables(number), clone.changes),
+        tables=merged(queue.store.tables(number), clone.changes),
         priority=job.priority if clone.priority is None else clone.priority,
-        limits=job.limits if clone.limits is None else within(clone.limits, settings.limits),
+        limits=job.limits if clone.limits is None else within(clone.limits, queue.settings.limits),
     )
-    return submitted(asked, store, settings, response, idempotency_key, origin=number)
+    return queue.put(asked, origin=number)
 
 
 @router.get("/jobs/{number}/job")
@@ -148,19 +163,6 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
 def _row(job: Job) -> dict[str, Any]:
     """Return a job of which `JobRow` takes its part."""
     return job.record() if job.state == "running" else {**job.record(), "progress": None}
-
-
-def submitted(
-    asked: Asked, store: Store, settings: Settings, response: Response, key: str | None, *, origin: int | None = None
-) -> dict[str, Any]:
-    """Queue a job and return its record. key: of the submission. origin: the job that it is a changed copy of."""
-    with READING:
-        problem = given_problem(asked.tables, settings.allowed_quantities)
-    files = [asked.source or job_json(asked.tables)]
-    more: dict[str, Any] = {"priority": asked.priority, "key": key, "limits": asked.limits, "origin": origin}
-    job = store.submit(asked.tables, name=problem.name, files=files, **more)
-    response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-    return job.record()
 
 
 @contextlib.contextmanager
