@@ -29,7 +29,7 @@ _TWINS = 1e-3  # rad
 
 
 def designs_for(quantity: Quantity, count: int) -> int:
-    """Return how many designs are enough: 1,000 of each machine passed by hand, and twice as many say the same.
+    """Return how many designs are enough: twice as many say the same.
 
     Means of rubbing take a millisecond each. Wear is the mean of pv, whose gradient is tested, times another number.
     """
