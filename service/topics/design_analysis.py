@@ -72,7 +72,8 @@ def analysis_of(
         try:
             found[topic.name] = topic.numbers(cancelled)
         except InputError as error:
+            reason = f"{topic.name}: {error}"
             if not lenient:
-                raise
-            refused.append(f"{topic.name}: {error}")
+                raise InputError(reason) from None
+            refused.append(reason)
     return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said, refused)

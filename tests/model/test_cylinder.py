@@ -314,7 +314,7 @@ def test_a_cylinder_of_a_job_file_is_in_si_with_the_atmosphere_behind_the_piston
     ("wrong", "words"),
     [
         ({"bore": "0 mm"}, "load #1.bore: must be positive"),
-        ({"suction": "-0.2 bar"}, "load #1.suction: must be positive"),
+        ({"suction": "-0.2 bar"}, 'load #1.suction: an absolute pressure must be above vacuum, 0; got "-0.2 bar"'),
         (
             {"discharge": "0.8 bar"},
             "load #1: the discharge pressure must exceed the suction pressure; got 0.8 bar over",

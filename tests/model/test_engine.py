@@ -133,7 +133,7 @@ def test_heat_gives_the_pressure_of_an_ideal_gas_at_constant_volume() -> None:
             "not expand below its intake pressure, 1 bar; got 0.8",
         ),
         ({"bore": 0}, "bore: must be positive"),
-        ({"intake": "-1 bar"}, "intake: must be positive"),
+        ({"intake": "-1 bar"}, 'intake: an absolute pressure must be above vacuum, 0; got "-1 bar"'),
     ],
 )
 def test_an_impossible_engine_is_refused_with_what_and_how_much(wrong: dict[str, Any], words: str) -> None:

@@ -56,7 +56,8 @@ def designs(count: int, seed: int = 1) -> Array:
 def test_every_quantity_is_that_of_its_own_evaluation() -> None:
     bar = Bar(width=0.03, depth=0.02, density=7800.0)
     of = replace(machine(), loads=(*machine().loads, AIR), crank=bar, rod=bar, strength=STRENGTH)
-    some, names = designs(40), list(QUANTITIES)
+    some, names = designs(40), [name for name, quantity in QUANTITIES.items() if not quantity.lacks(of, "undefined")]
+    assert len(names) > len(QUANTITIES) - 5
     values, jacobian = sc.evaluate(of, some, names, gradients=True)
     assert values.shape == (40, len(names))
     assert jacobian.shape == (40, len(names), 3)

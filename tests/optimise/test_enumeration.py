@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.errors import JobError
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem, Variant
@@ -140,9 +143,18 @@ def test_fewer_designs_than_there_are_keep_the_best_of_each_objective() -> None:
 
 
 def test_a_catalogue_without_a_feasible_design_says_so() -> None:
-    given = parse_job(listed(constraints={"stroke": {"min": "141.5 mm", "max": "141.6 mm"}}))
+    given = parse_job(listed(constraints={"peak_torque": {"max": "1 N m"}}))
     assert not len(brute_force(given))
     assert solve(given).status == "infeasible"
+
+
+def test_a_catalogue_of_which_no_option_has_the_stroke_is_refused() -> None:
+    choices = itertools.product((60.0, 65.0, 70.0), (140.0, 150.0, 160.0), (60.0, 65.0, 70.0))
+    strokes = sorted(float(Linkage(r, l, e).stroke) for r, l, e in choices if l > r + e)
+    below, above = max(itertools.pairwise(strokes), key=lambda pair: pair[1] - pair[0])
+    inside = {"min": f"{below + 0.01} mm", "max": f"{above - 0.01} mm"}
+    with pytest.raises(JobError, match="some option has a design within the ranges; got none"):
+        parse_job(listed(constraints={"stroke": inside}))
 
 
 @pytest.mark.parametrize("kept", [0, 1, 2])

@@ -38,6 +38,7 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
             "power",
             "inertia",
             "shaking",
+            "rocking",
             "loaded",
             "displacement",
             "clearance",
