@@ -366,7 +366,7 @@ def test_the_examples_of_the_schema_are_valid() -> None:
                     "mechanism": SMALL["mechanism"] | {"crank": BAR, "rod": BAR},
                 }
                 if name == "peak_rocking_couple":
-                    given["mechanism"] |= {"cylinders": IN_LINE}
+                    given["mechanism"] = SMALL["mechanism"] | {"cylinders": IN_LINE}
                 parse_job(small(**given, load=[AIR], objectives={name: example}))
 
 
