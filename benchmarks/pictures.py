@@ -13,6 +13,7 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from playwright.sync_api import Page, expect
@@ -50,11 +51,12 @@ def require_quick(seconds: float) -> None:
         )
 
 
-def knee(folder: Path) -> None:
-    """Draw the sheet of the feeder's knee."""
+def knee(name: str, folder: Path) -> None:
+    """Draw the sheet of the knee of a shipped job."""
     with tempfile.TemporaryDirectory() as place:
-        (file,) = (file for file in draw_front(solve(load_job(_JOB)), Path(place)) if file.stem == "knee")
-        shutil.copyfile(file, folder / "feeder_knee.png")
+        front = solve(load_job(_JOB.with_name(f"{name}.toml")))
+        (file,) = (file for file in draw_front(front, Path(place)) if file.stem == "knee")
+        shutil.copyfile(file, folder / f"{name}_knee.png")
 
 
 def page(folder: Path) -> None:
@@ -81,7 +83,8 @@ def methods(folder: Path) -> None:
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {
-    "feeder_knee.png": knee,
+    "feeder_knee.png": partial(knee, "feeder"),
+    "press_knee.png": partial(knee, "press"),
     "compressor_indicator.png": compressor,
     "compressor_cylinders.png": compressor,
     "page_front.png": page,
