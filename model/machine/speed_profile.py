@@ -124,7 +124,8 @@ class SpeedTable:
                     "a speed over the crank angle must not be zero or change its sign, for the crank would never get "
                     f"past; got {speed:.6g} rad/s at {math.degrees(angle):.6g} deg; correct it"
                 )
-        ends = np.concatenate([self._spline.derivative().roots(), self.angles])
+        turns = self._spline.derivative().roots()  # with NaN for a stretch of one speed
+        ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
         _require_positive(ends, self.ratio(ends))
 
     def _require_open(self) -> None:

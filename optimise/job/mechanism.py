@@ -167,7 +167,7 @@ class MechanismPart(Part):
         "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
     )
     speed_profile: SpeedProfilePart | None = optional(
-        "how the speed goes over the crank angle, for analyse --show uneven_speed; quantities are at the mean speed",
+        "how the speed goes over the crank angle; quantities are those along it, but for stresses and wear",
         {"cosines": [0.0, 0.05]},
     )
     crank: AnyLink | None = optional("section or mass of the crank; massless if left out", {"mass": "0.2 kg"})
@@ -180,7 +180,7 @@ class MechanismPart(Part):
     )
     slider: SliderPart | None = optional("the slider; massless if left out", {"mass": "0.8 kg"})
     cylinders: CylindersPart | None = optional(
-        "several identical cylinders on one crankshaft, for analyse --show cylinders; quantities are of one cylinder",
+        "several identical cylinders on one crankshaft; torque, power, works and shaking are of all together",
         {"phases": ["0 deg", "180 deg"]},
     )
     gravity: Gravity | None = optional("size of the gravity; none if left out", "9.81 m/s^2")

@@ -180,3 +180,11 @@ def test_impossible_profiles_are_refused() -> None:
     ):
         with pytest.raises(InputError, match=said):
             build()
+
+
+@pytest.mark.parametrize("speed", [31.0, -300.0, 1e-3])
+def test_a_table_of_one_speed_is_a_constant_one(speed: float) -> None:
+    profile = SpeedTable(angles=(0.0, 1.0, 2.5, 4.0, 5.0), speeds=(speed,) * 5)
+    theta = np.linspace(0.0, TURN, 50)
+    np.testing.assert_allclose(profile.ratio(theta), 1.0, rtol=1e-14)
+    np.testing.assert_allclose(profile.slope(theta), 0.0, atol=1e-14)
