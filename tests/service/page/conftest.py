@@ -75,6 +75,18 @@ def text_of(page: Page) -> dict[str, Any]:
     return found
 
 
+@contextlib.contextmanager
+def watched(browser: Browser, store: Store, expected: Collection[str] = ()) -> Iterator[tuple[Page, str]]:
+    """Open a page on a store's service, and give both; at the end nothing may have gone wrong, as with `open_page`."""
+    wrong: list[str] = []
+    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
+    with served(store) as address, contextlib.closing(context):
+        page = context.new_page()
+        watch(page, address, wrong, expected)
+        yield page, address
+    assert wrong == []
+
+
 def watch(page: Page, address: str, wrong: list[str], expected: Collection[str] = ()) -> None:
     """Write down what goes wrong on a page."""
     origin = urlsplit(address).netloc

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
 
 import httpx
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.service.api.fixed_front import API, Solved, served
+from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 OWN = ("extremes", "sensitivity", "tolerances")
 """Topics that the page draws itself."""
@@ -20,13 +19,8 @@ OWN = ("extremes", "sensitivity", "tolerances")
 @pytest.fixture(scope="module")
 def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
     """Return a page and the address of its service; nothing but refusals may go wrong on the page."""
-    wrong: list[str] = []
-    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
-    with served(solved.store) as address, contextlib.closing(context):
-        page = context.new_page()
-        watch(page, address, wrong, expected=("422",))
-        yield page, address
-    assert wrong == []
+    with watched(browser, solved.store, expected=("422",)) as found:
+        yield found
 
 
 def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, str], solved: Solved) -> None:

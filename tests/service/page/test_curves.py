@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 import re
@@ -14,20 +13,15 @@ from playwright.sync_api import Browser, Page, expect
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
-from tests.service.api.fixed_front import Solved, served
+from tests.service.api.fixed_front import Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 
 @pytest.fixture(scope="module")
 def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
-    wrong: list[str] = []
-    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
-    with served(solved.store) as address, contextlib.closing(context):
-        page = context.new_page()
-        watch(page, address, wrong)
-        yield page, address
-    assert wrong == []
+    with watched(browser, solved.store) as found:
+        yield found
 
 
 def test_curves_go_over_what_is_chosen_and_the_address_says_so(opened: tuple[Page, str], solved: Solved) -> None:

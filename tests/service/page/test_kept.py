@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
 
 import httpx
@@ -11,9 +10,9 @@ from playwright.sync_api import Browser, Page, expect
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from tests.service.api.fixed_front import API, Solved, served
+from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 
 @pytest.fixture(scope="module")
@@ -21,15 +20,10 @@ def opened(
     browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Page, str, str]]:
     """Return a page without errors, the address of its service and that of the job in the API."""
-    wrong: list[str] = []
     path = tmp_path_factory.mktemp("kept") / "store.db"
     back_up(solved.store, path)
-    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
-    with Store(path) as store, served(store) as address, contextlib.closing(context):
-        page = context.new_page()
-        watch(page, address, wrong)
+    with Store(path) as store, watched(browser, store) as (page, address):
         yield page, address, f"{address}{API}/jobs/{solved.number}"
-    assert wrong == []
 
 
 def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, str, str], solved: Solved) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 from collections.abc import Iterator
@@ -17,8 +16,8 @@ from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from tests.service.api.fixed_front import API, Solved, served
-from tests.service.page.conftest import watch
+from tests.service.api.fixed_front import API, Solved
+from tests.service.page.conftest import watched
 
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 NUMBERS = "nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"
@@ -30,15 +29,10 @@ def opened(
     browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Page, str, str]]:
     """Return a page, its address and that of the job in the API; nothing may go wrong there."""
-    wrong: list[str] = []
     path = tmp_path_factory.mktemp("same") / "store.db"
     back_up(solved.store, path)
-    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
-    with Store(path) as store, served(store) as address, contextlib.closing(context):
-        page = context.new_page()
-        watch(page, address, wrong)
+    with Store(path) as store, watched(browser, store) as (page, address):
         yield page, address, f"{address}{API}/jobs/{solved.number}"
-    assert wrong == []
 
 
 def require_python(row: Row, solved: Solved) -> None:
