@@ -23,6 +23,7 @@ from .box import Box, require_reachable
 from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
+from .pins import require_room_for_pins
 from .units import shown
 
 
@@ -34,6 +35,7 @@ def require_consistent(problem: Problem) -> None:
         _require_free(problem, objective.quantity)
     require_ranking(problem)
     _require_one_density(problem)
+    require_room_for_pins(problem)
     if problem.motion is not None:
         try:
             require_swinging(problem)

@@ -1,0 +1,49 @@
+"""Pins that no bar of a job has room for, told before a search: an eye without a net section carries nothing."""
+
+from __future__ import annotations
+
+from ...model.errors import JobError
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.varying import number_at
+from ...objectives.bars import LINKS, NEAR
+from ...objectives.link_stress import LinkStress
+from ..problem.problem import Problem
+
+
+def require_room_for_pins(problem: Problem) -> None:
+    """Raise `JobError` where stresses of links are asked for and, in every choice, an eye is no wider than its pin."""
+    asked = {*(of.quantity for of in problem.constraints), *(of.quantity for of in problem.objectives)}
+    found = [of for of in map(problem.quantity, asked) if isinstance(of, LinkStress)]
+    if not found:
+        return
+    refused = []
+    for part in problem.parts():
+        links = {link for of in found for link in of.bars(part.mechanism)}
+        reasons = [reason for link in sorted(links) for reason in _too_thick(part.mechanism, link)]
+        if not reasons:
+            return
+        refused.append(reasons[0])
+    raise JobError(refused[0])
+
+
+def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
+    """Return why the eyes of a link have no net section, whatever the numbers that vary."""
+    width = max(_ends(mechanism, f"{link}.width"))
+    return [
+        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes, or nothing is left beside them; got "
+        f"{1e3 * width:.6g} mm at most and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or take "
+        "a thinner pin"
+        for pin in (NEAR, LINKS[link].far)
+        if (least := min(_ends(mechanism, f"strength.{pin}"))) >= width
+    ]
+
+
+def _ends(mechanism: Mechanism, path: str) -> tuple[float, ...]:
+    """Return the ends between which a number of a machine may vary, or its only value."""
+    for item in mechanism.varying:
+        for own, factor in item.sets:
+            if own == path:
+                return factor * item.lower, factor * item.upper
+    value = number_at(mechanism.nominal, path)
+    assert value is not None
+    return (value,)
