@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
+from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...optimise.search.fingerprint import version_of
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.turning import require_turning
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
+from ..text.summary import machine_in_words
 from .decision_section import decision_section
 from .design_section import design_section, numbers_section
 from .document import Facts, Paragraph, Report, Section
@@ -59,9 +61,17 @@ def _summary(subject: Subject) -> Section:
         "Lengths": [", ".join(lengths)],
         "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
         "Choices": [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")],
+        "Machine": _machine(subject),
         "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
     }
     return Section("Summary", (Facts({title: lines for title, lines in rows.items() if lines}),))
+
+
+def _machine(subject: Subject) -> list[str]:
+    """Return what a design has in another way than the job gives it: numbers that vary or that a choice sets."""
+    stated = machine_in_words(subject.problem, subject.problem.mechanism)
+    own = machine_in_words(subject.problem, subject.design.mechanism)
+    return [unit_text(line) for line in own if line not in stated]
 
 
 def _marked(subject: Subject) -> list[str]:

@@ -35,7 +35,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {settings.samples} samples a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": [*_motion(problem), *_speed(problem), *_given(problem.mechanism), *_own(problem)],
+        "given": [*_motion(problem), *machine_in_words(problem, problem.mechanism), *_own(problem)],
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
@@ -71,11 +71,16 @@ def freedom_in_words(summary: dict[str, Any]) -> str:
     return text
 
 
-def _speed(problem: Problem) -> list[str]:
+def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
+    """Return a machine of a problem line by line: the one that is stated, or that of a design."""
+    return [*_speed(problem, mechanism), *_given(mechanism)]
+
+
+def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
     if problem.motion is not None:
         return []
-    turning = "clockwise" if problem.mechanism.speed < 0.0 else "counter-clockwise"
-    speed = problem.mechanism.speed * 30.0 / math.pi
+    turning = "clockwise" if mechanism.speed < 0.0 else "counter-clockwise"
+    speed = mechanism.speed * 30.0 / math.pi
     return [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
 
 import httpx
@@ -12,9 +11,9 @@ from playwright.sync_api import Browser, Page, expect
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from slidercrank.service.workers.worker import work
-from tests.service.api.fixed_front import API, Solved, served
+from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 
 @pytest.fixture(scope="module")
@@ -22,15 +21,10 @@ def opened(
     browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Page, str, Store]]:
     """Return a page, the address of its service and its store; nothing but refusals may go wrong on the page."""
-    wrong: list[str] = []
     path = tmp_path_factory.mktemp("limits") / "store.db"
     back_up(solved.store, path)
-    context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
-    with Store(path) as store, served(store) as address, contextlib.closing(context):
-        page = context.new_page()
-        watch(page, address, wrong, expected=("422",))
+    with Store(path) as store, watched(browser, store, expected=("422",)) as (page, address):
         yield page, address, store
-    assert wrong == []
 
 
 def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(

@@ -16,7 +16,9 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
+from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.requirements import Range
+from slidercrank.optimise.solve import solve
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.figures.numerals import as_stored, rounded
 from slidercrank.service.report.design_report import design_report
@@ -331,3 +333,30 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_and_the_slow_stroke_stands_in
     )
     place = marked.heads.index("slow stroke")
     assert {row[place] for row in marked.rows} == {"inward"}
+
+
+def test_the_machine_of_a_design_is_told_where_it_is_not_that_of_the_job() -> None:
+    """A speed that a design chose and a width that it has stand in the summary; the job keeps what it gives."""
+    job = {
+        "name": "chosen",
+        "mechanism": {
+            "speed": "30 rpm",
+            "crank": {"width": "70 mm", "depth": "20 mm", "density": "7850 kg/m^3"},
+            "slider": {"mass": "8 kg"},
+        },
+        "variables": {
+            **{"crank": "30 mm", "rod": ["90 mm", "200 mm"], "offset": "10 mm"},
+            "mechanism": {"crank": {"width": ["45 mm", "120 mm"]}, "speed": {"choices": ["24 rpm", "36 rpm"]}},
+        },
+        "objectives": {"transmission_angle": "maximise", "peak_torque": "minimise"},
+        "optimiser": {"method": "sobol", "evaluations": 200, "designs": 3, "seed": 1},
+    }
+    problem = parse_job(job)
+    result = result_of(solve(problem), "chosen")
+    for number, row in enumerate(result.designs, start=1):
+        said = texts(design_report(Subject(problem, result, number, run="chosen", versions={}), made=0.0))
+        assert f"crank: bar {row['crank_width_mm']:.6g} x 20 mm (width x depth), 7850 kg/m³" in said
+        assert f"crank speed {row['choice_speed']} (counter-clockwise)" in said
+        assert "crank speed 30 rpm (counter-clockwise)" in said
+        assert "slider: 8 kg" in said
+    assert "Machine" not in texts(report())
