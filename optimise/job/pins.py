@@ -1,4 +1,4 @@
-"""Pins that no bar of a job has room for, told before a search: an eye without a net section carries nothing."""
+"""Pins that no bar of a job has room for: an eye without a net section carries nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..problem.problem import Problem
 
 
 def require_room_for_pins(problem: Problem) -> None:
-    """Raise `JobError` where stresses of links are asked for and, in every choice, an eye is no wider than its pin."""
+    """Raise `JobError` where stresses are asked for and no choice has eyes that are wider than their pins."""
     asked = {*(of.quantity for of in problem.constraints), *(of.quantity for of in problem.objectives)}
     found = [of for of in map(problem.quantity, asked) if isinstance(of, LinkStress)]
     if not found:

@@ -77,7 +77,7 @@ def text_of(page: Page) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def watched(browser: Browser, store: Store, expected: Collection[str] = ()) -> Iterator[tuple[Page, str]]:
-    """Open a page on a store's service, and give both; at the end nothing may have gone wrong, as with `open_page`."""
+    """Open a page on a store's service, and give both; nothing may go wrong, as with `open_page`."""
     wrong: list[str] = []
     context = browser.new_context(reduced_motion="reduce", viewport={"width": 1280, "height": 900})
     with served(store) as address, contextlib.closing(context):

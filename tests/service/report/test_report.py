@@ -336,7 +336,7 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_and_the_slow_stroke_stands_in
 
 
 def test_the_machine_of_a_design_is_told_where_it_is_not_that_of_the_job() -> None:
-    """A speed that a design chose and a width that it has stand in the summary; the job keeps what it gives."""
+    """Speed and width of a design stand in the summary; the job keeps what it gives."""
     job = {
         "name": "chosen",
         "mechanism": {
