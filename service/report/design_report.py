@@ -68,7 +68,7 @@ def _summary(subject: Subject) -> Section:
 
 
 def _machine(subject: Subject) -> list[str]:
-    """Return lines on the machine of a design that differ from the job's: numbers that vary or that a choice sets."""
+    """Return lines on a design's machine that differ from the job's: what varies or a choice sets."""
     stated = machine_in_words(subject.problem, subject.problem.mechanism)
     own = machine_in_words(subject.problem, subject.design.mechanism)
     return [unit_text(line) for line in own if line not in stated]
