@@ -89,6 +89,8 @@ $(VENV)/.created:
 	  { rm -rf $(VENV); echo 'Python without venv; on Debian: apt install python3-venv' >&2; exit 1; }
 	@touch $@
 
+, := ,
+
 # Editable: the folders are used where they are, so that a change needs no new installation.
 define install
 	@echo 'Installing into $(VENV) (about a minute) ...'
@@ -104,6 +106,6 @@ $(VENV)/.installed-test: $(VENV)/.created pyproject.toml constraints.txt
 	$(call install,[test])
 
 $(VENV)/.installed-benchmark: $(VENV)/.created pyproject.toml constraints.txt
-	$(call install,[test,benchmark])
+	$(call install,[test$(,)benchmark])
 
 include .javascript/rules.mk
