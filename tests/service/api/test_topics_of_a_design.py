@@ -73,7 +73,12 @@ def test_figures_are_drawn_by_name(client: httpx.Client, solved: Solved) -> None
 
 @pytest.mark.parametrize(
     ("name", "status", "sentence"),
-    [("engine", 404, "there is no topic 'engine'; choose from"), ("start_up", 422, "[drive]"), ("clearance", 422, "")],
+    [
+        ("engine", 404, "there is no topic 'engine'; choose from"),
+        ("start_up", 422, "[drive]"),
+        ("clearance", 422, ""),
+        ("strength", 422, "material and pins"),
+    ],
 )
 def test_what_a_design_does_not_have_is_refused_in_a_sentence(
     client: httpx.Client, solved: Solved, name: str, status: int, sentence: str

@@ -1,0 +1,51 @@
+"""Stress of crank or rod of one design over the cycle and along the bar, for a figure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..machine.mechanism import Mechanism
+from .section_forces import CRANK, Stress, at_share
+from .stress_points import WIDE, field_of
+
+_STATIONS = 61
+_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class BarStress:
+    """Stress of the two faces of a bar. None of a design that friction locks: its angles are empty.
+
+    theta: (s,), rad, over a turn. shares: (k,), of the length from the crank pin. stress: (2, k, s), Pa, tension
+    positive, of the face where bending adds to tension first.
+    """
+
+    theta: Array
+    shares: Array
+    stress: Array
+
+    @property
+    def envelope(self) -> tuple[Array, Array]:
+        """Least and greatest stress over the cycle at every share, (k,)."""
+        return self.stress.min(axis=(0, 2)), self.stress.max(axis=(0, 2))
+
+    @property
+    def worst(self) -> int:
+        """Number of the share where the stress is greatest, of either sign."""
+        return int(np.abs(self.stress).max(axis=(0, 2)).argmax())
+
+
+def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
+    """Return the stress along a link, `ROD` or `CRANK`, of one design (1, 3 + k). The link must be a `Bar`."""
+    samples = field_of(mechanism, design).samples
+    base = WIDE * (part == CRANK)
+    shares = np.linspace(0.0, 1.0, _STATIONS)
+    of = Stress(*samples.stress[:, base : base + 7].T)
+    faces = [at_share(of, face, shares[:, None]) for face in (1.0, -1.0)]
+    # Samples run a turn on from the first breakpoint: those beyond a whole turn come first, in their order at jumps.
+    turned = int(np.searchsorted(samples.theta, _TURN))
+    theta = np.roll(np.where(samples.theta < _TURN, samples.theta, samples.theta - _TURN), -turned)
+    return BarStress(theta, shares, np.roll(np.array(faces), -turned, axis=2))

@@ -1,0 +1,107 @@
+"""Strength of crank and rod of one design: stresses, safeties, pins, wear, and where the stress is greatest."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.links import Bar
+from ....model.machine.mechanism import Mechanism
+from ....model.strength.bar_stress import bar_stress
+from ....model.strength.stress_cycle import stress_peaks
+from ....objectives.bars import LINKS
+from ....objectives.link_stress import STATIC, STATIC_SAFETY
+from ....objectives.quantity import Group
+from ....objectives.registry import QUANTITIES
+from ...figures.numerals import shown
+from ...figures.sheets import Line, Panel, Sheet, over_turn
+from ...text import tables as text
+from ...text.tables import plain
+from ..peaks import row_of
+
+_SIGNS = ("tension", "compression")
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
+
+    With the crank angle, the place along the bar from the crank pin and the side. None: a quantity without a finite
+    value, as the safety of what is not compressed. Raises `InputError` for a machine without material and pins.
+    """
+    _require(mechanism)
+    design = row_of(linkage)
+    found: dict[str, Any] = {}
+    for of in QUANTITIES.values():
+        if of.group is Group.STRENGTH and not (of.lacks(mechanism, "undefined") or of.lacks(mechanism, "zero")):
+            found[of.field] = plain(of.unit.factor * of.evaluate(mechanism, design).values[0])
+    return found | {"bars": {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}}
+
+
+def _require(mechanism: Mechanism) -> None:
+    if reason := STATIC_SAFETY.lacks(mechanism, "undefined"):
+        raise InputError(f"the strength of a design is that of its crank and rod: {reason}")
+
+
+def _bars(mechanism: Mechanism) -> list[str]:
+    return [name for name in LINKS if isinstance(getattr(mechanism, name), Bar)]
+
+
+def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
+    """Return the greatest stresses along a bar, its eyes apart, and where they are."""
+    found: dict[str, float | None] = {}
+    for sign, criterion in zip(_SIGNS, STATIC, strict=True):
+        peak = stress_peaks(mechanism, LINKS[name].part, row_of(linkage), np.array([criterion]), kept=1)
+        share, _, *angles = peak.places[0, 0]
+        found |= {
+            f"greatest_{sign}_MPa": plain(1e-6 * peak.values[0, 0]),
+            f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angles[_SIGNS.index(sign)]) % 360.0),
+            f"greatest_{sign}_from_crank_pin_mm": plain(1e3 * share * float(getattr(linkage, name))),
+        }
+    return found
+
+
+def show(console: Console, numbers: dict[str, Any]) -> None:
+    """Write the numbers for people."""
+    by_field = {of.field: of for of in QUANTITIES.values()}
+    lines: list[text.Line] = [
+        (by_field[key].title, value, by_field[key].unit.symbol, "") for key, value in numbers.items() if key in by_field
+    ]
+    text.show_lines(console, "Strength of crank and rod", lines)
+    heads = ("along it,\neyes apart", ">greatest,\nMPa", ">at crank\nangle, deg", ">from crank\npin, mm")
+    rows = text.table(*heads, ruled=True)
+    for name, bar in numbers["bars"].items():
+        for sign in _SIGNS:
+            places = (bar[f"greatest_{sign}_{key}"] for key in ("MPa", "at_crank_angle_deg", "from_crank_pin_mm"))
+            rows.add_row(f"{name}, {sign}", *("undefined" if one is None else f"{one:.6g}" for one in places))
+    text.print_table(console, rows)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return, of each bar, the stress of both faces over the crank angle where it is greatest, and its ends along it.
+
+    Raises `InputError` for a machine without material and pins, and for a design that friction locks.
+    """
+    _require(mechanism)
+    panels: list[Panel] = []
+    for name in _bars(mechanism):
+        stress = bar_stress(mechanism, LINKS[name].part, row_of(linkage))
+        if not len(stress.theta):
+            raise InputError("friction locks the design, so that its stresses are not determined; change its friction")
+        length, worst = 1e3 * float(getattr(linkage, name)), stress.worst
+        degrees = np.degrees(stress.theta)
+        faces = [
+            Line(label, degrees, 1e-6 * stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))
+        ]
+        where = shown(length * stress.shares[worst])
+        panels.append(over_turn(f"{name} stress at {where} mm, MPa", *faces))
+        along = [
+            Line(label, length * stress.shares, 1e-6 * end, n)
+            for n, (label, end) in enumerate(zip(("least", "greatest"), stress.envelope, strict=True))
+        ]
+        panels.append(Panel(f"{name} stress over the turn, MPa", "from the crank pin, mm", tuple(along)))
+    return Sheet("Strength of crank and rod", "", tuple(panels), width=6.4, height=2.25)

@@ -1,0 +1,82 @@
+"""Strength of one design: its numbers are those of the quantities, its curves those of sections from the other end."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.bars import LINKS
+from slidercrank.objectives.quantity import Group
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.service.runs.result import finite
+from slidercrank.service.topics.strength.analysis import figure, numbers, show
+from tests.model.cases import random_designs
+from tests.model.strength.sections import linkage_with, random_bars, section_stress
+from tests.service import fronts
+
+
+def strong(seed: int) -> tuple[Mechanism, Linkage]:
+    """Return a random machine whose links are bars, without a counterweight, and a design of it."""
+    random = np.random.default_rng(seed)
+    machine = replace(random_bars(random), counterweight=Counterweight(mass=0.0, radius=0.0))
+    return machine, linkage_with(machine, random_designs(1, seed=seed, least_margin=3e-2)[0])
+
+
+def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_stress() -> None:
+    for seed in (21, 22, 23):
+        machine, linkage = strong(seed)
+        found = numbers(machine, linkage)
+        assert finite(found) == found
+        design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
+        row = analyse(machine, design).iloc[0]
+        own = [of.field for of in QUANTITIES.values() if of.group is Group.STRENGTH and not np.isnan(row[of.field])]
+        assert len(own) > 15
+        assert found.keys() - {"bars"} == set(own)
+        for key, value in found.items():
+            if key != "bars":
+                assert value == (pytest.approx(row[key], rel=1e-9) if np.isfinite(row[key]) else None), key
+        for name, bar in found["bars"].items():
+            for sign, word in ((1.0, "tension"), (-1.0, "compression")):
+                at = np.radians(bar[f"greatest_{word}_at_crank_angle_deg"])
+                share = 1e-3 * bar[f"greatest_{word}_from_crank_pin_mm"] / float(getattr(linkage, name))
+                sides = np.array([at - 1e-8, at + 1e-8])  # it may be on one side of a jump
+                there = [sign * section_stress(machine, name, linkage, sides, share, face) for face in (1.0, -1.0)]
+                assert 1e6 * bar[f"greatest_{word}_MPa"] == pytest.approx(np.max(there), rel=1e-5)
+
+
+def test_curves_of_the_figure_are_those_of_a_section_cut_from_the_other_end() -> None:
+    machine, linkage = strong(22)
+    panels = figure(machine, linkage).panels
+    assert [panel.title.split()[0] for panel in panels] == [name for name in LINKS for _ in range(2)]
+    for name, over, along in zip(LINKS, panels[::2], panels[1::2], strict=True):
+        length = float(getattr(linkage, name))
+        share = 1e-3 * float(over.title.split()[3]) / length
+        degrees = over.lines[0].x
+        inner = np.flatnonzero((np.diff(degrees, prepend=-1.0) > 1e-3) & (np.diff(degrees, append=361.0) > 1e-3))[::20]
+        for face, line in zip((1.0, -1.0), over.lines, strict=True):
+            told = section_stress(machine, name, linkage, np.radians(line.x[inner]), share, face)
+            assert 1e6 * line.y[inner] == pytest.approx(told, rel=2e-3, abs=2e-3 * abs(told).max())
+        place = np.argmin(abs(along.lines[0].x - 1e3 * share * length))
+        assert along.lines[0].y[place] == min(line.y.min() for line in over.lines)
+        assert along.lines[1].y[place] == max(line.y.max() for line in over.lines)
+
+
+def test_the_text_tells_every_number_and_what_is_missing_is_said() -> None:
+    machine, linkage = strong(23)
+    screen = Console(file=io.StringIO(), width=120)
+    found = numbers(machine, linkage)
+    show(screen, found)
+    text = screen.file.getvalue()  # type: ignore[attr-defined]
+    assert f"{found['rod_stress_MPa']:.6g} MPa" in " ".join(text.split())
+    for asked in (numbers, figure):
+        with pytest.raises(InputError, match="material and pins"):
+            asked(fronts.MACHINE, linkage)
