@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import tomllib
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,12 +17,34 @@ from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from tests.service.api.fixed_front import API, Solved
+from tests.service import fronts
+from tests.service.api.fixed_front import API, Solved, put_in
+from tests.service.page.accessibility import findings
 from tests.service.page.conftest import watched
 
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 NUMBERS = "nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"
 Row = dict[str, Any]
+STRONG_JOB = 2
+STRONG: dict[str, Any] = {
+    "mechanism": {
+        "speed": "300 rpm",
+        "slider": {"mass": "2 kg"},
+        "rod": {"width": "40 mm", "depth": "20 mm", "density": "7850 kg/m^3"},
+    },
+    "sections": {
+        "pins": {"crank_pivot": "20 mm", "crank_pin": "18 mm", "slider_pin": "16 mm"},
+        "material": {
+            "density": "7850 kg/m^3",
+            "elasticity": "207 GPa",
+            "yield_strength": "600 MPa",
+            "ultimate_strength": "800 MPa",
+            "endurance": "200 MPa",
+            "bearing_pressure": "40 MPa",
+        },
+    },
+}
+"""Tables of a job whose rod has a section, a material and pins."""
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +55,7 @@ def opened(
     path = tmp_path_factory.mktemp("same") / "store.db"
     back_up(solved.store, path)
     with Store(path) as store, watched(browser, store) as (page, address):
+        assert put_in(store, solved.result, tomllib.loads(fronts.JOB) | STRONG) == STRONG_JOB
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 
 
@@ -120,3 +144,38 @@ def test_numbers_of_a_wished_design_that_is_kept(opened: tuple[Page, str, str], 
     for key, value in kept["cells"].items():
         if isinstance(value, float):
             assert float(row[key]) == value, key
+
+
+def test_strength_has_a_tab_with_what_the_api_tells(opened: tuple[Page, str, str]) -> None:
+    page, address, _ = opened
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{STRONG_JOB}/designs/2")
+    page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
+    page.get_by_role("tab", name="Strength").click(timeout=30_000)
+    panel = page.get_by_role("tabpanel")
+    path = f"{address}{API}/jobs/{STRONG_JOB}/designs/2/topics/strength"
+    found = httpx.get(path, timeout=60.0).json()
+    row = httpx.get(f"{address}{API}/jobs/{STRONG_JOB}/designs/2/analysis", timeout=60.0).json()["analysis"]
+    for key, value in found["numbers"].items():
+        assert key == "bars" or value == pytest.approx(row[key], rel=1e-9), key
+    assert found["numbers"]["bars"].keys() == {"rod"}
+    expect(panel.locator("tr", has_text="rod stress")).to_contain_text(f"{found['numbers']['rod_stress_MPa']:.6g}")
+    expect(panel.get_by_role("img", name="Figure: Strength")).to_have_js_property("complete", True, timeout=30_000)
+
+
+def test_certify_has_a_tab_that_proves_what_the_command_line_does(
+    opened: tuple[Page, str, str], solved: Solved
+) -> None:
+    page, address, api = opened
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
+    page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
+    page.get_by_role("tab", name="Certify").press("Enter", timeout=30_000)
+    panel = page.get_by_role("tabpanel")
+    panel.get_by_label("By at most, %").fill("20")
+    panel.get_by_label("By at most, %").press("Enter")
+    expect(panel.get_by_role("status")).to_contain_text("Design box", timeout=60_000)
+    query = {"epsilon": 0.2, "seconds": 10}
+    told = httpx.get(f"{api}/certificate", params=query, timeout=60.0).json()["sentences"]
+    assert panel.get_by_role("status").locator("p").all_inner_texts() == told
+    assert findings(page) == []

@@ -314,9 +314,9 @@ def test_json_of_the_certificate_is_what_certify_writes(tmp_path: Path) -> None:
     """The names that the report reads are those of the file of `slidercrank certify`."""
     import inspect
 
-    from slidercrank.service.commands import certify
+    from slidercrank.service.designs import proof
 
-    source = inspect.getsource(certify._record)
+    source = inspect.getsource(proof.certificate_record)
     assert all(f'"{key}"' in source for key in CERTIFICATE)
     assert json.loads(json.dumps(CERTIFICATE)) == CERTIFICATE
 

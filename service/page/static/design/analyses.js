@@ -3,10 +3,12 @@
 import { address, get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { scrolled } from "./numbers.js";
+import { proof } from "./proof.js";
 
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 const NEAR = "200px"; // before they are in sight
+const CERTIFY = { name: "certify", title: "Certify", shows: "how far the front can be from the true one" };
 
 /**
  * Put the tabs into `place`. drawn: names of topics that the view draws itself. Returns show(lengths): of a changed design,
@@ -37,7 +39,7 @@ export function analyses(place, { job, number, drawn, signal }) {
 
   async function begin() {
     try {
-      topics = (await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name));
+      topics = [...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)), CERTIFY];
       choose(topics[0].name);
     } catch (error) {
       if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
@@ -65,6 +67,10 @@ export function analyses(place, { job, number, drawn, signal }) {
 
   async function ask() {
     const own = (turn += 1);
+    if (chosen === CERTIFY.name) {
+      fill(panel, proof({ job, signal }));
+      return;
+    }
     const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
     const head = h("p", { class: "quiet hint" }, `${shows.charAt(0).toUpperCase()}${shows.slice(1)}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
@@ -88,7 +94,7 @@ export function analyses(place, { job, number, drawn, signal }) {
     show(now) {
       if (JSON.stringify(now) === JSON.stringify(lengths)) return;
       lengths = now;
-      if (seen && chosen) ask();
+      if (seen && chosen && chosen !== CERTIFY.name) ask(); // a proof is of the front, whatever the design
     },
   };
 }
