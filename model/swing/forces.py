@@ -79,6 +79,21 @@ class SwingCurves:
     slider_pin_y: Array
     guide: Array
 
+    @property
+    def pivot(self) -> Array:
+        """Size of the force in the crank pivot, N."""
+        return np.hypot(self.pivot_x, self.pivot_y)
+
+    @property
+    def crank_pin(self) -> Array:
+        """Size of the force in the crank pin, N."""
+        return np.hypot(self.crank_pin_x, self.crank_pin_y)
+
+    @property
+    def slider_pin(self) -> Array:
+        """Size of the force in the slider pin, N."""
+        return np.hypot(self.slider_pin_x, self.slider_pin_y)
+
 
 def swing_curves(
     mechanism: Mechanism, linkage: Linkage, swing: Swing, share: Array, *, back: bool = False

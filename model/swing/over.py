@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -61,24 +62,47 @@ class Over:
         """Return the least value of a curve, the same on both ways."""
         return self._extreme(name, False, np.negative)
 
-    def _extreme(self, name: str, back: bool, worth: np.ufunc) -> At:
-        low, high, count = 0.0, 1.0, _SAMPLES
-        for _ in range(1 + _ZOOMS):
-            share = np.linspace(low, high, count)
-            curves = self.at(share, back=back)
-            values = getattr(curves, name)
-            ranks = np.where(np.isnan(values), -np.inf, worth(values))
-            best = int(np.argmax(ranks))
-            low, high, count = share[max(best - 1, 0)], share[min(best + 1, len(share) - 1)], _ZOOMED
-        return _place(curves, best, back, float(values[best]))
+    def ends_of(self, name: str) -> tuple[At, At]:
+        """Return the least and the greatest value of a curve over both ways; NaN where friction locks all over."""
+        low, high = (
+            [self._extreme(name, way, worth, most=4) for way in (False, True)] for worth in (np.negative, np.positive)
+        )
+        # The same on both ways but for rounding: the first.
+        span = max(at.value for at in high) - min(at.value for at in low)
+        least = low[1] if low[1].value < low[0].value - _EQUAL * span or np.isnan(low[0].value) else low[0]
+        most = high[1] if high[1].value > high[0].value + _EQUAL * span or np.isnan(high[0].value) else high[0]
+        return least, most
+
+    @cached_property
+    def _sampled(self) -> tuple[SwingCurves, SwingCurves]:
+        """Curves of both ways at many shares of the time."""
+        share = np.linspace(0.0, 1.0, _SAMPLES)
+        return self.at(share), self.at(share, back=True)
+
+    def _extreme(self, name: str, back: bool, worth: np.ufunc, most: int = 1) -> At:
+        """Return the extreme of one way. most: how many of the best local ones between the samples are followed."""
+        curves = self._sampled[back]
+        ranks = _ranks(getattr(curves, name), worth)
+        beside = np.concatenate([[-np.inf], ranks, [-np.inf]])
+        local = np.flatnonzero((ranks >= beside[:-2]) & (ranks >= beside[2:]))
+        best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: most - 1].tolist()]
+        found = [self._refined(name, back, worth, curves, row) for row in dict.fromkeys(best)]
+        return found[int(np.argmax(_ranks(np.array([at.value for at in found]), worth)))]
+
+    def _refined(self, name: str, back: bool, worth: np.ufunc, curves: SwingCurves, best: int) -> At:
+        for _ in range(_ZOOMS):
+            low, high = curves.share[max(best - 1, 0)], curves.share[min(best + 1, len(curves.share) - 1)]
+            curves = self.at(np.linspace(low, high, _ZOOMED), back=back)
+            best = int(np.argmax(_ranks(getattr(curves, name), worth)))
+        return _place(curves, best, back, float(getattr(curves, name)[best]))
 
     def first_locked(self) -> At | None:
         """Return the first place where friction may lock the linkage, to a bisection between many."""
         if not self.mechanism.friction.acts:
             return None
         for back in (False, True):
-            share = np.linspace(0.0, 1.0, _SAMPLES)
-            rows = np.flatnonzero(np.isnan(self.at(share, back=back).drive))
+            share, drive = self._sampled[back].share, self._sampled[back].drive
+            rows = np.flatnonzero(np.isnan(drive))
             if len(rows):
                 first = int(rows[0])
                 at = self._change(share[max(first - 1, 0)], share[first], _locks, back) if first else 0.0
@@ -89,8 +113,7 @@ class Over:
         """Return whether friction alone holds the linkage all over: no drive lies between those of both ways."""
         if not self.mechanism.friction.acts:
             return False
-        share = np.linspace(0.0, 1.0, _SAMPLES)
-        forth, back = self.at(share), self.at(share, back=True)
+        forth, back = self._sampled
         # Forth is along the driver's way: what resists needs a drive that way, and back one the other way.
         first, last = driver_ends(self.linkage, self.swing)
         way = np.sign(last - first)
@@ -172,6 +195,10 @@ class Over:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if side(self.at(np.array([middle]), back=back))[0] == after else (middle, high)
         return float(high)
+
+
+def _ranks(values: Array, worth: np.ufunc) -> Array:
+    return np.where(np.isnan(values), -np.inf, worth(values))
 
 
 def _locks(curves: SwingCurves) -> Mask:

@@ -131,12 +131,17 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
     return tuple(found)
 
 
+def started(mechanism: Mechanism, swing: Swing) -> Swing:
+    """Return the swing from the start that a machine of one design has, if it has one."""
+    own = getattr(mechanism.start, "angle" if swing.of == "crank" else "place")
+    if own is None:
+        return swing
+    return replace(swing, start=own, end=own + (swing.end - swing.start) if swing.follows else swing.end)
+
+
 def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     """Return the swing of one linkage between two crank angles. Raises `AssemblyError` where it misses a place."""
-    own = getattr(mechanism.start, "angle" if swing.of == "crank" else "place")
-    if own is not None:
-        end = own + (swing.end - swing.start) if swing.follows else swing.end
-        swing = replace(swing, start=own, end=end)
+    swing = started(mechanism, swing)
     if swing.of == "crank":
         return swing
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)

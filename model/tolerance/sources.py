@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single import one_linkage, single
 from ..machine.mechanism import Mechanism
 
 SOURCES = (
@@ -28,7 +28,7 @@ _TURN = 2.0 * math.pi
 
 def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return how far each source may be off, (8,), m; the crank angle in rad."""
-    linkage, t = single(mechanism, linkage), mechanism.tolerances
+    linkage, t = one_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
         tolerance.limit(float(length))
         for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))

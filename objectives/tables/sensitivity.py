@@ -15,10 +15,12 @@ from ...model.kinematics import geometry
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing, require_swing, started
 from ...model.tolerance.sources import limits
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
+from .swinging import swing_quantities, swinging
 
 _TIE = 1e-9  # of a quantity: pieces that differ by less are equal
 _ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
@@ -56,11 +58,12 @@ _DEAD_CENTRES = (
 )
 
 
-def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
+def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = None) -> pd.DataFrame:
     """Return how each quantity of a design (3,), crank, rod, offset, m, changes with each dimension.
 
-    One row a quantity, all of the registry and the dead centres, with the columns quantity, title, unit, value (as
-    shown) and for each dimension
+    swing: what its crank makes in place of a full turn, with the same ends whatever the dimensions; then the rows are
+    its quantities. One row a quantity, all of the registry and the dead centres, with the columns quantity, title,
+    unit, value (as shown) and for each dimension
     - <dimension>_per_mm: exact derivative towards more of it, in the shown unit per mm;
     - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
       quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
@@ -69,19 +72,22 @@ def sensitivity(mechanism: Mechanism, dimensions: Array) -> pd.DataFrame:
     The two differ where the quantity has a kink: two equal peaks; no offset, for what depends on its size. Derivatives
     that are rounding are exactly zero. A quantity that is infinite has NaN in all; so has a position error without
     tolerances, which is not defined.
-    Raises `AssemblyError` unless the linkage turns fully.
+    Raises `AssemblyError` unless the linkage turns fully, or swings as far as `swing` asks.
     """
     design = np.asarray(dimensions, dtype=np.float64).reshape(3)
     linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
     design[2] = float(linkage.offset)
+    if swing is not None:
+        require_swing(mechanism, linkage, swing)
     tolerances = limits(mechanism, linkage)[:3]
     rows = []
-    for quantity in QUANTITIES.values():
+    ends = None if swing is None else started(mechanism, swing)
+    for quantity in QUANTITIES.values() if ends is None else swinging(swing_quantities(ends)):
         value, below, above = _one_sided(quantity, mechanism, design)
         if quantity.lacks(mechanism, "undefined"):
             value = math.nan
         rows.append(_row(quantity, value, (below, above), design, tolerances, True))
-    for centre in _DEAD_CENTRES:
+    for centre in _DEAD_CENTRES if ends is None else ():
         value, slopes = centre.on(linkage)
         both = np.array(slopes), np.array(slopes)
         rows.append(_row(centre, value, both, design, tolerances, centre.kind is not ANGLE))

@@ -11,8 +11,8 @@ from fastapi import APIRouter, Depends, Query, Response
 
 from ...objectives.kinds import System
 from ..designs.cycle_table import cycle_csv
+from ..drawings.design_drawing import design_drawing
 from ..drawings.dxf import dxf_file
-from ..drawings.linkage_drawing import linkage_drawing
 from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
@@ -36,8 +36,14 @@ _PLAYING = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-in
 """The motion runs its own script, but as a document of no origin."""
 
 CrankAngle = Annotated[
-    float,
-    Query(ge=-360.0, le=360.0, allow_inf_nan=False, description="where the linkage is drawn", examples=[60.0]),
+    float | None,
+    Query(
+        ge=-360.0,
+        le=360.0,
+        allow_inf_nan=False,
+        description="where the linkage is drawn: at 60 deg if left out, half-way where it swings",
+        examples=[60.0],
+    ),
 ]
 
 
@@ -48,19 +54,19 @@ def _file(
     return download(content, media_type, name, policy=policy)
 
 
-def _drawing(shown: ShownDesign, crank_angle_deg: float) -> Drawing:
-    name, of, angle = shown.found.result.name, shown.design, math.radians(crank_angle_deg)
-    return linkage_drawing(of.mechanism, of.linkage, name=name, design=shown.words, crank_angle=angle)
+def _drawing(shown: ShownDesign, crank_angle_deg: float | None) -> Drawing:
+    angle = None if crank_angle_deg is None else math.radians(crank_angle_deg)
+    return design_drawing(shown.design, name=shown.found.result.name, design=shown.words, crank_angle=angle)
 
 
 @router.get("/linkage.dxf", **of_type("image/vnd.dxf"))
-def draw_dxf(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
+def draw_dxf(shown: ShownDep, crank_angle_deg: CrankAngle = None) -> Response:
     """Give the linkage of a design at true scale for CAD, in millimetres: see docs/drawings.md for its layers."""
     return _file(shown, "dxf", "image/vnd.dxf", dxf_file(_drawing(shown, crank_angle_deg)))
 
 
 @router.get("/linkage.svg", **of_type("image/svg+xml"))
-def draw_linkage(shown: ShownDep, crank_angle_deg: CrankAngle = 60.0) -> Response:
+def draw_linkage(shown: ShownDep, crank_angle_deg: CrankAngle = None) -> Response:
     """Give the same drawing as SVG."""
     return _file(shown, "svg", "image/svg+xml", svg_file(_drawing(shown, crank_angle_deg)))
 

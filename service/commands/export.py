@@ -41,7 +41,7 @@ def export(
         str | None, typer.Option(metavar="NAME"), "Sort the designs of --csv and --json, as in `front`."
     ] = None,
     reverse: Annotated[bool, "Turn the order round."] = False,
-    at: Annotated[Angle, 'Crank angle of the drawing.  [default: "60 deg"]'] = None,
+    at: Annotated[Angle, 'Crank angle of the drawing.  [default: "60 deg"; of a swing half-way]'] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:
@@ -116,10 +116,9 @@ def _content(option: str, found: StoredDesign, angle: float | None, units: Syste
         from ..motion.animated_gif import animated_gif
 
         return animated_gif(found.mechanism, found.linkage, **named)
-    from ..drawings.linkage_drawing import CRANK_ANGLE, linkage_drawing
+    from ..drawings.design_drawing import design_drawing
 
-    angle = CRANK_ANGLE if angle is None else angle
-    drawing = linkage_drawing(found.mechanism, found.linkage, crank_angle=angle, **named)
+    drawing = design_drawing(found, crank_angle=angle, **named)
     if option == "--svg":
         from ..drawings.svg import svg_file
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ...model.errors import InputError, RunError
+from ..designs.turning import require_turning
 from ..runs.run_folder import slug, write_file
 from ..runs.stored_runs import problem_of
 from ..text.options import File, Run, Runs, Units
@@ -51,6 +52,7 @@ def report(
         subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
         if measured is not None:
             design = subject.design
+            require_turning(design.part, "what --measured compares")
             samples = read_measured(text_of(measured), design.mechanism, design.linkage)
             subject = replace(subject, measured=samples)
         made = design_report(subject)

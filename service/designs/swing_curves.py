@@ -2,16 +2,79 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves, swing_curves
 from ...model.swing.swing import Swing, placed, require_swing
-from ...objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE, Kind
+from ...objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, POWER, SPEED, TORQUE, Kind
 
 POINTS = 181
 """Of one way, in curves and figures."""
+
+
+@dataclass(frozen=True)
+class SwingCurve:
+    """A curve over a swing. name: its key without a unit. attribute: of `SwingCurves`. timed: not of a slow swing."""
+
+    name: str
+    attribute: str
+    title: str
+    kind: Kind
+    timed: bool = False
+
+    @property
+    def field(self) -> str:
+        """Key of the curve in metric tables and JSON."""
+        return self.name + self.kind.metric.suffix
+
+    def of(self, curves: SwingCurves) -> Array:
+        """Return the values, metric."""
+        return np.asarray(self.kind.metric.factor * getattr(curves, self.attribute))
+
+
+def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
+    """Return the curves of a swing but the forces of the joints; without time, none that needs it."""
+    drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
+    between = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
+    error = "slider position error" if swing.driver == "crank" else "crank angle error"
+    every = (
+        SwingCurve("crank_angle", "crank_angle", "crank angle", ANGLE),
+        SwingCurve("slider_position", "slider_position", "slider position", LENGTH),
+        SwingCurve("slider_velocity", "slider_velocity", "slider velocity", SPEED, timed=True),
+        SwingCurve("slider_acceleration", "slider_acceleration", "slider acceleration", ACCELERATION, timed=True),
+        SwingCurve("drive", "drive", drive, drive_kind(swing)),
+        SwingCurve("power", "power", "power of the drive", POWER, timed=True),
+        SwingCurve("load", "load", "load on the slider", FORCE),
+        SwingCurve("transmission_angle", "driven_angle", between, ANGLE),
+        SwingCurve(f"{driven(swing)}_position_error", "driven_error", error, error_kind(swing)),
+    )
+    return tuple(curve for curve in every if not curve.timed or swing.duration is not None)
+
+
+def force_components() -> tuple[SwingCurve, ...]:
+    """Return the curves of the joint forces along x and y, and of the guide."""
+    titles = {"pivot": "crank pivot force", "crank_pin": "crank pin force", "slider_pin": "slider pin force"}
+    components = (
+        SwingCurve(f"{name}_{axis}", f"{name}_{axis}", f"{title}, {axis}", FORCE)
+        for name, title in titles.items()
+        for axis in ("x", "y")
+    )
+    return (*components, SwingCurve("guide", "guide", "guide force", FORCE))
+
+
+def sizes_of_forces() -> tuple[SwingCurve, ...]:
+    """Return the curves of the sizes of the joint forces, and of the guide's force with its sign."""
+    return (
+        SwingCurve("pivot", "pivot", "crank pivot force", FORCE),
+        SwingCurve("crank_pin", "crank_pin", "crank pin force", FORCE),
+        SwingCurve("slider_pin", "slider_pin", "slider pin force", FORCE),
+        SwingCurve("guide", "guide", "guide force", FORCE),
+    )
 
 
 def drive_kind(swing: Swing) -> Kind:

@@ -52,6 +52,16 @@ def dimension(
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
+def aligned(name: str, start: Point, end: Point, away: float, height: float, tolerance: float) -> Dimension:
+    """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
+    x, y = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(x, y)
+    through = (start[0] - away * y / length, start[1] + away * x / length)
+    angle = math.degrees(math.atan2(y, x))
+    angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
+    return dimension(name, start, end, through, angle, height=height, tolerance=tolerance)
+
+
 def _at(point: Point, unit: Point, length: float) -> Point:
     return point[0] + length * unit[0], point[1] + length * unit[1]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.extras import NamingExtra
 from ..designs.toleranced import decimals_of
-from .shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
+from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -84,6 +84,8 @@ def _add(found: Document, space: BaseLayout, shape: Shape) -> None:
         space.add_line(shape.start, shape.end, dxfattribs=on)
     elif isinstance(shape, Circle):
         space.add_circle(shape.centre, shape.radius, dxfattribs=on)
+    elif isinstance(shape, Arc):
+        space.add_arc(shape.centre, shape.radius, shape.start, shape.end, dxfattribs=on)
     elif isinstance(shape, Outline):
         corners = [(x, y, bulge) for (x, y), bulge in zip(shape.corners, shape.bulges, strict=True)]
         space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=on)

@@ -9,13 +9,13 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ..designs.toleranced import tolerances_of
 from . import layers as on
-from .dimensions import dimension
+from .dimensions import aligned, dimension
 from .parts import Look, in_words, look_of, moving, pins_at, scenery
-from .shapes import Drawing, Label, Line, Point, Shape
+from .shapes import Drawing, Line, Point, Shape
+from .titles import TEXT, titled
 
 CRANK_ANGLE = math.radians(60.0)
 """Crank angle at which a linkage is drawn unless asked otherwise, rad."""
-_TEXT = 0.022  # height of dimensions, of the drawing's size
 
 
 def linkage_drawing(
@@ -29,24 +29,17 @@ def linkage_drawing(
     turn fully.
     """
     look = look_of(mechanism, linkage)
-    (left, low, _, _), size = look.extent, look.size
+    size = look.size
     pin, slider = pins_at(linkage, crank_angle)
     shapes: list[Shape] = [
         *scenery(linkage, look, below=pin[1] >= 0.0),
         *moving(pin, slider, look),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), height=_TEXT * size),
+        *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), height=TEXT * size),
     ]
     title = f"{name}, {design}" if design else name
-    notes = _notes(linkage, crank_angle, look)
-    y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
-    shapes.append(Label(on.NOTES, title, (left, y), 1.2 * _TEXT * size))
-    shapes += [
-        Label(on.NOTES, note, (left, y - (1.5 * line + 0.3) * _TEXT * size), 0.75 * _TEXT * size)
-        for line, note in enumerate(notes, 1)
-    ]
-    return Drawing(on.LAYERS, tuple(shapes), size, title, notes)
+    return titled(on.LAYERS, shapes, look.extent, size, title, _notes(linkage, crank_angle, look))
 
 
 def _dimensions(
@@ -61,8 +54,8 @@ def _dimensions(
     y = side * (max(look.crank + 0.5 * look.crank_width, side * e + 0.72 * look.block) + 3.0 * height)
     off = {name: tolerances.get(name, 0.0) for name in ("crank", "rod", "offset")}
     found: list[Shape] = [
-        _aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height, off["crank"]),
-        _aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, off["rod"]),
+        aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height, off["crank"]),
+        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, off["rod"]),
         dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
     ]
     if e:
@@ -71,16 +64,6 @@ def _dimensions(
             dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, height=height, tolerance=off["offset"])
         )
     return found
-
-
-def _aligned(name: str, start: Point, end: Point, away: float, height: float, tolerance: float) -> Shape:
-    """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
-    x, y = end[0] - start[0], end[1] - start[1]
-    length = math.hypot(x, y)
-    through = (start[0] - away * y / length, start[1] + away * x / length)
-    angle = math.degrees(math.atan2(y, x))
-    angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
-    return dimension(name, start, end, through, angle, height=height, tolerance=tolerance)
 
 
 def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:

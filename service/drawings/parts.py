@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...model.linkage.linkage import Linkage
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism
 from . import layers as on
@@ -17,11 +18,12 @@ _FEET = 200  # hatching lines of a rail at most
 
 @dataclass(frozen=True)
 class Look:
-    """A fully turning linkage as it is drawn, mm. crank, rod, offset: its dimensions.
+    """A linkage as it is drawn, mm. crank, rod, offset: its dimensions.
 
-    inner, outer: slider pins at the dead centres. crank_width, rod_width: of the links. block: height of the slider.
-    pin: radius of pins. own: whether a link is described by its section, so that its width is true; everything else is
-    for show.
+    inner, outer: slider pins at the dead centres, or at the ends of a swing. reach: least and greatest place of the
+    slider. extent: left, bottom, right and top of what moves, about. crank_width, rod_width: of the links. block:
+    height of the slider. pin: radius of pins. own: whether a link is described by its section, so that its width is
+    true; everything else is for show.
     """
 
     crank: float
@@ -29,22 +31,13 @@ class Look:
     offset: float
     inner: Point
     outer: Point
+    reach: tuple[float, float]
+    extent: tuple[float, float, float, float]
     crank_width: float
     rod_width: float
     block: float
     pin: float
     own: bool
-
-    @property
-    def extent(self) -> tuple[float, float, float, float]:
-        """Left, bottom, right and top of what a turn sweeps over, about."""
-        r, ends, half = self.crank, (self.inner[0], self.outer[0]), 0.5 * self.crank_width
-        return (
-            min(-r - half, *(x - 0.95 * self.block for x in ends)),
-            min(-r - half, self.offset - 0.72 * self.block),
-            max(r + half, *(x + 0.95 * self.block for x in ends)),
-            max(r + half, self.offset + 0.72 * self.block),
-        )
 
     @property
     def size(self) -> float:
@@ -55,20 +48,47 @@ class Look:
 
 def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
     """Return how a linkage of a machine is drawn. Raises `AssemblyError` for one that does not turn fully."""
+    inner, outer = (_MM * float(x) for x in linkage.dead_centres)
+    r = _MM * float(linkage.crank)
+    return look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
+
+
+def look_between(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    ends: tuple[float, float],
+    reach: tuple[float, float],
+    swept: tuple[float, float, float, float],
+) -> Look:
+    """Return how a linkage is drawn whose slider goes between two places, mm; see `Look`.
+
+    swept: left, bottom, right and top of the way of the crank's axis.
+    """
     r, l, e = (_MM * float(value) for value in (linkage.crank, linkage.rod, linkage.offset))
-    inner, outer = ((_MM * float(x), e) for x in linkage.dead_centres)
-    links = (mechanism.crank, mechanism.rod)
-    crank, rod = (_width(link, min(0.05 * (l + r), 0.5 * r)) for link in links)
-    block = max(0.16 * (r + max(r, abs(e))), 0.05 * (abs(outer[0]) + r))
+    described = (mechanism.crank, mechanism.rod)
+    crank, rod = (_width(link, min(0.05 * (l + r), 0.5 * r)) for link in described)
+    block = max(0.16 * (r + max(r, abs(e))), 0.05 * (max(map(abs, reach)) + r))
     pin = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r)
-    return Look(r, l, e, inner, outer, crank, rod, block, pin, any(isinstance(link, Bar) for link in links))
+    half = 0.5 * crank
+    extent = (
+        min(swept[0] - half, reach[0] - 0.95 * block),
+        min(swept[1] - half, e - 0.72 * block),
+        max(swept[2] + half, reach[1] + 0.95 * block),
+        max(swept[3] + half, e + 0.72 * block),
+    )
+    own = any(isinstance(link, Bar) for link in described)
+    return Look(r, l, e, (ends[0], e), (ends[1], e), reach, extent, crank, rod, block, pin, own)
 
 
 def in_words(linkage: Linkage, digits: int) -> str:
     """Return dimensions, stroke and branch of a linkage."""
-    names = ("crank", "rod", "offset", "stroke")
-    lengths = ", ".join(f"{name} {_MM * float(getattr(linkage, name)):.{digits}g} mm" for name in names)
-    return f"{lengths}; {linkage.branch} branch"
+    return f"{lengths_in_words(linkage, digits, stroke=True)}; {linkage.branch} branch"
+
+
+def lengths_in_words(linkage: Linkage, digits: int, *, stroke: bool = False) -> str:
+    """Return the dimensions of a linkage, with its stroke where that is asked."""
+    names = (*DIMENSIONS, *(["stroke"] if stroke else []))
+    return ", ".join(f"{name} {_MM * float(getattr(linkage, name)):.{digits}g} mm" for name in names)
 
 
 def _width(link: Link, usual: float) -> float:
@@ -83,24 +103,28 @@ def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:
 
 def moving(pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank with their pins where crank pin and slider pin are."""
-    links = _links((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
-    return [*links, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
+    drawn = links((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
+    return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 
 
 def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
     """Return axes, paths, both dead centres, guide and bearing. below: whether the bearing stands below the pivot."""
-    left, _, right, _ = look.extent
-    ends = (left - 0.03 * look.size, right + 0.03 * look.size)
-    axes = [Line(on.AXES, (ends[0], y), (ends[1], y)) for y in dict.fromkeys((0.0, look.offset))]
     paths = (Circle(on.PATHS, (0.0, 0.0), look.crank), Line(on.PATHS, look.inner, look.outer))
     ghosts: list[Shape] = []
     for layer, angle, end in zip(
         (on.INNER, on.OUTER), linkage.dead_centre_angles, (look.inner, look.outer), strict=True
     ):
         pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
-        ghosts += _links((layer,) * 3, pin, end, look)
+        ghosts += links((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
-    return [*axes, *paths, *ghosts, *_rails(look), *_bearing(look, below=below)]
+    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, below=below)]
+
+
+def axes(look: Look) -> list[Shape]:
+    """Return the slider line, and its parallel through the crank pivot."""
+    left, _, right, _ = look.extent
+    ends = (left - 0.03 * look.size, right + 0.03 * look.size)
+    return [Line(on.AXES, (ends[0], y), (ends[1], y)) for y in dict.fromkeys((0.0, look.offset))]
 
 
 def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
@@ -123,7 +147,7 @@ def block(layer: Layer, pin: Point, height: float) -> Outline:
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def _links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
+def links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank, each on its layer."""
     return [
         block(layers[0], slider, look.block),
@@ -132,11 +156,10 @@ def _links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: 
     ]
 
 
-def _rails(look: Look) -> list[Shape]:
+def rails(look: Look) -> list[Shape]:
     """Return the guide of the slider, hatched."""
     shapes: list[Shape] = []
-    ends = (look.inner[0], look.outer[0])
-    start, end = min(ends) - 0.95 * look.block, max(ends) + 0.95 * look.block
+    start, end = look.reach[0] - 0.95 * look.block, look.reach[1] + 0.95 * look.block
     for side in (-1.0, 1.0):
         y = look.offset + side * 0.52 * look.block
         shapes.append(Line(on.FRAME, (start, y), (end, y)))
@@ -148,7 +171,8 @@ def _rails(look: Look) -> list[Shape]:
     return shapes
 
 
-def _bearing(look: Look, *, below: bool) -> list[Shape]:
+def bearing(look: Look, *, below: bool) -> list[Shape]:
+    """Return what holds the crank pivot. below: whether it stands below it."""
     foot = 1.5 * max(look.pin, 0.3 * look.crank_width)
     y = -2.0 * foot if below else 2.0 * foot
     legs = [Line(on.FRAME, (0.0, 0.0), (x, y)) for x in (-foot, foot)]

@@ -46,6 +46,28 @@ class Circle:
 
 
 @dataclass(frozen=True)
+class Arc:
+    """A part of a circle, counter-clockwise from start to end, deg."""
+
+    layer: Layer
+    centre: Point
+    radius: float
+    start: float
+    end: float
+
+    def at(self, angle: float) -> Point:
+        """Return the point at an angle, deg."""
+        turn = math.radians(angle)
+        return self.centre[0] + self.radius * math.cos(turn), self.centre[1] + self.radius * math.sin(turn)
+
+    @property
+    def points(self) -> list[Point]:
+        """Points along it, a degree apart or less."""
+        count = max(1, math.ceil(self.end - self.start))
+        return [self.at(self.start + (self.end - self.start) * k / count) for k in range(count + 1)]
+
+
+@dataclass(frozen=True)
 class Outline:
     """A closed outline. bulges: of the side that begins at each corner, 0 is straight, 1 a half turn to the left."""
 
@@ -100,7 +122,7 @@ class Dimension:
         return abs((self.end[0] - self.start[0]) * along[0] + (self.end[1] - self.start[1]) * along[1])
 
 
-Shape = Line | Circle | Outline | Wedge | Label | Dimension
+Shape = Line | Circle | Arc | Outline | Wedge | Label | Dimension
 
 
 @dataclass(frozen=True)
@@ -136,6 +158,8 @@ def _reach(shape: Shape) -> Iterable[Point]:
     if isinstance(shape, Circle):
         (x, y), r = shape.centre, shape.radius
         return (x - r, y - r), (x + r, y + r)
+    if isinstance(shape, Arc):
+        return shape.points
     if isinstance(shape, Outline):
         return [point for side in pairs(shape) for point in _ends(*side)]
     if isinstance(shape, Wedge):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from xml.sax.saxutils import escape, quoteattr
 
-from .shapes import Circle, Dashes, Dimension, Drawing, Label, Layer, Line, Outline, Point, Shape, Wedge, pairs
+from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Layer, Line, Outline, Point, Shape, Wedge, pairs
 
 _MARGIN = 0.03  # of the drawing's size
 _LINE = 0.004  # width of a line of weight 0.5, of that size
@@ -66,6 +66,11 @@ def elements(shape: Shape) -> list[str]:
     if isinstance(shape, Circle):
         x, y = shape.centre
         return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
+    if isinstance(shape, Arc):
+        # Counter-clockwise here, where y points downward, is against the sense of the flag.
+        start, end = _point(shape.at(shape.start)), _point(shape.at(shape.end))
+        radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
+        return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
     if isinstance(shape, Outline):
         return [f'<path d="{_outline(shape)}"/>']
     if isinstance(shape, Wedge):

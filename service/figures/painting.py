@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.extras import NamingExtra
 from ..drawings import layers as on
-from ..drawings.shapes import Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
+from ..drawings.shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
 from .style import LINK, new_figure, place
 
 with NamingExtra("figures need"):
@@ -28,6 +28,7 @@ _DASHES: dict[Dashes, object] = {
     "phantom": (0, (8, 2, 1.5, 2, 1.5, 2)),
 }
 _FILLED = {on.CRANK.name: LINK, on.ROD.name: LINK, on.SLIDER.name: "#f4f4f4", on.PINS.name: "#ffffff"}
+_FILLED |= {on.ACTUATOR.name: "#f4f4f4", on.BODY.name: "none"}
 _POINTS = 2.6  # line width, points, of a weight of one
 _CAPITALS = 0.729  # height of capitals over the size of the font, DejaVu Sans
 _WIDTH, _TALLEST = 9.0, 6.4  # inches
@@ -90,6 +91,9 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
         fill = _FILLED.get(shape.layer.name, "none")
         if isinstance(shape, Line):
             x, y = zip(shape.start, shape.end, strict=True)
+            found.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
+        elif isinstance(shape, Arc):
+            x, y = zip(*shape.points, strict=True)
             found.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
         elif isinstance(shape, Circle):
             disc = Disc(shape.centre, shape.radius, facecolor=fill, edgecolor=shape.layer.ink, **style)

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
+from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ...optimise.search.fingerprint import version_of
-from ..designs.columns import DIMENSIONS, find_column
-from ..designs.turning import require_turning
+from ..designs.columns import DIMENSIONS, find_column, metric_key
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
 from ..text.summary import machine_in_words
@@ -21,18 +21,17 @@ from .front_section import front_section
 from .job_section import job_section, search_section
 from .measured_section import measured_section
 from .subject import Subject
+from .swing_section import SwingOfSubject
 
 _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 
 def design_report(subject: Subject, *, made: float | None = None) -> Report:
-    """Return the report of a design. made: when, seconds since 1970; now if None.
-
-    Raises `InputError` for a crank that swings.
-    """
-    require_turning(subject.design.part, "a report")
+    """Return the report of a design. made: when, seconds since 1970; now if None."""
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(made))
-    tolerances, decision = tolerance_section(subject), decision_section(subject)
+    motion, decision = subject.design.part.motion, decision_section(subject)
+    swing = None if motion is None else SwingOfSubject(subject, motion)
+    tolerances = tolerance_section(subject) if swing is None else swing.tolerances()
     return Report(
         title=f"{subject.result.name}: {subject.name}",
         subtitle=f"Design report for review; run {subject.run}",
@@ -44,6 +43,7 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
             search_section(subject),
             front_section(subject),
             design_section(subject),
+            *([] if swing is None else [swing.section()]),
             sensitivity_section(subject),
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
@@ -55,7 +55,9 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 
 def _summary(subject: Subject) -> Section:
     row = subject.row
-    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, STROKE.name)]
+    keys = {metric_key(key) for key in row}
+    known = [of.name for of in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if of.field in keys]
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, *known)]
     lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
     rows = {
         "Lengths": [", ".join(lengths)],

@@ -12,7 +12,7 @@ from ...objectives.kinds import unit_text
 from ..designs.columns import Column, all_columns, key_in
 from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.trade_offs import trade_offs_of
-from ..drawings.linkage_drawing import linkage_drawing
+from ..drawings.design_drawing import design_drawing
 from ..figures.front import sheet_of
 from ..figures.numerals import as_stored, rounded
 from ..figures.painting import drawing_figure
@@ -30,7 +30,12 @@ def design_section(subject: Subject) -> Section:
             Picture("The linkage, to scale", partial(_drawing, subject)),
             *_rules(subject),
             *_optimality(subject),
-            Picture("The design over a turn of the crank", partial(_sheet, subject)),
+            Picture(
+                "The design over a turn of the crank"
+                if subject.design.part.motion is None
+                else "The design over its swing",
+                partial(_sheet, subject),
+            ),
         ),
     )
 
@@ -144,10 +149,7 @@ def _optimality(subject: Subject) -> list[Block]:
 
 
 def _drawing(subject: Subject) -> Figure:
-    design = subject.design
-    return drawing_figure(
-        linkage_drawing(design.mechanism, design.linkage, name=subject.result.name, design=subject.label)
-    )
+    return drawing_figure(design_drawing(subject.design, name=subject.result.name, design=subject.label))
 
 
 def _sheet(subject: Subject) -> Figure:

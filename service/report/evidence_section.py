@@ -19,7 +19,8 @@ from .subject import Subject
 
 def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
-    rows = tornado_rows(subject.design.mechanism, subject.design.linkage)
+    design = subject.design
+    rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
     return Section("Sensitivity", (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows)),))
 
 

@@ -96,7 +96,9 @@ class _Layout:
     def section(self, section: Section) -> None:
         """Write a heading and what is below it."""
         # A heading is not left alone at the foot of a page.
-        self.room(4.5 if isinstance(section.blocks[0], Picture) else 1.3)
+        first, *others = section.blocks
+        told = isinstance(first, Paragraph) and bool(others) and isinstance(others[0], Table)
+        self.room(4.5 if isinstance(first, Picture) else 2.6 if told else 1.3)
         self.y -= 0.2
         self.lines([section.title], _HEAD, bold=True)
         self.rule("#c8c8c8", 0.8)

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Window
-from ...model.swing.forces import JOINTS
-from ...model.swing.over import At
+from ...model.swing.over import At, Over
 from ...model.swing.summary import SwingSummary
 from ...model.swing.swing import Swing
-from ...objectives.kinds import ANGLE
+from ...objectives.kinds import ANGLE, FORCE, POWER, TORQUE
 from ..designs.columns import split_unit
-from ..designs.swing_curves import POINTS, both_ways, drive_kind, driven, error_kind
+from ..designs.swing_curves import (
+    POINTS,
+    both_ways,
+    drive_kind,
+    driven,
+    error_kind,
+    force_components,
+    motion_and_drive,
+    sizes_of_forces,
+)
+from ..text.extremes import show_extremes
 from ..text.screen import say
 from ..text.tables import Line, plain, show_lines
 
@@ -80,12 +88,33 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
         record |= _at("peak_power_W", found.peak_power, 1.0, way=True)
     if found.position_error is not None:
         record |= _at(f"{driven(swing)}_position_error{error.suffix}", found.position_error, error.factor)
-    return record | {"notes": _notes(mechanism, found)}
+    return record | {"extremes": _extremes(mechanism, found), "notes": _notes(mechanism, found)}
 
 
-def _at(key: str, at: At, factor: float, *, way: bool = False) -> dict[str, Any]:
-    """Return a value and its places; the key without its unit begins those of the places."""
-    stem = key.rpartition("_")[0]
+def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
+    """Return of each curve its title, its least and its greatest value over both ways, and where; null if not defined.
+
+    Left out: loads that are zero, errors without tolerances, forces where nothing acts.
+    """
+    over = Over(mechanism, found.linkage, found.swing)
+    entries: dict[str, Any] = {}
+    for curve in (*motion_and_drive(found.swing), *sizes_of_forces()):
+        least, most = over.ends_of(curve.attribute)
+        acts = curve.kind not in (FORCE, TORQUE, POWER) and curve.attribute != "driven_error"
+        if curve.name == "crank_angle" or (not acts and least.value == most.value == 0.0):
+            continue
+        entry: dict[str, Any] = {"title": curve.title}
+        for word, at in (("least", least), ("greatest", most)):
+            if found.locked is not None and curve.kind in (FORCE, TORQUE, POWER):
+                at = replace(at, value=math.nan)  # next to that place forces grow beyond all bounds
+            entry |= _at(f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word)
+        entries[curve.name] = entry
+    return entries
+
+
+def _at(key: str, at: At, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
+    """Return a value and its places. stem: how the keys of these begin; the key without its unit if empty."""
+    stem = stem or key.rpartition("_")[0]
     return {
         key: plain(factor * at.value + 0.0),
         **({f"{stem}_way": "back" if at.back else "forth"} if way else {}),
@@ -110,41 +139,38 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
     """Return a row for each place of both ways, metric: time, motion, drive, power, joint forces, errors."""
-    drive, error = drive_kind(swing).metric, error_kind(swing).metric
+    shown = (*motion_and_drive(swing), *force_components())
     rows = []
     for way, curves in zip(("forth", "back"), both_ways(mechanism, linkage, swing), strict=True):
-        columns: dict[str, Any] = {
-            "time_s": curves.share * (swing.duration or np.nan),
-            "crank_angle_deg": np.degrees(curves.crank_angle),
-            "slider_position_mm": 1e3 * curves.slider_position,
-            "slider_velocity_m_s": curves.slider_velocity,
-            "slider_acceleration_m_s2": curves.slider_acceleration,
-            f"drive{drive.suffix}": drive.factor * curves.drive,
-            "power_W": curves.power,
-            "load_N": curves.load,
-            "transmission_angle_deg": np.degrees(curves.driven_angle),
-            f"{driven(swing)}_position_error{error.suffix}": error.factor * curves.driven_error,
-            **{f"{name}_N": getattr(curves, name) for name in JOINTS},
-        }
-        if swing.duration is None:
-            for name in ("time_s", "slider_velocity_m_s", "slider_acceleration_m_s2", "power_W"):
-                del columns[name]
+        time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
+        columns = time | {curve.field: curve.of(curves) for curve in shown}
         rows += [{"way": way} | {name: plain(values[i]) for name, values in columns.items()} for i in range(POINTS)]
     return rows
 
 
-def show_swing(screen: Console, record: Mapping[str, Any]) -> None:
-    """Write the numbers of a record, in the units of its keys."""
-    parts = {name: (key, unit) for key in record for name, unit in [_split(key)]}
+def swing_title(record: Mapping[str, Any]) -> str:
+    """Return what drives the swing of a record, and how."""
     how = "slowly" if record["law"] == "slow" else f"{record['law']} law, {record['duration_s']:g} s each way"
+    return f"Swing driven at the {record['driver']}, {how}"
+
+
+def swing_lines(record: Mapping[str, Any]) -> list[Line]:
+    """Return the numbers of a record but its extremes line by line, in the units of its keys."""
+    parts = {name: (key, unit) for key in record for name, unit in [_split(key)]}
     lines: list[Line] = []
     for name, (key, unit) in parts.items():
         value = record[key]
-        told = isinstance(value, str | list | bool) or name == "duration"
+        told = isinstance(value, str | list | dict | bool) or name == "duration"
         if not told and "_at_crank_angle" not in name and "_at_slider_position" not in name:
             lines.append((_TITLES.get(name, name.replace("_", " ")), value, unit, _place(record, name)))
     lines.append(("held by friction alone, all over", "yes" if record["holds_by_friction"] else "no", "", ""))
-    show_lines(screen, f"Swing driven at the {record['driver']}, {how}", lines)
+    return lines
+
+
+def show_swing(screen: Console, record: Mapping[str, Any]) -> None:
+    """Write the numbers of a record, in the units of its keys."""
+    show_lines(screen, swing_title(record), swing_lines(record))
+    show_extremes(screen, "Extremes over both ways, crank angles continuous", record["extremes"])
     for note in record["notes"]:
         say(note)
 

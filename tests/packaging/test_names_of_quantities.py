@@ -31,6 +31,7 @@ TERMS = {
     "objectives/tables/cycle_curves.py": "curves over the cycle, not quantities",
     "service/designs/inverse.py": "on which stroke a crank angle puts the slider at a position",
     "service/designs/cycle_table.py": "curves over the cycle, not quantities",
+    "service/designs/swing_curves.py": "curves over a swing, not quantities",
     "service/page/static/design/panels.js": "curves over the cycle, not quantities",
 }
 

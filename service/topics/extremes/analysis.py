@@ -12,11 +12,11 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
-from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
 from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn, turn
 from ...text import tables as text
-from ...text.tables import plain, print_table, table
+from ...text.extremes import show_extremes
+from ...text.tables import plain
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
 _STROKES = ("outward", "inward")
@@ -79,19 +79,7 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write a line for each curve, and the strokes."""
-    console.print("Extremes over the turn, crank angles continuous", style="bold", soft_wrap=True)
-    heads = ("curve", ">least", ">at\ndeg", ">slider\nmm", ">greatest", ">at\ndeg", ">slider\nmm", "unit")
-    rows = table(*heads, ruled=True)
-    for entry in numbers["curves"].values():
-        cells, unit = [], ""
-        for word in ("least", "greatest"):
-            key = next(key for key in entry if split_unit(key)[0] == word)
-            unit, value = split_unit(key)[1], entry[key]
-            places = (entry[f"{word}_at_crank_angle_deg"], entry[f"{word}_at_slider_position_mm"])
-            cells.append("undefined" if value is None else f"{value:.6g}")
-            cells += ["" if place is None else f"{place:.2f}" for place in places]
-        rows.add_row(entry["title"], *cells, unit)
-    print_table(console, rows)
+    show_extremes(console, "Extremes over the turn, crank angles continuous", numbers["curves"])
     strokes, lines = numbers["strokes"], list[text.Line]()
     for name in _STROKES:
         stroke = strokes[name]

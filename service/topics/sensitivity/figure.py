@@ -10,18 +10,20 @@ from matplotlib.figure import Figure
 from ....model.linkage.linkage import Linkage
 from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
+from ....model.swing.swing import Swing
 from ....objectives.tables.sensitivity import sensitivity
 from ...figures.numerals import shown
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
 from ..peaks import row_of
 
 
-def tornado_rows(mechanism: Mechanism, linkage: Linkage) -> pd.DataFrame:
+def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None) -> pd.DataFrame:
     """Return the rows of the figure: title and percentages of every quantity that has them, the most sensitive first.
 
-    Of an offset of zero the percentages are for 1 mm. <dimension>_percent_below: on the side of smaller values.
+    swing: of a crank that makes no full turn. Of an offset of zero the percentages are for 1 mm.
+    <dimension>_percent_below: on the side of smaller values.
     """
-    table = sensitivity(mechanism, row_of(linkage)[0])
+    table = sensitivity(mechanism, row_of(linkage)[0], swing)
     columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
     if float(linkage.offset) == 0.0:
         # Those that have percentages: not zero, and no crank angle of a dead centre.

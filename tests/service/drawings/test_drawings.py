@@ -24,12 +24,14 @@ from hypothesis import strategies as st
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
+from slidercrank.model.swing.swing import Swing
 from slidercrank.service.designs.toleranced import toleranced
 from slidercrank.service.drawings.dxf import dxf_file
-from slidercrank.service.drawings.layers import LAYERS
+from slidercrank.service.drawings.layers import LAYERS, SWING_LAYERS
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.drawings.shapes import Circle, Dimension, Drawing, Label, Line, Outline
 from slidercrank.service.drawings.svg import svg_file
+from slidercrank.service.drawings.swing_drawing import swing_drawing
 from tests.service import fronts
 
 EXACT = 1e-9  # relative to the size of the linkage
@@ -291,10 +293,14 @@ def test_the_layers_are_those_that_the_documentation_names(pytestconfig: pytest.
     text = (pytestconfig.rootpath / "docs" / "drawings.md").read_text(encoding="utf-8")
     rows = [line.split("|")[1:4] for line in text.splitlines() if line.startswith("|")]
     named = {name.strip(): dashes.strip() for names, _, dashes in rows for name in names.split(",")}
-    found = read(drawing_of(LINKAGES["offset"]))
-    for layer in LAYERS:
-        assert named[layer.name] == str(found.layers.get(layer.name).dxf.linetype).upper(), layer.name
-    assert {name for name in named if name.isupper() and "_" in name} <= {layer.name for layer in LAYERS}
+    linkage = LINKAGES["offset"]
+    swings = swing_drawing(Mechanism(), linkage, Swing(start=0.5, end=1.5, driver="slider"), name="Support")
+    for drawing, layers in ((drawing_of(linkage), LAYERS), (swings, SWING_LAYERS)):
+        found = read(drawing)
+        for layer in layers:
+            assert named[layer.name] == str(found.layers.get(layer.name).dxf.linetype).upper(), layer.name
+    known = {layer.name for layer in (*LAYERS, *SWING_LAYERS)}
+    assert {name for name in named if name.isupper() and "_" in name} <= known
 
 
 def test_dimensions_have_the_digits_of_their_tolerances() -> None:

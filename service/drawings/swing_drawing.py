@@ -1,0 +1,105 @@
+"""A linkage that swings as a drawing: within its swing, at both ends, with what drives it and its dimensions."""
+
+from __future__ import annotations
+
+import math
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
+from ..designs.toleranced import tolerances_of
+from . import layers as on
+from .dimensions import aligned, dimension
+from .parts import lengths_in_words, pins_at
+from .shapes import Arc, Drawing, Label, Line, Shape
+from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
+from .titles import TEXT, titled
+
+
+def swing_drawing(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    swing: Swing,
+    *,
+    name: str,
+    design: str = "",
+    crank_angle: float | None = None,
+) -> Drawing:
+    """Return one linkage that swings at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
+
+    Pivots, ends of the swing, ways of the pins and dimensions are exact. crank_angle: where it is drawn, within the
+    swing but for whole turns; half-way if None. name, design: as for `linkage_drawing`. Raises `InputError` for a crank
+    angle outside, and what `require_swing` raises.
+    """
+    of = swing_look(mechanism, linkage, swing)
+    angle = _within(of.swing, crank_angle)
+    pin, slider = pins_at(of.linkage, angle)
+    height = TEXT * of.look.size
+    shapes: list[Shape] = [
+        *swing_scenery(of),
+        *swing_moving(of, angle),
+        Line(on.SKELETON, (0.0, 0.0), pin),
+        Line(on.SKELETON, pin, slider),
+        *_dimensions(of, angle, mechanism, height),
+    ]
+    notes = _notes(of, angle)
+    return titled(on.SWING_LAYERS, shapes, of.extent, of.look.size, f"{name}, {design}" if design else name, notes)
+
+
+def _within(swing: Swing, angle: float | None) -> float:
+    """Return a crank angle turned by whole turns into a swing."""
+    if angle is None:
+        return 0.5 * (swing.start + swing.end)
+    found = [at for near in (0.0, 1e-9, -1e-9) for at in swing.inside(angle + near)]
+    if not found:
+        start, end, asked = (math.degrees(at) for at in (swing.start, swing.end, angle))
+        raise InputError(
+            f"a linkage that swings is drawn at a crank angle of its swing, from {start:.6g} to {end:.6g} deg; got "
+            f"{asked:.6g} deg; take one between, or none for the middle"
+        )
+    return found[0]
+
+
+def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float) -> list[Shape]:
+    """Return the dimension lines: of crank and rod beside them, offset at the left, travel outside, angle within."""
+    look, swing = of.look, of.swing
+    (left, low, _, high), (pin, slider) = of.extent, pins_at(of.linkage, angle)
+    given = tolerances_of(mechanism, of.linkage)
+    rod = (slider[0] - pin[0], slider[1] - pin[1])
+    bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0  # on the outside, as of a linkage that turns
+    y = low - 3.0 * height if of.below else high + 3.0 * height
+    beside = 0.5 * look.crank_width
+    if of.body is not None:
+        beside = max(beside, bend * of.body[1] + half_body(look))
+    found: list[Shape] = [
+        aligned("crank", (0.0, 0.0), pin, bend * (beside + 2.2 * height), height, given.get("crank", 0.0)),
+        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, given.get("rod", 0.0)),
+        dimension("travel", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
+    ]
+    if look.offset:
+        x, tolerance = left - 3.0 * height, given.get("offset", 0.0)
+        ends = ((left, 0.0), (left, look.offset))
+        found.append(dimension("offset", *ends, (x, 0.0), 90.0, height=height, tolerance=tolerance))
+    first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
+    arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
+    share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
+    text = Label(
+        on.DIMENSIONS, f"{last - first:.6g} deg", arc.at(first + share * (last - first)), height, anchor="middle"
+    )
+    return [*found, arc, text]
+
+
+def _notes(of: SwingLook, angle: float) -> tuple[str, ...]:
+    look, swing = of.look, of.swing
+    start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
+    widths = "Widths of links are those of the job; slider and pins are for show."
+    driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is for show."
+    return (
+        f"{lengths_in_words(of.linkage, 7)}; {of.linkage.branch} branch.",
+        f"Swings from {start} to {end} deg; drawn at {drawn} deg, both ends dashed.",
+        f"The slider goes from {look.inner[0]:.7g} to {look.outer[0]:.7g} mm. {driven}",
+        "True scale in millimetres; pivots are exact.",
+        widths if look.own else "Widths of links, slider and pins are for show.",
+        *(() if of.body is None else ("The square on the crank, for show, is about its mass centre.",)),
+    )

@@ -1,0 +1,32 @@
+"""Title and notes below a drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from . import layers as on
+from .shapes import Drawing, Label, Layer, Shape
+
+TEXT = 0.022
+"""Height of dimensions, of the drawing's size."""
+
+
+def titled(
+    layers: tuple[Layer, ...],
+    shapes: Sequence[Shape],
+    extent: tuple[float, float, float, float],
+    size: float,
+    title: str,
+    notes: tuple[str, ...],
+) -> Drawing:
+    """Return the drawing of shapes with its title and its notes below them. extent: left, bottom, right, top; mm."""
+    left, low, _, _ = extent
+    y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
+    words = [
+        Label(on.NOTES, title, (left, y), 1.2 * TEXT * size),
+        *(
+            Label(on.NOTES, note, (left, y - (1.5 * line + 0.3) * TEXT * size), 0.75 * TEXT * size)
+            for line, note in enumerate(notes, 1)
+        ),
+    ]
+    return Drawing(layers, (*shapes, *words), size, title, notes)

@@ -1,0 +1,85 @@
+"""Sections of a report on a design that swings: its numbers, its curves' extremes, where its errors come from."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+from ...model.swing.errors import error_shares
+from ...model.swing.summary import SwingSummary, summarise
+from ...model.swing.swing import Swing
+from ...objectives.kinds import shown_in, unit_text
+from ..designs.shown_units import record_in
+from ..designs.swing_curves import driven, error_kind
+from ..figures.numerals import length, rounded
+from ..swing.record import swing_lines, swing_record, swing_title
+from ..text.extremes import extremes_line
+from .document import Block, Paragraph, Section, Table
+from .subject import Subject
+
+
+class SwingOfSubject:
+    """The swing of the design of a report, computed once."""
+
+    def __init__(self, subject: Subject, swing: Swing) -> None:
+        self._subject, self._swing = subject, swing
+
+    @cached_property
+    def found(self) -> SwingSummary:
+        """The numbers of the swing."""
+        design = self._subject.design
+        return summarise(design.mechanism, design.linkage, self._swing)
+
+    def section(self) -> Section:
+        """Return the numbers of the swing, and the extremes of its curves."""
+        record = record_in(swing_record(self._subject.design.mechanism, self.found), self._subject.system)
+        lines = tuple(
+            (name, value if isinstance(value, str) else rounded(value), unit_text(unit), place)
+            for name, value, unit, place in swing_lines(record)
+        )
+        blocks: list[Block] = [
+            Table(swing_title(record), ("", "value", "unit", "where"), lines, (0.38, 0.14, 0.08, 0.4), frozenset({1})),
+            *(Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"]),
+        ]
+        unit = shown_in("mm", self._subject.system)[0]
+        heads = ("curve", "least", "at, deg", f"slider, {unit}", "greatest", "at, deg", f"slider, {unit}", "unit")
+        rows = tuple(
+            tuple(unit_text(cell).replace("-", "−") for cell in extremes_line(entry))
+            for entry in record["extremes"].values()
+        )
+        title, wide = "Extremes of the curves over both ways", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
+        blocks.append(Table(title, heads, rows, wide, frozenset(range(1, 7))))
+        return Section("The swing", tuple(blocks))
+
+    def tolerances(self) -> Section | None:
+        """Return where the error of the driven side comes from; None for a job without tolerances."""
+        worst, design, system = self.found.position_error, self._subject.design, self._subject.system
+        if worst is None:
+            return None
+        shares = error_shares(design.mechanism, design.linkage, self.found.swing, worst.crank_angle)
+        total, face = sum(share.error for share in shares), error_kind(self.found.swing).metric
+        unit, factor = shown_in(face.symbol, system)
+        rows = tuple(
+            (
+                share.source,
+                f"{rounded(math.degrees(share.limit))} deg"
+                if share.source == "crank angle"
+                else length(1e3 * share.limit, system, 6),
+                rounded(factor * face.factor * share.error),
+                f"{100.0 * share.error / total:.1f}",
+            )
+            for share in shares
+        )
+        what = "crank angle" if driven(self.found.swing) == "crank" else "slider position"
+        said = (
+            f"The {what} is off by {rounded(factor * face.factor * worst.value)} {unit} at most, at a crank angle of "
+            f"{rounded(math.degrees(worst.crank_angle))} deg: worst case of all sources, to first order."
+        )
+        table = Table(
+            f"Where the error of the {what} comes from there",
+            ("source", "limit", f"adds, {unit}", "share, %"),
+            rows,
+            (0.4, 0.2, 0.2, 0.2),
+            frozenset({1, 2, 3}),
+        )
+        return Section("Tolerances", (Paragraph(said), table))
