@@ -46,7 +46,7 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     expect(following).to_be_focused()
     expect(following).to_have_text("Balance")
     page.get_by_role("tab", name="Start up").click()
-    expect(panel).to_contain_text("[drive]")
+    expect(panel).to_contain_text("give it under “Motor and flywheel”. Change the job")
     expect(panel.locator("img")).to_have_count(0)
 
 

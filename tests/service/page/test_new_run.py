@@ -129,6 +129,15 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
         expect(status(page)).to_have_text("One thing to correct.")
         field.fill(before)
         expect(field, label).not_to_have_attribute("aria-invalid", "true")
+    page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("equals")
+    exact = page.get_by_label("time ratio, exactly")
+    exact.fill("1.5")  # more than the least transmission angle leaves
+    expect(exact).to_have_attribute("aria-invalid", "true")
+    expect(page.locator(f"#{exact.get_attribute('aria-describedby')}")).to_contain_text("got exactly 1.5")
+    expect(page.get_by_text("Time ratio exactly 1.5 is asked, at the nearest 1.2")).to_be_visible()
+    page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("max")
+    page.get_by_label("time ratio, at most").fill("1.1")
+    ready(page)
     for label, typed, number, said in (
         ("rod, from", "3 in + 5 mm", "81.2", '"3 in + 5 mm" = 81.2 mm'),
         ("rod, to", "1,500", "1500", '"1,500" is read as 1500 mm; write 1.500 if you mean that.'),

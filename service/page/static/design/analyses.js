@@ -2,6 +2,8 @@
 
 import { address, get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { link } from "../lib/address.js";
+import { capital, inWords } from "../lib/words.js";
 import { scrolled } from "./numbers.js";
 import { proof } from "./proof.js";
 
@@ -73,7 +75,7 @@ export function analyses(place, { job, number, drawn, signal }) {
     }
     const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
-    const head = h("p", { class: "quiet hint" }, `${shows.charAt(0).toUpperCase()}${shows.slice(1)}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
+    const head = h("p", { class: "quiet hint" }, `${capital(shows)}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
     fill(panel, head, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     try {
       const found = await get(path, { ...lengths }, signal);
@@ -84,8 +86,8 @@ export function analyses(place, { job, number, drawn, signal }) {
       fill(panel, head, h("div", { class: "analysis-columns" }, h("div", {}, told.map(block)), picture));
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
-      const sentence = sentenceOf(error);
-      fill(panel, head, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`));
+      const lacks = statusOf(error) === 422;
+      fill(panel, head, h("p", { class: lacks ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
     }
   }
 

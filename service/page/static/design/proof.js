@@ -2,6 +2,7 @@
 
 import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { capital, inWords } from "../lib/words.js";
 
 const SHARE = 100; // percent
 const LONGEST = 20; // s, what the service gives a proof
@@ -23,8 +24,7 @@ export function proof({ job, signal }) {
       fill(answer, h("p", { class: found.proven ? "good" : "at-limit" }, first), others.map((sentence) => h("p", {}, sentence)));
     } catch (error) {
       if (isAbort(error)) return;
-      const sentence = sentenceOf(error);
-      fill(answer, h("p", { class: "quiet" }, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`));
+      fill(answer, h("p", { class: "quiet" }, `${capital(inWords(sentenceOf(error)))}.`));
     } finally {
       button.disabled = false;
     }

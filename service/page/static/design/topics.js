@@ -3,6 +3,7 @@
 import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { readySystem } from "../lib/numbers.js";
+import { capital, inWords } from "../lib/words.js";
 import { extremes } from "./extremes.js";
 import { sensitivity } from "./sensitivity.js";
 import { tolerances } from "./tolerances.js";
@@ -30,7 +31,7 @@ export function topics(place, { job, number, objectives, requirements, signal })
     const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     const section = h("section", { class: name }, h("h2", {}, title), body);
     if (name === "tolerances" && !requirements.tolerances) {
-      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; add some to it, such as crank = 0.05 mm."));
+      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; give it some, such as 0.05 mm of the crank."));
       return section;
     }
     const watcher = new IntersectionObserver(async (seen) => {
@@ -40,7 +41,7 @@ export function topics(place, { job, number, objectives, requirements, signal })
         const [{ analysis }] = await Promise.all([get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal), readySystem()]);
         show(body, analysis[name], { objectives, signal });
       } catch (error) {
-        if (!isAbort(error)) fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, sentence(sentenceOf(error))));
+        if (!isAbort(error)) fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}.`));
       }
     }, { rootMargin: NEAR });
     watcher.observe(section);
@@ -48,9 +49,4 @@ export function topics(place, { job, number, objectives, requirements, signal })
     return section;
   });
   fill(place, sections);
-}
-
-/** @param {string} text */
-function sentence(text) {
-  return `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 }

@@ -5,7 +5,7 @@ import { h } from "../lib/dom.js";
 import { plain } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { inWords } from "./words.js";
+import { inWords } from "../lib/words.js";
 
 const WAIT = 400; // ms after the last letter until the table is read
 const SHOWN = 6; // names of options

@@ -2,6 +2,7 @@
 
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
+import { capital, inWords } from "../lib/words.js";
 import { limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
@@ -40,7 +41,7 @@ function told(unchecked, understood, said = []) {
   return [
     unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
     [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
-    said.map((sentence) => h("p", { class: "warning" }, sentence)),
+    said.map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   ];
 }

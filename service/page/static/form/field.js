@@ -2,7 +2,7 @@
 
 import { h } from "../lib/dom.js";
 import { idOf, written } from "./path.js";
-import { inWords, WORDS } from "./words.js";
+import { capital, inWords, WORDS } from "../lib/words.js";
 
 const CONTROLS = "input, select, textarea";
 
@@ -118,9 +118,4 @@ function below(one, path) {
   const key = path.slice(one.key.length).replace(/^[. ]/, "");
   const numbers = one.controls.filter((control) => control instanceof HTMLInputElement);
   return key in WORDS && numbers.length < 2 ? "" : `${WORDS[key] ?? key.replaceAll("_", " ").replaceAll(".", ", ")}: `;
-}
-
-/** @param {string} text */
-function capital(text) {
-  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -2,6 +2,7 @@
 
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
+import { inWords } from "../lib/words.js";
 
 /** Return what to say of a job that has ended otherwise than done; null of one that is done. @param {Api.Job} job */
 export function outcome(job) {
@@ -24,5 +25,5 @@ export function outcome(job) {
 
 /** @param {string} heading @param {string} reason @param {Dom.Child[]} remedy */
 function said(heading, reason, remedy) {
-  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, reason), h("p", {}, remedy));
+  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, inWords(reason)), h("p", {}, remedy));
 }

@@ -1,4 +1,4 @@
-/** Sentences of the service in the words of the form: its messages name the keys of a job file, which the form has no need of. */
+/** Sentences of the service in the words of the page: its messages name the keys of a job file, which the page has no need of. */
 
 /** Titles of the parts of the form, by the tables of a job. @type {Record<string, string>} */
 const PARTS = {
@@ -14,11 +14,22 @@ const PARTS = {
   choice: "Choices",
   optimiser: "Search",
   quantity: "Formulas with names",
+  drive: "Motor and flywheel",
+  clearance: "Loose joint",
+  costs: "Tolerances",
+};
+/** Titles of the parts that have some keys of a table for themselves. @type {Record<string, string>} */
+const OWN = {
+  "mechanism.speed": "Motion",
+  "mechanism.speed_profile": "Motion",
+  "mechanism.cylinders": "Several cylinders on one crankshaft",
+  "mechanism.counterweight": "Counterweight",
 };
 
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
   [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
+  [/\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g, (whole, table, key) => (PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole)],
   [/got \[motion\] kind = "swing"/g, "got one that swings"],
   [/write kind = "swing"/g, "let the crank swing"],
   [/must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g, (_, count) => `must have two options or more; got ${count}; paste a table of them`],
@@ -33,19 +44,27 @@ const SAID = [
   [/(write|add) (?:it )?for example [a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g, (verb, _, __, value) => `${verb.startsWith("add") ? "add" : "write"} for example ${value}`],
   [/(min|max|equals|step|target) = "([^"]+)"/g, (_, word, value) => `${WORDS[word] ?? word} ${value}`],
   [/\[\[?(\w+)\]\]?/g, (whole, table) => (PARTS[table] ? `“${PARTS[table]}”` : whole)],
+  [/got constraints\.\w+ with equals/g, "got “exactly” among the requirements"],
+  [/\bgot (equals|min) (?=[\d.−-])/g, (_, word) => `got ${WORDS[word]} `],
+  [/\bgot max (?=[\d.−-])/g, "got at most "],
+  [/\b(got at least \S+(?: [^\d\s;]\S*)*) and max /g, "$1 and at most "],
   [/\b(constraints|objectives)\.(\w+)/g, (_, table, name) => `the ${table === "constraints" ? "requirement on" : "objective"} ${name.replaceAll("_", " ")}`],
   [/\b(?:variables|mechanism|tolerances|motion)\.(?=[a-z])/g, ""],
   [/must be an? ([a-z ]+): one number and one unit; got ""; write it like /g, (_, kind) => `needs a number: a ${kind}, such as `],
   [/is missing, but required; (?:add|write) for example /g, "is missing; give a value, such as "],
   [/require slow_stroke = "(\w+)"(?: among the constraints)?/g, (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
-  [/\bgot min (\S+ ?\S*) and max /g, "got at least $1 and at most "],
 ];
 
 /** Names of bounds, in words. @type {Record<string, string>} */
 export const WORDS = { min: "at least", max: "at most", equals: "exactly", target: "to come near to", step: "by" };
 
-/** Return a sentence of the service in the words of the form. @param {string} sentence */
+/** Return a sentence of the service in the words of the page. @param {string} sentence */
 export function inWords(sentence) {
   return SAID.reduce((text, [found, said]) => text.replace(found, /** @type {string} */ (said)), sentence);
+}
+
+/** Return a sentence with a capital at its beginning. @param {string} sentence */
+export function capital(sentence) {
+  return sentence.charAt(0).toUpperCase() + sentence.slice(1);
 }

@@ -1,0 +1,23 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { inWords } from "../../../../../service/page/static/lib/words.js";
+
+const SAID = [
+  ["with a least transmission angle of 40 deg it is at most 1.2862; got equals 1.5; lower it to that, or lower constraints.transmission_angle to 27.4576 deg at most",
+    "with a least transmission angle of 40 deg it is at most 1.2862; got exactly 1.5; lower it to that, or lower the requirement on transmission angle to 27.4576 deg at most"],
+  ["within the ranges at most 522.162 mm is possible; got min 900 mm and max 950 mm; ask for less", "within the ranges at most 522.162 mm is possible; got at least 900 mm and at most 950 mm; ask for less"],
+  ["it is at most 1.2; got min 1.5 and max 1.6; lower it", "it is at most 1.2; got at least 1.5 and at most 1.6; lower it"],
+  ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
+  ["a quantity that is held at one value cannot be an objective too; got constraints.time_ratio with equals; leave out one of the two",
+    "a quantity that is held at one value cannot be an objective too; got “exactly” among the requirements; leave out one of the two"],
+  ['it comes from masses and loads; got none that matter; add for example [mechanism] slider = { mass = "0.8 kg" }, or a [[load]]', "it comes from masses and loads; got none that matter; give it under “Masses and loads”"],
+  ['it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"', "it comes from a turning crank; got speed 0; give it under “Motion”"],
+  ["a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle", "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle"],
+  ["it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md", "it comes from a material and pins; got none; give it under “Material and pins”"],
+  ["forward dynamics needs a motor; got a mechanism without a drive; add a [drive]", "forward dynamics needs a motor; got a mechanism without a drive; give it under “Motor and flywheel”"],
+];
+
+for (const [sentence, words] of SAID) {
+  test(`"${sentence.slice(0, 40)} ..." has the words of the page`, () => assert.equal(inWords(sentence), words));
+}
