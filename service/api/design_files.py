@@ -77,17 +77,19 @@ def show_motion(shown: ShownDep) -> Response:
     from ..motion.player_page import player_page
 
     of = shown.design
-    content = player_page(of.mechanism, of.linkage, name=shown.found.result.name, design=shown.words)
+    named = {"name": shown.found.result.name, "design": shown.words}
+    content = player_page(of.mechanism, of.linkage, swing=of.part.motion, **named)
     return _file(shown, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **of_type("image/gif"))
 def animate_linkage(shown: ShownDep) -> Response:
-    """Give the moving linkage as an animated GIF of one turn of the crank."""
+    """Give the moving linkage as an animated GIF: a turn of the crank, or a swing forth and back."""
     from ..motion.animated_gif import animated_gif
 
-    of, name = shown.design, shown.found.result.name
-    content = _made(shown, "gif", lambda: animated_gif(of.mechanism, of.linkage, name=name, design=shown.words))
+    of, named = shown.design, {"name": shown.found.result.name, "design": shown.words}
+    swing = of.part.motion
+    content = _made(shown, "gif", lambda: animated_gif(of.mechanism, of.linkage, swing=swing, **named))
     return _file(shown, "gif", "image/gif", content, label="-motion")
 
 

@@ -78,8 +78,8 @@ def export(
         of_table = csv is not None or json is not None
         number = choice.number(result, run, None if choice.design is not None and of_table else where)
         found = stored_design(problem_of(folder, result), result, number)
-        for option in files.keys() & {"--cycle", "--motion", "--gif"}:
-            require_turning(found.part, option)
+        if "--cycle" in files:
+            require_turning(found.part, "--cycle")
         named = {"name": result.name, "design": f"design {number}"}
         with waiting("drawing"):
             made = {file: _content(option, found, angle, units, **named) for option, file in files.items()}
@@ -111,11 +111,11 @@ def _content(option: str, found: StoredDesign, angle: float | None, units: Syste
     if option == "--motion":
         from ..motion.player_page import player_page
 
-        return player_page(found.mechanism, found.linkage, **named)
+        return player_page(found.mechanism, found.linkage, swing=found.part.motion, **named)
     if option == "--gif":
         from ..motion.animated_gif import animated_gif
 
-        return animated_gif(found.mechanism, found.linkage, **named)
+        return animated_gif(found.mechanism, found.linkage, swing=found.part.motion, **named)
     from ..drawings.design_drawing import design_drawing
 
     drawing = design_drawing(found, crank_angle=angle, **named)

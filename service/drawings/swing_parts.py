@@ -161,6 +161,13 @@ def _push(layer: Layer, slider: Point, of: Cylinder, look: Look) -> Outline:
     return box(layer, (slider[0] + of.side * 0.75 * look.block, slider[1]), (of.face, slider[1]), 0.3 * of.width)
 
 
+def cylinder_parts(of: Cylinder, look: Look) -> tuple[Outline, Outline]:
+    """Return the whole rod of the cylinder about the slider pin, a part of which is in the barrel, and the barrel."""
+    near = look.reach[0] if of.side > 0.0 else look.reach[1]
+    rod = box(on.ACTUATOR, (of.side * 0.75 * look.block, 0.0), (of.face - near, 0.0), 0.3 * of.width)
+    return rod, box(on.ACTUATOR, (of.face, look.offset), (of.foot, look.offset), of.width)
+
+
 def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     """Return a rectangle about a level line."""
     half = 0.5 * width

@@ -1,47 +1,93 @@
-"""The moving linkage as an animated GIF: one turn of the crank, over and over."""
+"""The moving linkage as an animated GIF: one turn of the crank, or one swing forth and back, over and over."""
 
 from __future__ import annotations
 
 import io
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
 from ..drawings.parts import look_of, moving, pins_at, scenery
+from ..drawings.shapes import Shape
+from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..figures.painting import paint, show_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
+from .swing_play import swung
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 FRAMES, MILLISECONDS = 60, 60
-"""Of a turn, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
+"""Of a turn or a swing, and how long each is shown: 3.6 s, whatever the speed of the machine is."""
 _WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
 _COLOURS = 32
 _WHITE = 246  # of 255; the fill of the slider is just below
 
 
-def animated_gif(mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "") -> bytes:
-    """Return one fully turning linkage as an animated GIF, which turns as the machine does.
+def animated_gif(
+    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
+) -> bytes:
+    """Return one linkage as an animated GIF, which turns as the machine does, or swings by its law of motion.
 
-    name: of the run. design: which of it, "design 3". Raises `AssemblyError` for a linkage that does not turn fully.
+    name: of the run. design: which of it, "design 3". swing: what the crank makes instead of turning fully. Raises
+    `AssemblyError` for a linkage that does not turn fully, or what `require_swing` raises.
     """
-    frames = _frames(mechanism, linkage, f"{name}, {design}" if design else name)
+    scene = _turning(mechanism, linkage) if swing is None else _swinging(mechanism, linkage, swing)
+    frames = _frames(scene, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
     frames[0].save(out, format="GIF", save_all=True, disposal=1, **options)
     return out.getvalue()
 
 
-def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]:
+@dataclass(frozen=True)
+class _Scene:
+    """What is shown: still shapes, and of each frame its shapes and what is read out. dashed: what is dashed."""
+
+    extent: tuple[float, float, float, float]
+    size: float
+    still: list[Shape]
+    frames: list[tuple[list[Shape], str]]
+    dashed: str
+
+
+def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
+    look = look_of(mechanism, linkage)
+    turn = -1.0 if mechanism.speed < 0.0 else 1.0
+    frames = []
+    for step in range(FRAMES):
+        angle = turn * 2.0 * math.pi * step / FRAMES
+        pin, slider = pins_at(linkage, angle)
+        degrees = round(math.degrees(angle)) % 360
+        frames.append((moving(pin, slider, look), f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"))
+    return _Scene(look.extent, look.size, scenery(linkage, look, below=True), frames, "dead centres dashed")
+
+
+def _swinging(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
+    of = swing_look(mechanism, linkage, swing)
+    ways = swung(mechanism, of.linkage, of.swing, FRAMES)
+    frames = []
+    for way, angle in (
+        (way, angle)
+        for way, of_way in zip(("forth", "back"), ways, strict=True)
+        for angle in of_way.crank_angle.tolist()
+    ):
+        slider = pins_at(of.linkage, angle)[1]
+        told = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {slider[0]:.5g} mm"
+        frames.append((swing_moving(of, angle), told))
+    return _Scene(of.extent, of.look.size, swing_scenery(of), frames, "ends of the swing dashed")
+
+
+def _frames(scene: _Scene, title: str) -> list[Picture]:
     from PIL import Image
 
-    look = look_of(mechanism, linkage)
-    left, low, right, high = look.extent
-    margin = 0.03 * look.size
+    left, low, right, high = scene.extent
+    margin = 0.03 * scene.size
     wide, tall = right - left + 2.0 * margin, high - low + 2.0 * margin
     height = min(_TALLEST, _WIDTH * tall / wide)
     figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
@@ -49,22 +95,18 @@ def _frames(mechanism: Mechanism, linkage: Linkage, title: str) -> list[Picture]
     axes = place(figure, 0.0, _FOOT, _WIDTH, height)
     show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     write(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
-    write(figure, 0.15, 0.12, "dead centres dashed", fontsize=SMALL, color=MUTED)
-    paint(axes, scenery(linkage, look, below=True))
+    write(figure, 0.15, 0.12, scene.dashed, fontsize=SMALL, color=MUTED)
+    paint(axes, scene.still)
     reading = figure.text(1.0 - 0.15 / _WIDTH, 0.12 / (height + _HEAD + _FOOT), "", fontsize=TEXT, ha="right")
-    turn = -1.0 if mechanism.speed < 0.0 else 1.0
     canvas = figure.canvas
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[attr-defined]
     found: list[Picture] = []
     palette = None
-    for step in range(FRAMES):
-        angle = turn * 2.0 * math.pi * step / FRAMES
-        pin, slider = pins_at(linkage, angle)
-        degrees = round(math.degrees(angle)) % 360
-        reading.set_text(f"crank angle {degrees}°, slider at {slider[0]:.5g} mm".replace("-", "−"))
+    for shapes, told in scene.frames:
+        reading.set_text(told.replace("-", "−"))
         canvas.restore_region(still)  # type: ignore[attr-defined]
-        for artist in (reading, *paint(axes, moving(pin, slider, look))):
+        for artist in (reading, *paint(axes, shapes)):
             figure.draw_artist(artist)
             if artist is not reading:
                 artist.remove()

@@ -7,105 +7,77 @@ import math
 from html import escape
 from pathlib import Path
 from string import Template
-from typing import Any
-
-import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
 from ...objectives.kinds import unit_text
 from ...optimise.front.constant import is_constant
-from ..designs.cycle_table import CurveColumn, cycle_table
+from ..designs.cycle_table import CurveColumn
 from ..drawings import layers as on
-from ..drawings.parts import bar, block, in_words, look_of, scenery
-from ..drawings.shapes import Circle, Shape
 from ..drawings.svg import elements, group
 from ..figures.numerals import shown as number
+from .play import ANGLES, Play, play_of_turn
+from .swing_play import play_of_swing
 
-ANGLES = 360
 _PLAYER = Path(__file__).parent / "player"
-_READOUT = (
-    "slider_position_mm",
-    "slider_velocity",
-    "slider_acceleration",
-    "transmission_angle_deg",
-    "torque_Nm",
-)
-"""Curves that are read out, and their strips, by how their keys begin."""
-_STRIP = (360.0, 64.0)  # width, one unit a degree, and height
-_STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.FRAME)
+_STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a turn, and height
+_STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME)
 
 
-def player_page(mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "") -> bytes:
-    """Return one fully turning linkage as an HTML file that plays its motion.
+def player_page(
+    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
+) -> bytes:
+    """Return one linkage as an HTML file that plays its motion.
 
-    The script turns the crank and looks up everything else, one degree apart, in curves that are in the file. name: of
-    the run. design: which of it, "design 3". Raises `AssemblyError` for a linkage that does not turn fully.
+    The script turns the crank and looks up everything else in curves that are in the file: one degree apart, or, of a
+    linkage that swings, at even times of its way forth and back. name: of the run. design: which of it, "design 3".
+    swing: what the crank makes instead of turning fully. Raises `AssemblyError` for a linkage that does not turn fully,
+    or what `require_swing` raises.
     """
-    curves = cycle_table(mechanism, linkage, angles=ANGLES)
-    shown = [column for key in _READOUT for column in curves if column.key.startswith(key)]
+    play = play_of_turn(mechanism, linkage) if swing is None else play_of_swing(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name
-    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
     template = Template((_PLAYER / "player.html").read_text(encoding="utf-8"))
     page = template.substitute(
         title=escape(title),
-        summary=escape(_summary(mechanism, linkage)),
+        summary=escape(play.summary),
         style=(_PLAYER / "player.css").read_text(encoding="utf-8"),
         script=(_PLAYER / "player.js").read_text(encoding="utf-8"),
-        data=_data(mechanism, linkage, shown),
-        drawing=_drawing(mechanism, linkage, title),
-        strips="\n".join(_strip(column, inner, outer) for column in shown),
-        readout="\n".join(_row(column) for column in shown),
+        data=_data(play),
+        drawing=_drawing(play, title),
+        strips="\n".join(_strip(column, play.marks) for column in play.columns),
+        readout="\n".join(_row(column) for column in play.columns),
+        control=play.words.control,
+        times=play.words.times,
+        over=play.words.over,
+        note=play.words.note,
     )
     return page.encode()
 
 
-def _summary(mechanism: Mechanism, linkage: Linkage) -> str:
-    rpm = mechanism.speed * 30.0 / math.pi
-    turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
-    return f"{in_words(linkage, 6)}; {turning}"
-
-
-def _data(mechanism: Mechanism, linkage: Linkage, shown: list[CurveColumn]) -> str:
+def _data(play: Play) -> str:
     """Return the data of the script as JSON that may stand in HTML."""
-    turn = linkage.at(np.arange(ANGLES) * (2.0 * math.pi / ANGLES))
-    rod = np.degrees(np.unwrap(turn.rod_angle))
-    record: dict[str, Any] = {
-        "crank": 1e3 * float(linkage.crank),
-        "offset": 1e3 * float(linkage.offset),
-        "slider": [round(1e3 * float(x), 9) for x in turn.slider_position],
-        "rod": [round(float(angle), 7) for angle in rod],
-        "direction": -1 if mechanism.speed < 0.0 else 1,
-        "turnsPerSecond": abs(mechanism.speed) / (2.0 * math.pi),
-        "curves": {
-            column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
-            for column in shown
-        },
+    curves = {
+        column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
+        for column in play.columns
     }
+    record = {**play.record, "times": play.words.times, "curves": curves}
     return json.dumps(record, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def _drawing(mechanism: Mechanism, linkage: Linkage, title: str) -> str:
-    look = look_of(mechanism, linkage)
-    (left, low, right, high), size = look.extent, look.size
+def _drawing(play: Play, title: str) -> str:
+    (left, low, right, high), size = play.extent, play.size
     margin = 0.04 * size
     frame = f"{left - margin:.9g} {-high - margin:.9g} {right - left + 2 * margin:.9g} {high - low + 2 * margin:.9g}"
-    still = scenery(linkage, look, below=True)
-    pin = (0.0, 0.0)
-    moving: dict[str, Shape] = {  # each in its own coordinates
-        "slider": block(on.SLIDER, pin, look.block),
-        "rod": bar(on.ROD, pin, (look.rod, 0.0), look.rod_width),
-        "crank": bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width),
-        **dict.fromkeys(("pivot", "crank-pin", "slider-pin"), Circle(on.PINS, pin, look.pin)),
-    }
     lines = [f'<svg id="drawing" viewBox="{frame}" role="img" aria-label="{escape(title, quote=True)}, moving">']
     for layer in _STILL:
-        lines.append(group(layer, size))
-        lines += [line for shape in still if shape.layer is layer for line in elements(shape)]
-        lines.append("</g>")
-    for name, shape in moving.items():
-        start = group(shape.layer, size).replace(f'id="{shape.layer.name}"', f'id="{name}" class="part"', 1)
-        lines += [start, *elements(shape), "</g>"]
+        shapes = [shape for shape in play.still if shape.layer is layer]
+        if shapes:
+            lines += [group(layer, size), *(line for shape in shapes for line in elements(shape)), "</g>"]
+    for name, shapes in play.moving.items():
+        layer = shapes[0].layer
+        lines.append(group(layer, size).replace(f'id="{layer.name}"', f'id="{name}" class="part"', 1))
+        lines += [*(line for shape in shapes for line in elements(shape)), "</g>"]
     return "\n".join([*lines, "</svg>"])
 
 
@@ -116,14 +88,12 @@ def _row(column: CurveColumn) -> str:
     )
 
 
-def _strip(column: CurveColumn, inner: float, outer: float) -> str:
-    """Return a small picture of a curve with dead centres, deg, and a line that the script moves."""
+def _strip(column: CurveColumn, marks: tuple[float, ...]) -> str:
+    """Return a small picture of a curve with marks, deg, and a line that the script moves."""
     known = [value for value in column.values if math.isfinite(value)]
     low, high = (min(known), max(known)) if known else (0.0, 1.0)
     span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
-    lines = [
-        f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in (inner, outer)
-    ]
+    lines = [f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in marks]
     if low < 0.0 < high:
         zero = _height(0.0, low, span)
         lines.append(f'<line class="zero" x1="0" x2="{_STRIP[0]:g}" y1="{zero:.2f}" y2="{zero:.2f}"/>')

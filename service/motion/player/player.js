@@ -2,8 +2,9 @@
 /** @type {(id: string) => HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id)); // player.html has them all
 /**
- * Curves have a value each degree; lengths are mm, angles deg.
- * @type {{ crank: number, offset: number, direction: number, turnsPerSecond: number, slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
+ * Curves have a value each degree; of a crank that swings each 360th of the way forth and back, angles are its own there.
+ * Lengths are mm, angles deg.
+ * @type {{ crank: number, offset: number, direction: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
  */
 const data = JSON.parse(at("data").textContent ?? "");
 const slide = /** @type {HTMLInputElement} */ (at("angle"));
@@ -40,21 +41,23 @@ function put(id, x, y, turn = 0) {
 }
 
 function draw() {
-  const radians = (angle * Math.PI) / 180;
+  const crank = data.angles ? (between(data.angles, angle) ?? NaN) : angle;
+  const radians = (crank * Math.PI) / 180;
   const x = data.crank * Math.cos(radians);
   const y = data.crank * Math.sin(radians);
   const slider = between(data.slider, angle) ?? NaN;
-  put("crank", 0, 0, angle);
+  put("crank", 0, 0, crank);
   put("crank-pin", x, y);
   put("rod", x, y, between(data.rod, angle) ?? NaN);
   put("slider", slider, data.offset);
   put("slider-pin", slider, data.offset);
+  if (document.getElementById("push")) put("push", slider, data.offset);
   for (const cursor of cursors) {
     cursor.setAttribute("x1", String(angle));
     cursor.setAttribute("x2", String(angle));
   }
   for (const output of outputs) output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
-  at("angle-now").textContent = `${angle.toFixed(0)}\u00b0`;
+  at("angle-now").textContent = `${crank.toFixed(0).replace("-", "\u2212")}\u00b0`;
   if (document.activeElement !== slide || playing) slide.value = String(angle);
 }
 
@@ -78,10 +81,10 @@ function play(on) {
   if (on) requestAnimationFrame(frame);
 }
 
-if (data.turnsPerSecond > 0 && data.turnsPerSecond <= 5) {
+if (data.perSecond > 0 && data.perSecond <= 5) {
   const option = document.createElement("option");
-  option.value = String(data.turnsPerSecond);
-  option.textContent = `as it runs, ${Number((60 * data.turnsPerSecond).toPrecision(4))} turns a minute`;
+  option.value = String(data.perSecond);
+  option.textContent = `as it runs, ${Number((60 * data.perSecond).toPrecision(4))} ${data.times}`;
   speed.append(option);
 }
 at("play").addEventListener("click", () => play(!playing));

@@ -100,4 +100,4 @@ def test_a_machine_turns_its_own_way_round() -> None:
     assert data_of(player_page(replace(Mechanism(), speed=-4.0), LINKAGES["offset"], name=""))["direction"] == -1
     data = data_of(player_page(replace(Mechanism(), speed=4.0), LINKAGES["offset"], name=""))
     assert data["direction"] == 1
-    assert data["turnsPerSecond"] == pytest.approx(4.0 / (2.0 * math.pi))
+    assert data["perSecond"] == pytest.approx(4.0 / (2.0 * math.pi))

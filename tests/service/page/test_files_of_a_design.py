@@ -10,7 +10,9 @@ import pytest
 from playwright.sync_api import Browser
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.swing.swing import Swing
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.motion.player_page import player_page
 from slidercrank.service.report.design_report import design_report
@@ -54,6 +56,37 @@ def test_the_page_plays_in_a_browser_and_fetches_nothing(browser: Browser, tmp_p
     page.close()
     assert wrong == []
     assert asked == [file.as_uri()]
+
+
+def test_a_swing_plays_with_its_cylinder_and_body(browser: Browser, tmp_path: Path) -> None:
+    linkage, body = Linkage(1.4, 1.8, -0.05), RigidLink(mass=1200.0, centre=1.1, centre_across=0.15)
+    swing = Swing(start=0.2, end=1.7, driver="slider", law="polynomial", duration=20.0)
+    file = tmp_path / "swing.html"
+    file.write_bytes(player_page(Mechanism(crank=body), linkage, name="Support", swing=swing))
+    page = browser.new_page(reduced_motion="reduce")
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto(file.as_uri())
+    place = page.get_by_role("slider", name="Forth and back")
+    ends = [1e3 * float(linkage.at(angle).slider_position) for angle in (0.2, 1.7)]
+    for phase, x, degrees in (
+        (0, ends[0], 11),
+        (90, 0.5 * sum(ends), None),
+        (180, ends[1], 97),
+        (270, 0.5 * sum(ends), None),
+    ):
+        place.fill(str(phase))
+        for part in ("slider", "push", "slider-pin"):
+            moved = page.locator(f"#{part}").get_attribute("transform") or ""
+            assert float(moved.split("(")[1].split()[0]) == pytest.approx(x, rel=1e-7), part
+        if degrees is not None:
+            assert page.locator("#angle-now").text_content() == f"{degrees}°"
+    assert page.locator("option", has_text="as it runs").text_content() == "as it runs, 1.5 swings a minute"
+    page.set_viewport_size({"width": 390, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    assert findings(page) == []
+    page.close()
+    assert wrong == []
 
 
 def test_the_page_stands_still_for_who_wants_no_motion(browser: Browser, tmp_path: Path) -> None:
