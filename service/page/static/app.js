@@ -3,6 +3,7 @@
 import { isAbort, sentenceOf } from "./lib/api.js";
 import { read } from "./lib/address.js";
 import { byId, fill, h } from "./lib/dom.js";
+import { watchDownloads } from "./lib/download.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 
@@ -80,6 +81,7 @@ document.querySelector(".skip")?.addEventListener("click", (event) => {
   byId("main").focus();
 });
 window.addEventListener("hashchange", showView);
+watchDownloads();
 showPreferences();
 const units = readySystem().catch(() => {}); // what is wrong with the service, the view says
 if (system() === "inch") units.then(showView);

@@ -283,9 +283,14 @@ def test_the_way_back_is_to_the_front_as_it_was_left(opened: Opened, solved: Sol
     page.evaluate("sessionStorage.clear()")
 
 
+def exports(page: Page) -> Locator:
+    """Return the links of the menu of exports, open or not."""
+    return page.get_by_role("navigation", name="Take away").locator("a")
+
+
 def test_everything_to_take_away_is_linked(opened: Opened, solved: Solved) -> None:
     page = opened()
-    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    links = exports(page)
     design = f"api/v1/jobs/{solved.number}/designs/3"
     assert links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))") == [
         *(f"{design}/{name}" for name in ("linkage.dxf", "linkage.svg", "motion.html", "motion.gif")),
@@ -296,24 +301,27 @@ def test_everything_to_take_away_is_linked(opened: Opened, solved: Solved) -> No
 
 def test_what_is_taken_away_is_the_design_on_the_screen(opened: Opened, solved: Solved, service: str) -> None:
     page = opened()
-    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    links = exports(page)
     bare = links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))")
     row = solved.result.designs[2]
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     expect(page.get_by_role("navigation", name="Take away")).to_contain_text("of design 3, changed")
     expect(page.locator(".numbers td[data-design='What if'][data-key='crank_mm']")).to_be_visible()
     shown = dict(page.locator(".numbers td[data-design='What if'][data-value]").evaluate_all(NUMBERS))
-    href = page.get_by_role("link", name="DXF").get_attribute("href")
+    href = links.first.get_attribute("href")
     document = ezdxf.filemanagement.read(io.StringIO(httpx.get(f"{service}/{href}").text))
     skeleton = document.modelspace().query('LINE[layer=="SKELETON"]')
     drawn = sorted((line.dxf.end - line.dxf.start).magnitude for line in skeleton)
     assert drawn == pytest.approx([float(shown["crank_mm"]), float(shown["rod_mm"])], rel=1e-9)
     assert drawn[0] != pytest.approx(row["crank_mm"], rel=1e-3)
+    page.get_by_role("navigation", name="Take away").get_by_text("Export", exact=True).click()
     with page.expect_download() as taken:
         page.get_by_role("link", name="Sheet SVG").click()
+    expect(page.get_by_role("link", name="Sheet SVG")).not_to_have_attribute("aria-busy", "true")
     assert taken.value.suggested_filename == f"short-test-job-{solved.number}-design-3-changed-sheet.svg"
     for link in links.all():
         assert "crank_mm=" in str(link.get_attribute("href"))
+    page.keyboard.press("Escape")
     page.get_by_role("button", name="Reset").click()
     expect(page.get_by_role("navigation", name="Take away")).not_to_contain_text("changed")
     assert links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))") == bare
@@ -333,7 +341,7 @@ def test_units_are_the_readers(opened: Opened) -> None:
     page.get_by_label("Units").select_option("inch")
     assert float(cell.inner_text()) == pytest.approx(millimetres / 25.4, rel=1e-4)
     assert float(page.get_by_label("Crank", exact=True).input_value()) == pytest.approx(millimetres / 25.4, rel=1e-4)
-    links = page.get_by_role("navigation", name="Take away").get_by_role("link")
+    links = exports(page)
     asked = {str(link.get_attribute("href")).rpartition("/")[2] for link in links.all()}
     assert {name for name in asked if name.endswith("?units=inch")} == {
         f"{name}?units=inch" for name in ("report.html", "report.pdf", "design_3.png", "design_3.svg")

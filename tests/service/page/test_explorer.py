@@ -214,8 +214,9 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     field(page, "At least least transmission angle").press("Enter")
     kept = best[4::-1]  # five of eight, the least angle first
     expect_designs(page, kept)
+    page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
-        page.get_by_role("button", name="Download 5 chosen as CSV").click()
+        page.get_by_role("button", name="5 chosen, as sorted, as CSV").click()
     table = list(csv.DictReader(download.value.path().read_text().splitlines()))
     assert [int(row["number"]) for row in table] == kept
     assert [float(row["rod_mm"]) for row in table] == [solved.result.designs[number - 1]["rod_mm"] for number in kept]

@@ -69,6 +69,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     page.locator(".what-if summary").filter(has_text="Keep this design").press("Enter", timeout=PATIENCE)
     typed(page.get_by_label("Name"), "Rounded")
     page.get_by_role("button", name="Keep", exact=True).press("Enter")
+    page.get_by_text("Export", exact=True).press("Enter")
     drawing = ezdxf.readfile(  # type: ignore[attr-defined]
         downloaded(page, page.get_by_role("link", name="DXF", exact=True), tmp_path)
     )
@@ -82,12 +83,13 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     expect(page.locator(".decision")).to_contain_text("Decided for Rounded because round numbers", timeout=PATIENCE)
 
 
-def test_studying_a_published_case_to_a_curve_over_the_slider_position(
+def test_studying_a_published_case_to_a_curve_over_the_slider_position_by_keyboard(
     open_page: Open, solved: Solved, tmp_path: Path
 ) -> None:
     page = open_page(solved.store, f"#/jobs/{solved.number}", accept_downloads=True, reduced_motion="reduce")
-    page.get_by_role("link", name="Open the design of the picture").click(timeout=PATIENCE)
-    page.locator("select[name=over]").select_option("position", timeout=PATIENCE)
+    page.get_by_role("link", name="Open the design of the picture").press("Enter", timeout=PATIENCE)
+    page.locator("select[name=over]").press("s", timeout=PATIENCE)  # as "slider position" begins
+    expect(page.locator("select[name=over]")).to_have_value("position")
     chart = page.locator("figure[data-key='torque_Nm'] svg")
     expect(chart).to_have_attribute("aria-label", re.compile("over the slider position"), timeout=PATIENCE)
     page.wait_for_url("**over=position*")
@@ -101,7 +103,7 @@ def test_studying_a_published_case_to_a_curve_over_the_slider_position(
     assert all(row["torque_Nm"] for row in rows)
 
 
-def test_deciding_together_in_two_windows(browser: Browser, solved: Solved, tmp_path: Path) -> None:
+def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: Solved, tmp_path: Path) -> None:
     wrong: list[str] = []
     back_up(solved.store, tmp_path / "store.db")
     with (
@@ -114,13 +116,14 @@ def test_deciding_together_in_two_windows(browser: Browser, solved: Solved, tmp_
         for page in (mine, theirs):
             watch(page, address, wrong)
         mine.goto(f"{address}/#/jobs/{solved.number}?selected=2")
-        mine.get_by_role("button", name="Keep design 2").click(timeout=PATIENCE)
+        mine.get_by_role("button", name="Keep design 2").press("Enter", timeout=PATIENCE)
         expect(mine.locator(".kept tbody tr")).to_have_count(1, timeout=PATIENCE)
         theirs.goto(mine.url)  # a link that was sent
         line = theirs.locator(".kept tbody tr")
         expect(line).to_have_count(1, timeout=PATIENCE)
-        theirs.get_by_label("Why, or why not, Design 2").fill("fits the old frame")
-        theirs.get_by_label("Decided for Design 2").check()
+        typed(theirs.get_by_label("Why, or why not, Design 2"), "fits the old frame")
+        theirs.keyboard.press("Tab")
+        theirs.get_by_label("Decided for Design 2").press("Space")
         expect(theirs.locator(".decision")).to_contain_text("because fits the old frame", timeout=PATIENCE)
         mine.reload()
         expect(mine.locator(".decision")).to_contain_text(
@@ -130,7 +133,7 @@ def test_deciding_together_in_two_windows(browser: Browser, solved: Solved, tmp_
     assert wrong == []
 
 
-def test_operating_a_service_that_starts_anew_while_a_run_is_watched(
+def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard(
     browser: Browser, store: Store, solved: Solved
 ) -> None:
     wrong: list[str] = []
@@ -141,17 +144,17 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched(
         with served(store) as address:
             watch(page, address, wrong, ("Failed to load resource", "ERR_"))
             page.goto(f"{address}/#/")
-            page.get_by_role("link", name=str(TABLES["name"]), exact=True).click()
+            page.get_by_role("link", name=str(TABLES["name"]), exact=True).press("Enter")
             claim.tell(progress(1), FRONT)
             expect(page.get_by_text("1 of 9")).to_be_visible(timeout=PATIENCE)
         expect(page.get_by_text("The connection to the service was lost.")).to_be_visible(timeout=PATIENCE)
         claim.tell(progress(2), FRONT)
         with served(store, port=int(urlsplit(address).port or 0)):
             expect(page.get_by_text("2 of 9")).to_be_visible(timeout=PATIENCE)
-            page.get_by_role("button", name="Finish now run 1").click()
+            page.get_by_role("button", name="Finish now run 1").press("Enter")
             claim.finish(replace(solved.result, status="cancelled"))
             expect(page.get_by_role("heading", name="Finished early")).to_be_visible(timeout=PATIENCE)
-            page.get_by_role("button", name="Resume run 1").click()
+            page.get_by_role("button", name="Resume run 1").press("Enter")
             expect(page.get_by_role("heading", name="Front so far")).to_be_visible(timeout=PATIENCE)
             again = taken(store)
             again.finish(solved.result)

@@ -62,7 +62,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
     expect(page.get_by_text("6 of 12 designs chosen")).to_be_visible()
     page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
-        page.get_by_role("link", name="CSV").click()
+        page.get_by_role("link", name="Designs as CSV").click()
     download.value.save_as(tmp_path / "front.csv")
     table = list(csv.DictReader(io.StringIO((tmp_path / "front.csv").read_text())))
     assert [float(cells["rod_mm"]) for cells in table] == [one["rod_mm"] for one in rows]
@@ -76,8 +76,10 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(open_page: Open, store
 
 def taken_away(page: Page, name: str, folder: Path) -> Path:
     """Return a file of the design on the page, downloaded."""
+    page.get_by_role("navigation", name="Take away").get_by_text("Export", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("navigation", name="Take away").get_by_role("link", name=name, exact=True).click()
+    page.keyboard.press("Escape")
     file = folder / download.value.suggested_filename
     download.value.save_as(file)
     return file

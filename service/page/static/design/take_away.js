@@ -1,7 +1,8 @@
-/** Downloads of a design: drawings, motion, report, its sheet, a link. */
+/** Exports of a design behind one button: drawings, motion, report, its sheet; and a link beside it. */
 
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 import { say } from "../lib/notices.js";
 import { apiSystem } from "../lib/numbers.js";
 
@@ -25,7 +26,7 @@ export function takeAway(job, number, { signal } = {}) {
   /** @type {Page.Lengths | null} */
   let lengths = null;
   /** @param {string} path @param {string} title @param {string} words */
-  const anchor = (path, title, words) => ({ path, node: h("a", { class: "button", download: "", title: words }, title) });
+  const anchor = (path, title, words) => ({ path, node: h("a", { download: "" }, title), words });
   const links = [
     ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),
     ...["png", "svg"].map((kind) => anchor(`jobs/${job}/figures/design_${number}.${kind}`, `Sheet ${kind.toUpperCase()}`, "All curves on one sheet")),
@@ -43,7 +44,9 @@ export function takeAway(job, number, { signal } = {}) {
   };
   show(null);
   window.addEventListener("units", () => show(lengths), { signal });
-  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, links.map(({ node }) => node), copy, said), show };
+  const list = h("ul", { class: "files" }, links.map(({ node, words: about }) => h("li", {}, node, h("span", { class: "quiet" }, about))));
+  const button = menu("Export", h("div", { class: "chooser-list panel at-left" }, list));
+  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, button, copy, said), show };
 }
 
 async function copyLink() {

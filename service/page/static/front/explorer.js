@@ -37,23 +37,24 @@ const ORDER = ["marks", "table", "chosen", "all"];
  */
 
 /**
- * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already.
+ * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. files: where the
+ * files go that it makes.
  * @param {HTMLElement} place
- * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, signal: AbortSignal }} given
+ * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, signal: AbortSignal }} given
  */
-export async function explore(place, { job, front, values, query, signal }) {
+export async function explore(place, { job, front, values, query, files, signal }) {
   const data = new FrontData(job.id, front, signal);
   const chosen = choicesFrom(query, front);
   const limits = new Limits(data, chosen.limits, chosen.lasso);
   data.take(values);
   await data.need(wanted(chosen, limits));
-  if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, signal });
+  if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, signal });
 }
 
 /** Choices in a front, and the parts that show it; they tell it what the reader does. */
 export class Explorer {
-  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, signal: AbortSignal }} given */
-  constructor(place, { job, data, chosen, limits, signal }) {
+  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, signal: AbortSignal }} given */
+  constructor(place, { job, data, chosen, limits, files, signal }) {
     this.place = place;
     this.job = job;
     this.front = data.front;
@@ -107,6 +108,7 @@ export class Explorer {
     this.binding = bindingPanel(this);
     this.wishing = wishingPanel(this);
     const columns = data.columns;
+    files.replaceChildren(h("li", {}, this.saving.node), this.kept.file);
     place.replaceChildren(
       h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
       h("section", { class: "panel all-designs", "aria-labelledby": "lines-title" },
@@ -119,7 +121,7 @@ export class Explorer {
       this.wishing.place,
       this.kept.place,
       h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
-        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place, this.saving.node,
+        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
           chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
         this.table.place));
     const again = () => this.update("all");

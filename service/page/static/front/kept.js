@@ -9,7 +9,7 @@ import { LENGTHS } from "./linkages.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-/** Return {place, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
+/** Return {place, file, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
 export function keptPanel(explorer) {
   const { data, job, chosen } = explorer;
   const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of kept designs" });
@@ -17,10 +17,11 @@ export function keptPanel(explorer) {
   const add = h("button", { type: "button", onclick: () => keepTicked().catch(sayProblem) });
   const only = h("input", { type: "checkbox", onchange: () => draw("all") });
   const stars = h("label", {}, only, " only with a star");
-  const file = h("a", { class: "button", download: "" }, "Kept as CSV");
+  const csv = h("a", { download: "" }, "Kept designs as CSV");
+  const file = h("li", {}, csv);
   const why = h("p", { class: "decision" });
   const place = h("section", { class: "panel kept", "aria-labelledby": "kept-title" },
-    h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add, file), why, none, table);
+    h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add), why, none, table);
   /** @type {Api.Kept[]} */
   let designs = [];
 
@@ -104,7 +105,7 @@ export function keptPanel(explorer) {
     none.hidden = designs.length > 0;
     table.hidden = shown.length === 0;
     for (const node of [stars, file]) node.hidden = designs.length === 0;
-    file.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
+    csv.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
     const decided = designs.find((one) => one.decided);
     fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`, " ", reportOf(decided)]);
     why.hidden = !decided;
@@ -134,5 +135,5 @@ export function keptPanel(explorer) {
 
   /** Return those that are none of the front, for the charts. */
   const marks = () => designs.filter(({ changed, star }) => changed && (star || !only.checked)).map(({ cells, name }) => ({ cells, name }));
-  return { place, draw, marks, ask };
+  return { place, file, draw, marks, ask };
 }

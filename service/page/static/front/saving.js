@@ -11,7 +11,7 @@ import { linesOf } from "./listed.js";
 
 /** Return {node, draw()} of the button that saves the chosen designs of an explorer. @param {Explorer} explorer */
 export function saving(explorer) {
-  const node = h("button", { type: "button", onclick: () => save().catch(sayProblem) });
+  const node = h("button", { type: "button", class: "linked", onclick: () => save().catch(sayProblem) });
 
   async function save() {
     node.disabled = true;
@@ -25,7 +25,7 @@ export function saving(explorer) {
 
   function draw() {
     const { open, chosen } = explorer.limits;
-    node.textContent = open ? "Download all as CSV" : `Download ${grouped(chosen)} chosen as CSV`;
+    node.textContent = open ? "As the table is sorted, as CSV" : `${grouped(chosen)} chosen, as sorted, as CSV`;
     node.disabled = chosen === 0;
   }
   return { node, draw };

@@ -10,9 +10,10 @@ const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs 
 
 /**
  * Return a list of files behind a button; those that have to be asked for are asked for when it opens.
- * @param {Api.Job} job @param {{ designs: boolean, signal: AbortSignal }} given
+ * own: what those who show the front put among its files.
+ * @param {Api.Job} job @param {{ designs: boolean, own: HTMLElement, signal: AbortSignal }} given
  */
-export function downloads(job, { designs, signal }) {
+export function downloads(job, { designs, own, signal }) {
   /** @param {string} path @param {string} name */
   const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
   // In the units that the reader prefers at the moment.
@@ -28,7 +29,7 @@ export function downloads(job, { designs, signal }) {
   const exported = h("ul");
   const figures = h("ul");
   const list = h("div", { class: "chooser-list panel" },
-    designs && [h("h2", {}, "Front"), exported],
+    designs && [h("h2", {}, "Front"), exported, own],
     h("h2", {}, "Files of the job"), files,
     designs && [h("h2", {}, "Figures"), figures]);
   let asked = false;

@@ -1,10 +1,50 @@
-/** Files that the page makes itself. */
+/** Files that the page makes itself, and those of the service, which say while they are made that they are. */
 
+import { Problem } from "./api.js";
 import { h } from "./dom.js";
+import { say, sayProblem } from "./notices.js";
+
+const SOON = 400; // ms: what is made sooner needs no word
 
 /** Let the browser save a text as a file. @param {string} content @param {string} type @param {string} name */
 export function download(content, type, name) {
-  const link = h("a", { href: URL.createObjectURL(new Blob([content], { type })), download: name });
+  save(new Blob([content], { type }), name);
+}
+
+/** @param {Blob} content @param {string} name */
+function save(content, name) {
+  const link = h("a", { href: URL.createObjectURL(content), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+/** Take over the links of files of the service: busy while a file is made, and a sentence where it cannot be. */
+export function watchDownloads() {
+  document.addEventListener("click", (event) => {
+    const link = event.target instanceof Element ? event.target.closest("a[download]") : null;
+    if (!(link instanceof HTMLAnchorElement) || !link.href.includes("/api/") || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+    event.preventDefault();
+    if (link.getAttribute("aria-busy") !== "true") fetched(link).catch(sayProblem);
+  });
+}
+
+/** @param {HTMLAnchorElement} link */
+async function fetched(link) {
+  link.setAttribute("aria-busy", "true");
+  const title = link.getAttribute("aria-label") ?? link.textContent ?? "";
+  const told = setTimeout(() => say(`${title} is being made.`), SOON);
+  try {
+    const response = await fetch(link.href);
+    if (!response.ok) {
+      const problem = await response.json().catch(() => ({}));
+      throw new Problem(response.status, problem.detail ?? `The service answered ${response.status}.`);
+    }
+    const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
+    save(await response.blob(), named?.[1] ?? (link.download || new URL(link.href).pathname.split("/").at(-1) || "file"));
+  } catch (error) {
+    throw error instanceof TypeError ? new Problem(0, "The service does not answer; try again when it is back.") : error;
+  } finally {
+    clearTimeout(told);
+    link.removeAttribute("aria-busy");
+  }
 }

@@ -18,6 +18,7 @@ export async function show(place, { parts, signal }) {
   if (!Number.isInteger(number) || number < 1) throw new Problem(404, "A run has a number; choose one of the list.");
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
+  const files = h("ul"); // of the front, that its explorer makes
   /** @type {{ control: AbortController, live: boolean } | null} */
   let inner = null; // ends what the body shows
   const explorer = import("../front/explorer.js"); // comes while the job is asked for
@@ -68,7 +69,7 @@ export async function show(place, { parts, signal }) {
     fill(head,
       summary?.designs ? h("button", { type: "button", class: "skip", onclick: toTable }, "Skip to the table of designs") : null,
       h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
-      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), signal })));
+      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), own: files, signal })));
   }
 
   /** Past all that can be done with charts, which takes some sixty steps of the Tab key. */
@@ -91,7 +92,7 @@ export async function show(place, { parts, signal }) {
     if (!place || !asked) return;
     try {
       const [[front, { values }], { explore }] = await Promise.all([asked, explorer]);
-      await explore(place, { job, front, values, query: read().query, signal: own });
+      await explore(place, { job, front, values, query: read().query, files, signal: own });
     } catch (problem) {
       if (isAbort(problem)) return;
       if (statusOf(problem) === 404) await stand(null);
