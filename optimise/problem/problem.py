@@ -19,7 +19,6 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.start import Start
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
@@ -32,7 +31,7 @@ from .requirements import Constraint, Objective, Range, Word, merged
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
     from ...model.swing.swing import Swing
-    from ...model.swing.words import Driver, Law
+    from ...model.swing.words import Driver, Law, Side
 
 _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
 
@@ -243,31 +242,43 @@ class Problem:
         self,
         design: ArrayLike,
         *,
-        start: float,
-        end: float,
-        driver: Driver = "crank",
-        law: Law = "slow",
+        start: float | None = None,
+        end: float | None = None,
+        slider_start: float | None = None,
+        slider_end: float | None = None,
+        crank_side: Side | None = None,
+        driver: Driver | None = None,
+        law: Law | None = None,
         duration: float | None = None,
-        actuator_tolerance: float = 0.0,
+        actuator_tolerance: float | None = None,
     ) -> SwingSummary:
-        """Return the numbers of a swing of the crank between two angles, rad, for a design (3 + k,).
+        """Return the numbers of a swing of the crank for a design (3 + k,), which need not turn fully.
 
-        The design need not turn fully.
-
-        driver: "crank", by a torque, or "slider", by a force. law: of its motion, see `model.swing.words`; duration: of
-        one way, s, for all but "slow". actuator_tolerance: of the driven slider, m. Raises `AssemblyError` where the
-        linkage does not close, `InputError` for a dead point that the slider cannot pass, and as `analyse` does.
+        What is left out is as the problem's own motion has it; without one the crank drives, slowly. start, end: crank
+        angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side` of
+        the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: of its motion, see
+        `model.swing.words`; duration: of one way, s, for all but "slow". actuator_tolerance: of the driven slider, m.
+        Raises `AssemblyError` where the linkage does not close, `InputError` for a dead point that the slider cannot
+        pass, ends that are missing or of two kinds, and as `analyse` does.
         """
+        from ...model.swing.asked import AskedSwing, asked_swing
         from ...model.swing.summary import summarise
-        from ...model.swing.swing import Swing
 
         self._require_chosen()
-        asked = Swing(
-            start=start, end=end, driver=driver, law=law, duration=duration, actuator_tolerance=actuator_tolerance
+        asked = AskedSwing(
+            start=start,
+            end=end,
+            slider_start=slider_start,
+            slider_end=slider_end,
+            side=crank_side,
+            driver=driver,
+            law=law,
+            duration=duration,
+            actuator_tolerance=actuator_tolerance,
         )
         machine, sizes = one_design(self.mechanism, design)
-        machine = replace(machine, start=Start())
-        return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), asked)
+        machine, swing = asked_swing(machine, self.motion, asked, {"side": "crank_side"})
+        return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
 
     def _require_chosen(self) -> None:
         if self.variants:

@@ -5,17 +5,15 @@ Each answer is what the command of the same name prints with --json.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import radians
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from ...model.machine.start import Start
+from ...model.swing.asked import AskedSwing, asked_swing
 from ...model.swing.summary import summarise
-from ...model.swing.swing import Swing
-from ...model.swing.words import Driver, Law
+from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import ACCELERATION, ANGLE, LENGTH, SPEED, TIME
 from ..designs.inverse import SliderMotion, inverse_record
 from ..designs.measured_file import read_measured
@@ -46,7 +44,16 @@ Acceleration = Annotated[
     float | None,
     _either_way(ACCELERATION.limit, "along +x; gives the crank acceleration, and needs the velocity", 3.0),
 ]
-CrankAngle = Annotated[float, _either_way(ANGLE.metric.factor * ANGLE.limit, "counter-clockwise from +x", 30.0)]
+SwingAngle = Annotated[
+    float | None,
+    _either_way(
+        ANGLE.metric.factor * ANGLE.limit, "crank angle, counter-clockwise from +x; of the job if left out", 30.0
+    ),
+]
+SwingPlace = Annotated[
+    float | None,
+    _either_way(_FARTHEST, "instead of crank angles: slider position, from the crank pivot along +x", 240.0),
+]
 
 _INVERSE_EXAMPLE = {
     "crank_mm": 60.0,
@@ -219,7 +226,7 @@ Duration = Annotated[
     Query(gt=0.0, le=TIME.limit, allow_inf_nan=False, description="of one way; for a law other than slow"),
 ]
 ActuatorTolerance = Annotated[
-    float,
+    float | None,
     Query(ge=0.0, le=_FARTHEST, allow_inf_nan=False, description="of the driven slider"),
 ]
 
@@ -230,28 +237,50 @@ class SwingModel(OfDesign):
     swing: dict[str, Any] = Field(examples=[_SWING_EXAMPLE])
 
 
+_NAMES = {
+    "start": "start_deg",
+    "end": "end_deg",
+    "slider_start": "slider_start_mm",
+    "slider_end": "slider_end_mm",
+    "law": "law",
+}
+
+
 @router.get("/swing")
 def analyse_swing(
     found: FrontDep,
     design: DesignNumber,
-    start_deg: CrankAngle,
-    end_deg: CrankAngle,
-    driver: Driver = "crank",
-    law: Law = "slow",
+    start_deg: SwingAngle = None,
+    end_deg: SwingAngle = None,
+    slider_start_mm: SwingPlace = None,
+    slider_end_mm: SwingPlace = None,
+    crank_side: Side | None = None,
+    driver: Driver | None = None,
+    law: Law | None = None,
     duration_s: Duration = None,
-    actuator_tolerance_mm: ActuatorTolerance = 0.0,
+    actuator_tolerance_mm: ActuatorTolerance = None,
     units: UnitsAsked = "metric",
 ) -> SwingModel:
-    """Analyse a swing of a design between two crank angles, forth and back, driven at either end."""
-    asked = Swing(
-        start=radians(start_deg),
-        end=radians(end_deg),
+    """Analyse a swing of a design between two crank angles or two slider positions, forth and back.
+
+    What is left out is as the job has it; of a job without a swing the crank drives, slowly. Driven at either end.
+    """
+    asked = AskedSwing(
+        start=None if start_deg is None else radians(start_deg),
+        end=None if end_deg is None else radians(end_deg),
+        slider_start=_metres(slider_start_mm),
+        slider_end=_metres(slider_end_mm),
+        side=crank_side,
         driver=driver,
         law=law,
         duration=duration_s,
-        actuator_tolerance=actuator_tolerance_mm / LENGTH.metric.factor,
+        actuator_tolerance=_metres(actuator_tolerance_mm),
     )
     stored = found.design(design)
-    machine = replace(stored.mechanism, start=Start())
-    record = finite(swing_record(machine, summarise(machine, stored.linkage, asked)))
+    machine, swing = asked_swing(stored.mechanism, stored.part.motion, asked, _NAMES)
+    record = finite(swing_record(machine, summarise(machine, stored.linkage, swing)))
     return SwingModel(job=found.job.id, number=design, swing=record_in(record, units))
+
+
+def _metres(millimetres: float | None) -> float | None:
+    return None if millimetres is None else millimetres / LENGTH.metric.factor

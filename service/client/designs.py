@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Required, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
-from ...model.swing.words import Driver, Law
+from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import System
 from .connection import Connection, Record, given
 
@@ -16,15 +16,19 @@ if TYPE_CHECKING:
 
 
 class SwingAsked(TypedDict, total=False):
-    """A swing, as the API asks for it.
+    """A swing, as the API asks for it: what is left out is as the job has it.
 
-    start_deg and end_deg are needed; the law is slow and the crank drives if left out.
+    start_deg, end_deg: crank angles. slider_start_mm, slider_end_mm: slider positions instead, with the crank pin on
+    the crank_side of the line to the slider pin. Without a swing of the job the crank drives, slowly.
 
     duration_s: of one way, for a law other than slow. actuator_tolerance_mm: how far the driven slider may be off.
     """
 
-    start_deg: Required[float]
-    end_deg: Required[float]
+    start_deg: float
+    end_deg: float
+    slider_start_mm: float
+    slider_end_mm: float
+    crank_side: Side
     driver: Driver
     law: Law
     duration_s: float | None

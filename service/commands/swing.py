@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -17,8 +16,14 @@ from ..text.options import DesignOfRun, Dimensions, File, JobOrRun, Json, Length
 from ..text.screen import answer, say, waiting
 from .job_or_run import machine_of
 
-if TYPE_CHECKING:
-    from ...model.swing.swing import Swing
+_OPTIONS = {
+    "start": "--from",
+    "end": "--to",
+    "slider_start": "--slider-from",
+    "slider_end": "--slider-to",
+    "law": "--law",
+}
+"""What the fields of a swing that is asked for are called here."""
 
 
 def swing(
@@ -68,7 +73,7 @@ def swing(
     angle. Without JOB nothing has mass. Loads that act on the slider are those of JOB; its speed does not matter. What
     is not given is as in [motion] of JOB; without it the crank drives, slowly.
     """
-    from ...model.machine.start import Start
+    from ...model.swing.asked import AskedSwing, asked_swing
     from ...model.swing.summary import summarise
     from ..swing.record import show_swing, swing_record, swing_rows
 
@@ -79,18 +84,18 @@ def swing(
         if file is not None and (file.is_dir() or file.suffix.lower() != ending):
             raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
     mechanism, linkage, problem = machine_of("swing", job, size, design, runs)
-    motion = None if problem is None else problem.motion
-    given: dict[str, Any] = {
-        **_ends({"--from": start, "--to": end}, {"--slider-from": slider_from, "--slider-to": slider_to}),
-        "driver": driver,
-        "side": crank_side,
-        "law": law,
-        "duration": given_value("--duration", duration, TIME, sign="positive"),
-        "actuator_tolerance": given_value("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
-    }
-    asked = _swing({name: value for name, value in given.items() if value is not None}, motion)
-    if "start" in given or "end" in given:
-        mechanism = replace(mechanism, start=Start())
+    given = AskedSwing(
+        start=given_value("--from", start, ANGLE),
+        end=given_value("--to", end, ANGLE),
+        slider_start=given_value("--slider-from", slider_from, LENGTH),
+        slider_end=given_value("--slider-to", slider_to, LENGTH),
+        side=crank_side,
+        driver=driver,
+        law=law,
+        duration=given_value("--duration", duration, TIME, sign="positive"),
+        actuator_tolerance=given_value("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
+    )
+    mechanism, asked = asked_swing(mechanism, None if problem is None else problem.motion, given, _OPTIONS)
     record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
     answer(json, record, lambda screen: show_swing(screen, record))
     if curves is not None:
@@ -104,51 +109,3 @@ def swing(
             figure.parent.mkdir(parents=True, exist_ok=True)
             save_sheet(swing_sheet(mechanism, linkage, asked, units), figure)
         say(f"figure: {figure}")
-
-
-def _ends(angles: dict[str, str | None], places: dict[str, str | None]) -> dict[str, Any]:
-    """Return start and end that the options give, and what they are of."""
-    found = [name for name, value in {**angles, **places}.items() if value is not None]
-    if not found:
-        return {}
-    own = angles if found[0] in angles else places
-    if any(name not in own for name in found):
-        raise InputError(
-            f"a swing runs between two crank angles, or between two places of the slider; got {', '.join(found)}; give "
-            "the two of one"
-        )
-    kind = ANGLE if own is angles else LENGTH
-    ends = zip(("start", "end"), own.items(), strict=True)
-    return {end: given_value(name, value, kind) for end, (name, value) in ends if value is not None} | {
-        "of": "crank" if own is angles else "slider"
-    }
-
-
-def _swing(given: dict[str, Any], motion: Swing | None) -> Swing:
-    """Return the swing of options, else of a job's [motion]."""
-    from ...model.swing.swing import Swing
-
-    if given.get("law") == "table":
-        raise InputError(
-            "a motion by a table is that of a job; got --law table; give its points in [motion] of JOB, law_times and "
-            "law_shares, and leave --law out"
-        )
-    if motion is not None:
-        if given.get("law") == "slow":
-            given.setdefault("duration", None)
-        if "law" in given:
-            given.setdefault("points", ())
-        if given.get("driver") == "crank":
-            given.setdefault("actuator_tolerance", 0.0)
-        if given.get("of", motion.of) == motion.of:
-            return replace(motion, **given)
-        kept = ("driver", "law", "duration", "points", "actuator_tolerance")
-        given = {name: getattr(motion, name) for name in kept} | given
-    slider = given.get("of") == "slider"
-    for option, name in (("from", "start"), ("to", "end")):
-        if name not in given:
-            raise InputError(
-                f"a swing runs from one {'slider position' if slider else 'crank angle'} to another; got no "
-                f"--{'slider-' if slider else ''}{option}; give one, or a JOB with [motion]"
-            )
-    return Swing(**given)

@@ -52,6 +52,18 @@ def paired(one: dict[str, Any], other: dict[str, Any]) -> list[tuple[dict[str, A
     return list(zip(one.values(), other.values(), strict=True))
 
 
+def test_two_places_of_the_slider_are_the_swing_between_their_angles(client: httpx.Client, solved: Solved) -> None:
+    by_angles = ask(client, solved, start_deg=40.0, end_deg=110.0, driver="slider").json()["swing"]
+    ends = [by_angles[f"{end}_slider_position_mm"] for end in ("start", "end")]
+    places = {"slider_start_mm": ends[0], "slider_end_mm": ends[1], "driver": "slider"}
+    found = ask(client, solved, **places).json()["swing"]
+    for key in ("swing_angle_deg", "start_crank_angle_deg", "peak_drive_N", "energy_forth_J"):
+        assert found[key] == pytest.approx(by_angles[key], rel=1e-6), key
+    other = ask(client, solved, **places, crank_side="right").json()["swing"]
+    assert other["start_slider_position_mm"] == pytest.approx(ends[0])
+    assert other["start_crank_angle_deg"] < 0.0
+
+
 @pytest.mark.parametrize(
     ("query", "status", "words"),
     [
@@ -60,7 +72,11 @@ def paired(one: dict[str, Any], other: dict[str, Any]) -> list[tuple[dict[str, A
         ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "needs its duration"),
         ({"start_deg": "nan", "end_deg": 100.0}, 422, "start_deg"),
         ({"start_deg": 40.0, "end_deg": 100.0, "driver": "rod"}, 422, "driver"),
-        ({"start_deg": 40.0}, 422, "end_deg"),
+        ({"start_deg": 40.0}, 422, "got no end_deg"),
+        ({}, 422, "got no start_deg"),
+        ({"start_deg": 40.0, "slider_end_mm": 100.0}, 422, "got start_deg, slider_end_mm; give the two of one"),
+        ({"slider_start_mm": 100.0, "slider_end_mm": 1e5}, 422, "must reach both ends"),
+        ({"start_deg": 40.0, "end_deg": 100.0, "law": "table", "duration_s": 1.0}, 422, "got law table"),
     ],
 )
 def test_wrong_input_is_a_problem(
