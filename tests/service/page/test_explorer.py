@@ -263,6 +263,41 @@ def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> N
     expect(page).to_have_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
     page.go_back()
     expect(page.get_by_role("checkbox", name="Select design 2")).to_be_checked()
+    designs = solved.result.designs
+    order = sorted(range(len(designs)), key=lambda row: float(str(designs[row]["time_ratio"])))
+    page.get_by_role("application", name="Scatter").focus()
+    page.keyboard.press("ArrowRight")  # the first of the list, which has the greatest time ratio
+    for row in order[-2:-4:-1]:
+        page.keyboard.press("ArrowLeft")
+        expect(page.locator(".dots").get_by_role("status")).to_contain_text(f"Design {row + 1}: time ratio")
+        expect(page.locator(".linkage h2")).to_contain_text(f"Design {row + 1}")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("checkbox", name=f"Select design {order[-3] + 1}", exact=True)).to_be_checked()
+    page.get_by_role("application", name="Parallel coordinates").focus()
+    for key in ("ArrowDown", "ArrowRight", "ArrowUp"):
+        page.keyboard.press(key)
+    expect(page.locator(".lines").get_by_role("status")).to_contain_text("along the axis of rod")
+    page.get_by_role("button", name="Logarithmic: rod").press("Enter")
+    expect(page).to_have_url(re.compile("log=rod_mm"))
+    page.keyboard.press("Space")
+    expect(page).not_to_have_url(re.compile("log=rod_mm"))
+
+
+def test_an_axis_may_be_logarithmic(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, view_of(solved, "?log=rod_mm&x=rod_mm&y=time_ratio"))
+    expect(page.get_by_role("checkbox", name="Logarithmic, across")).to_be_checked()
+    expect(page.get_by_role("checkbox", name="Logarithmic, up")).to_be_hidden()  # 1 to 1.3 is one size
+    rods = [float(str(row["rod_mm"])) for row in solved.result.designs]
+    x, top, bottom = axis(page, 1, 5)
+    page.mouse.move(x, bottom + 3)
+    page.mouse.down()
+    page.mouse.move(x, (top + bottom) / 2, steps=4)
+    page.mouse.up()
+    most = field(page, "At most rod, mm")
+    expect(most).not_to_have_value("")
+    assert float(most.input_value()) == pytest.approx((min(rods) * max(rods)) ** 0.5, rel=0.01)
+    page.get_by_role("checkbox", name="Logarithmic, across").uncheck()
+    expect(page).not_to_have_url(re.compile("log="))
 
 
 def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, large: tuple[Store, list[Row]]) -> None:

@@ -6,7 +6,8 @@ import { Density } from "./density.js";
 import { histograms } from "./histogram.js";
 import { line, nearestLine } from "./lines.js";
 import { layers, rgb } from "./paint.js";
-import { colours, scale } from "./scale.js";
+import { byKeys } from "./by_keys.js";
+import { colours, logScale, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
 /** @import { FrontData } from "../front/data.js" */
@@ -18,7 +19,9 @@ import { shadesOf } from "./shades.js";
  * @property {() => { key: string, flipped: boolean }[]} axes
  * @property {() => string} colour key of the column that colours the lines; of many lines all have one
  * @property {() => Page.Mark[]} marks
+ * @property {(key: string) => boolean} log whether the axis of a column is logarithmic
  * @property {(key: string, limit: Page.Limit | null) => void} limit
+ * @property {(row: number) => string} say a design in words
  * @property {(row: number | null) => void} point
  * @property {(row: number) => void} open
  * @property {(row: number) => void} select
@@ -49,7 +52,7 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
  * @param {Chart} chart
  */
 export function parallel(chart) {
-  const stack = layers(3, "Parallel coordinates. The fields below set the same limits as dragging on an axis.");
+  const stack = layers(3, "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The fields below set the same limits as dragging on an axis.");
   const { place, contexts } = stack;
   /** @type {View} */
   let view; // nothing until it is drawn first
@@ -66,15 +69,18 @@ export function parallel(chart) {
     const across = axes.map((_, index) => ((index + 0.5) * width) / Math.max(1, axes.length));
     const scales = axes.map(({ key, flipped }) => {
       const { low, high } = data.range(key);
-      return flipped ? scale(low, high, ROOM, height - ROOM) : scale(low, high, height - ROOM, ROOM);
+      const [start, end] = flipped ? [ROOM, height - ROOM] : [height - ROOM, ROOM];
+      return (chart.log(key) ? logScale : scale)(low, high, start, end);
     });
     const heights = new Int16Array(data.count * axes.length).fill(-1);
     axes.forEach(({ key }, axis) => {
       const numbers = data.numbers(key);
-      const zero = scales[axis].at(0);
-      const factor = scales[axis].at(1) - zero;
+      const { at } = scales[axis];
+      const even = !chart.log(key); // by a factor: ten thousands of calls take a while
+      const zero = at(0);
+      const factor = at(1) - zero;
       for (let row = 0; row < numbers.length; row += 1) {
-        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(zero + factor * numbers[row]);
+        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(even ? zero + factor * numbers[row] : at(numbers[row]));
       }
     });
     const ink = colours();
@@ -153,7 +159,7 @@ export function parallel(chart) {
       context.stroke();
       drawLimit(context, axis, chart.limits.of.get(key));
       const unit = chart.data.column(key).unit;
-      for (const [value, label] of words ? wordTicks(words) : ticks(chart.data.range(key), unit)) {
+      for (const [value, label] of words ? wordTicks(words) : ticks(chart.data.range(key), unit, chart.log(key))) {
         const y = scales[axis].at(value);
         context.lineWidth = 3;
         context.strokeStyle = ink.panel;
@@ -279,17 +285,18 @@ export function parallel(chart) {
       ends = dragged.span.map((end) => end + by);
     }
     const { key } = view.axes[dragged.axis];
-    const { value, low, high } = view.scales[dragged.axis];
+    const { at, value, low, high } = view.scales[dragged.axis];
     const [first, second] = ends.map(value).sort((a, b) => a - b);
     const words = chart.data.words(key);
     if (words) {
       chart.limit(key, { words: words.filter((_, index) => index >= first - 0.3 && index <= second + 0.3) });
       return;
     }
-    const step = (high - low) / 500;
+    const bit = (at(high) - at(low)) / 500; // of the axis: nearer than this to its end is at the end
+    const step = value(at(low) + bit) - low;
     /** @param {number} number */
     const tidy = (number) => Number(number.toPrecision(Math.max(3, 1 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / step)))));
-    chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= high - step ? null : tidy(second) });
+    chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= value(at(high) - bit) ? null : tidy(second) });
   }
 
   /** @param {PointerEvent} event */
@@ -308,6 +315,20 @@ export function parallel(chart) {
   stack.top.addEventListener("pointerup", end);
   stack.top.addEventListener("pointercancel", end);
   stack.top.addEventListener("dblclick", clear);
+  let along = 0; // the axis along which keys go from design to design
+  byKeys(place, {
+    mask: () => chart.limits.mask, point: chart.point, open: chart.open, select: chart.select,
+    say: (row) => `${chart.say(row)}. Up and down go along the axis of ${chart.data.column(view.axes[along].key).title}.`,
+    next(row, key) {
+      if (key === "ArrowLeft" || key === "ArrowRight") {
+        along = (along + (key === "ArrowRight" ? 1 : view.axes.length - 1)) % view.axes.length;
+        return row;
+      }
+      const { axes, heights } = view;
+      along = Math.min(along, axes.length - 1);
+      return { of: (other) => heights[other * axes.length + along], by: key === "ArrowUp" ? -1 : 1 };
+    },
+  });
   stack.top.addEventListener("pointerleave", () => {
     pressed = false;
     if (!dragged) chart.point(null);
@@ -332,9 +353,9 @@ function strength(count) {
   return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
 }
 
-/** @param {Page.Range} given @param {string} unit @returns {[number, string][]} */
-function ticks({ low, high }, unit) {
-  const shown = scale(inShown(low, unit), inShown(high, unit), 0, 1, 4);
+/** @param {Page.Range} given @param {string} unit @param {boolean} log @returns {[number, string][]} */
+function ticks({ low, high }, unit, log) {
+  const shown = (log ? logScale : scale)(inShown(low, unit), inShown(high, unit), 0, 1, 4);
   const factor = inShown(1, unit);
   return shown.ticks.map((tick) => [tick / factor, shown.text(tick)]);
 }

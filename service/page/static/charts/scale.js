@@ -1,6 +1,8 @@
-/** A linear scale: values to pixels and back, and round numbers for its ticks. */
+/** Scales, linear and logarithmic: values to pixels and back, and round numbers for their ticks. */
 
 import { isConstant } from "../lib/constant.js";
+
+const WIDE = 1.5; // a range is worth a logarithmic axis from this ratio of its ends on
 
 /**
  * Return {at(value), value(pixel), ticks, text(tick)} for values from `low` to `high` on pixels from `start` to `end`.
@@ -24,6 +26,36 @@ export function scale(low, high, start, end, count = 5) {
     value: (pixel) => low + (pixel - start) / factor,
     text: (tick) => tickText(tick, power),
   };
+}
+
+/**
+ * Return a logarithmic scale for values above zero, as `scale` does: its ticks are 1, 2 and 5 times powers of ten, or powers alone where
+ * these are many; of a range in which there are too few, round numbers.
+ * @param {number} low @param {number} high @param {number} start @param {number} end @param {number} count @returns {Page.Scale}
+ */
+export function logScale(low, high, start, end, count = 5) {
+  const even = scale(low, high, start, end, count);
+  if (isConstant(low, high)) return even;
+  const [from, to] = [Math.log10(low), Math.log10(high)];
+  const factor = (end - start) / (to - from);
+  const powers = Array.from({ length: Math.ceil(to) - Math.floor(from) + 1 }, (_, n) => Math.floor(from) + n);
+  /** @param {number[]} steps */
+  const within = (steps) => powers.flatMap((power) => steps.map((step) => Number(`${step}e${power}`))).filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9));
+  const fine = within([1, 2, 5]);
+  const ticks = fine.length < 3 ? even.ticks : fine.length > 2 * count ? within([1]) : fine;
+  return {
+    low,
+    high,
+    ticks,
+    at: (value) => (value > 0 ? start + (Math.log10(value) - from) * factor : NaN),
+    value: (pixel) => 10 ** (from + (pixel - start) / factor),
+    text: fine.length < 3 ? even.text : (tick) => tickText(tick, Math.floor(Math.log10(tick) + 1e-9)),
+  };
+}
+
+/** Whether an axis of a range may be logarithmic, and is another one then. @param {Page.Range} given */
+export function mayBeLog({ low, high }) {
+  return low > 0 && high >= WIDE * low;
 }
 
 /** Return a tick as text, to the digit of a power of ten. @param {number} tick @param {number} power */

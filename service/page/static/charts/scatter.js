@@ -4,7 +4,8 @@ import { inShown } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
 import { layers, squares } from "./paint.js";
-import { colours, range, scale } from "./scale.js";
+import { byKeys } from "./by_keys.js";
+import { colours, logScale, range, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
 /** @import { FrontData } from "../front/data.js" */
@@ -16,6 +17,8 @@ import { shadesOf } from "./shades.js";
  * @property {() => string} x
  * @property {() => string} y
  * @property {() => string} colour
+ * @property {(key: string) => boolean} log whether the axis of a column is logarithmic
+ * @property {(row: number) => string} say a design in words
  * @property {() => Page.Mark[]} marks
  * @property {() => Api.Row[]} others designs that are marked and none of the front; the axes reach to them
  * @property {() => Api.Row[]} behind designs of a run before, drawn behind all of these
@@ -28,6 +31,7 @@ import { shadesOf } from "./shades.js";
  * @typedef {{ width: number, height: number, x: Page.Axis, y: Page.Axis, across: Float64Array, up: Float64Array, many: boolean, ink: Page.Ink, shades: { of: Uint8Array, colours: string[] } }} View
  */
 
+const ROOM = 0.04; // of a logarithmic axis, beyond the designs
 const NEAR = 10; // pixels within which a design is pointed at
 const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
 const [BACK, FRONT, OVER] = [0, 1, 2];
@@ -47,7 +51,7 @@ function diamond(context, x, y, size) {
  * @param {Chart} chart
  */
 export function scatter(chart) {
-  const stack = layers(3, "Scatter of two quantities. The table below has the same designs.");
+  const stack = layers(3, "Scatter of two quantities: arrow keys go from design to design, Enter opens one, the space bar selects it. The table below has the same designs.");
   const { place, contexts, top } = stack;
   /** @type {View} */
   let view; // nothing until it is drawn first
@@ -89,10 +93,15 @@ export function scatter(chart) {
     const { data } = chart;
     const column = data.column(key);
     const words = data.words(key);
-    const { low, high } = words ? { low: -0.5, high: words.length - 0.5 } : range(withOthers(key));
-    const drawn = scale(low, high, start, end);
+    const reach = words ? { low: -0.5, high: words.length - 0.5 } : range(withOthers(key));
+    const bare = chart.log(key) ? range(withOthers(key), 0) : reach;
+    const log = chart.log(key) && bare.low > 0; // a design beside the front may be below
+    const spread = log ? (bare.high / bare.low) ** ROOM : 1;
+    const { low, high } = log ? { low: bare.low / spread, high: bare.high * spread } : reach;
+    const made = log ? logScale : scale;
+    const drawn = made(low, high, start, end);
     const factor = inShown(1, column.unit);
-    const shown = scale(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
+    const shown = made(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
     const ticks = words ? wordTicks(words) : shown.ticks.map((tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]));
     return { ...drawn, column, ticks, better: data.better(key) };
   }
@@ -247,13 +256,17 @@ export function scatter(chart) {
   top.addEventListener("pointerup", end);
   top.addEventListener("pointercancel", end);
   top.addEventListener("pointerleave", () => from || chart.point(null));
+  byKeys(place, {
+    mask: () => chart.limits.mask, point: chart.point, open: chart.open, select: chart.select, say: chart.say,
+    next: (_, key) => (key === "ArrowLeft" || key === "ArrowRight" ? { of: (row) => view.across[row], by: key === "ArrowRight" ? 1 : -1 } : { of: (row) => view.up[row], by: key === "ArrowUp" ? -1 : 1 }),
+  });
 
   /** @param {string} key @param {Page.Axis} drawn @param {number} first @param {number} second @returns {Page.Limit} */
   function limitOf(key, drawn, first, second) {
     const [low, high] = [drawn.value(first), drawn.value(second)];
     const words = chart.data.words(key);
     if (words) return { words: words.filter((_, index) => index >= low && index <= high) };
-    const step = (drawn.high - drawn.low) / 500;
+    const step = (drawn.high - drawn.low) / 500 / (chart.log(key) ? drawn.high / drawn.low : 1);
     const places = Math.max(0, Math.ceil(-Math.log10(step)));
     /** @param {number} value */
     const tidy = (value) => Number(value.toFixed(Math.min(20, places)));

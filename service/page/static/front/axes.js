@@ -1,6 +1,6 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
-import { fill, first, h } from "../lib/dom.js";
+import { fill, first, focused, h } from "../lib/dom.js";
 import { ends, fromShown, text } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { headed, helpLink } from "./columns.js";
@@ -23,7 +23,9 @@ export function axisFields(explorer) {
   function draw() {
     const { axes } = explorer.chosen;
     for (const place of [above, below]) place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
+    const held = focused(above)?.dataset.act;
     fill(above, axes.map((axis, index) => head(axis, index, axes.length)));
+    if (held) first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
     fields = axes.map(({ key }) => field(key));
     fill(below, fields.map(({ node }) => node));
     limits();
@@ -32,13 +34,9 @@ export function axisFields(explorer) {
   /** @param {Axis} given @param {number} index @param {number} count */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
-    /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled */
-    const act = (sign, label, doing, disabled = false) =>
-      h("button", { type: "button", class: "small", title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: (event) => {
-        const { act: held = "" } = event.currentTarget.dataset;
-        doing();
-        first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
-      } }, sign);
+    /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
+    const act = (sign, label, doing, disabled = false, pressed = undefined) =>
+      h("button", { type: "button", class: "small", "aria-pressed": pressed === undefined ? null : String(pressed), title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: doing }, sign);
     return h("div", {
       class: "axis-head", draggable: "true", "data-axis": key,
       ondragstart: ({ dataTransfer }) => dataTransfer?.setData("text/axis", String(index)),
@@ -54,6 +52,7 @@ export function axisFields(explorer) {
       h("div", { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
         act("⇅", "Flip", () => explorer.flipAxis(index)),
+        explorer.mayBeLogged(key) && act("log", "Logarithmic", () => explorer.logAxis(key), false, explorer.logged(key)),
         act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
         act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
   }

@@ -13,7 +13,7 @@ import { wishesFrom, wishQuery } from "./wishes.js";
 const MOST = 3; // designs side by side
 
 /**
- * Return what an address says, completed: axes, limits, x, y, colour, columns, sort, page, selected, weights, wish.
+ * Return what an address says, completed: axes, limits, log, x, y, colour, columns, sort, page, selected, weights, wish.
  * @param {URLSearchParams} query @param {Api.Front} front
  */
 export function choicesFrom(query, front) {
@@ -41,6 +41,7 @@ export function choicesFrom(query, front) {
     axes: axes.length ? axes : standard.map((key) => ({ key, flipped: false })),
     limits: limitsFrom(query, known),
     lasso: lassoFrom(query, known),
+    log: list("log").filter(known), // columns whose axes are logarithmic
     x: one("x", objectives[0] ?? keys[0]),
     y: one("y", objectives[1] ?? sizes[0] ?? keys[0]),
     colour: query.get("colour") === "none" ? "" : one("colour", objectives[2] ?? ""),
@@ -88,6 +89,7 @@ export function queryOf(chosen, lasso) {
   /** @type {Record<string, Dom.Value>} */
   const query = {
     axes: unless(chosen.axes.map(({ key, flipped }) => `${flipped ? "-" : ""}${key}`).join(","), standard.axes),
+    log: chosen.log.join(","),
     x: unless(chosen.x, standard.x),
     y: unless(chosen.y, standard.y),
     colour: unless(chosen.colour, standard.colour) || (chosen.colour === "" && standard.colour ? "none" : ""),

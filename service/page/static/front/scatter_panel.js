@@ -21,7 +21,9 @@ export function scatterPanel(explorer, dots) {
   const pick = (label, name, none = "") => {
     const select = h("select", { name, onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all") },
       none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title)));
-    return { name, select, node: h("label", {}, `${label} `, select) };
+    const log = h("input", { type: "checkbox", "aria-label": `Logarithmic, ${label.toLowerCase()}`, onchange: () => explorer.logAxis(chosen[name]) });
+    const logs = h("label", { class: "log", title: "Logarithmic axis" }, log, " log");
+    return { name, select, log, logs, node: h("span", { class: "pick" }, h("label", {}, `${label} `, select), name !== "colour" && logs) };
   };
   const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.currentTarget.value === "line") },
     h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
@@ -39,6 +41,8 @@ export function scatterPanel(explorer, dots) {
   function draw() {
     for (const one of picks) {
       one.select.value = chosen[one.name];
+      one.logs.hidden = !explorer.mayBeLogged(chosen[one.name]);
+      one.log.checked = explorer.logged(chosen[one.name]);
     }
   }
 

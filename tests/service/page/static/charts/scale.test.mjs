@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { range, scale } from "../../../../../service/page/static/charts/scale.js";
+import { logScale, range, scale } from "../../../../../service/page/static/charts/scale.js";
 import { draws } from "../draws.mjs";
 
 /** Return drawn scales with what they were made of: ranges of all sizes, some far from zero. */
@@ -81,4 +81,24 @@ test("the range of values is their least and greatest finite one with room on bo
     }
   }
   assert.deepEqual(range([]), { low: 0, high: 1 });
+});
+
+test("on a logarithmic scale equal ratios are equally long, pixels lead back, and ticks are round and within", () => {
+  const { number, size, whole } = draws(2);
+  for (let turn = 0; turn < 500; turn += 1) {
+    const low = Math.abs(size(-5, 5));
+    const high = low * 10 ** number(0.2, 6);
+    const [start, end] = [number(0, 50), number(100, 900)];
+    const made = logScale(low, high, start, end, whole(3, 8));
+    assert.ok(Math.abs(made.at(low) - start) < 1e-6 && Math.abs(made.at(high) - end) < 1e-6);
+    const middle = Math.sqrt(low * high);
+    assert.ok(Math.abs(made.at(middle) - (start + end) / 2) < 1e-6);
+    assert.ok(Math.abs(made.value(made.at(middle)) - middle) < 1e-9 * middle);
+    assert.ok(Number.isNaN(made.at(0)) && Number.isNaN(made.at(-1)));
+    assert.ok(made.ticks.length > 0 && made.ticks.length <= 20);
+    for (const tick of made.ticks) {
+      assert.ok(tick >= low * (1 - 1e-6) && tick <= high * (1 + 1e-6));
+      assert.ok(Math.abs(Number(made.text(tick).replace("−", "-")) - tick) <= 1e-6 * tick, made.text(tick));
+    }
+  }
 });
