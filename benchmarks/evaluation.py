@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import subprocess
 import sys
 from time import perf_counter
@@ -18,7 +17,7 @@ from slidercrank.optimise.job import load_job
 
 from . import numpy_peer
 from .machines import MECHANISM, Array, random_designs
-from .report import Row
+from .report import Row, peak_memory
 
 _SIGNALS = (Signal.TORQUE, Signal.POSITION_ERROR)
 _CHUNKS = (32, 64, 128, 256, 512)
@@ -107,4 +106,4 @@ def memory() -> list[Row]:
 def million() -> None:
     """Evaluate a million designs and print the process's peak memory, MB."""
     evaluate(random_designs(1_000_000), angles=64, crowd=True)
-    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    print(peak_memory())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import resource
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,7 +13,7 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.solve import solve
 
-from .report import Row
+from .report import Row, peak_memory
 
 COUNTS = (100, 1_000, 10_000)
 
@@ -58,4 +57,4 @@ def deliver(count: int) -> None:
     if len(found) != count:
         raise RuntimeError(f"{count} designs were asked for; got {len(found)}")
     longest = max(after - before for before, after in pairwise(told))
-    print(seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, longest)
+    print(seconds, peak_memory(), longest)

@@ -47,6 +47,12 @@ def machine() -> str:
     return f"{os.cpu_count()} cores, {name}"
 
 
+def peak_memory() -> float:
+    """Return the peak memory of this process, MB; `ru_maxrss` would be its parent's where that is greater."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(float(line.split()[1]) for line in lines if line.startswith("VmHWM:")) / 1024.0
+
+
 def show(title: str, rows: Iterable[Row], before: Mapping[str, float] | None = None) -> dict[str, float]:
     """Print a table of figures, each beside that of another version if there is one, and return the medians."""
     then = () if before is None else ("before",)

@@ -22,7 +22,7 @@ from .report import Row
 
 _SOONER = {NSGA2_: 40.0, NSGA3_: 20.0, MOEAD: 1.5}
 """How many times sooner the archive of each peer is reached, at least."""
-_ROUNDS = (256, 512, 1024, 2048, 3072, 4096, 5120, 6144, 8192, 12288)
+_ROUNDS = tuple(round(256 * 1.19**step) for step in range(24))
 _DESIGNS = 100
 
 

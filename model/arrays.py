@@ -8,3 +8,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Whole = NDArray[np.int64]
+
+
+def distinct(values: Whole, axis: int | None = None) -> Whole:
+    """Return whole numbers, or rows of them along axis 0, each once, ascending.
+
+    As `np.unique`, which without counts loads `numpy.ma` first: a thirtieth of the time of a command.
+    """
+    return np.unique(values, axis=axis, return_counts=True)[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copyreg
 import difflib
 import pkgutil
-from collections.abc import Iterable
+from collections.abc import Collection
 from importlib import import_module
 from typing import Any
 
@@ -42,15 +42,16 @@ for _kind in {type(of) for of in FACTS.values()}:
     copyreg.pickle(_kind, _reduced)
 
 
-def quantity(name: str, own: Iterable[Quantity] = ()) -> Quantity:
+def quantity(name: str, own: Collection[Quantity] = ()) -> Quantity:
     """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
 
     own: quantities of a problem besides those that every one has. Where there is a problem, ask it: it has its own
     (`Problem.quantity`).
     """
-    known = QUANTITIES | {of.name: of for of in own}
-    if name not in known:
+    found = next((of for of in own if of.name == name), None) or QUANTITIES.get(name)
+    if found is None:
+        known = [*QUANTITIES, *(of.name for of in own)]
         near = difflib.get_close_matches(str(name), known, n=1)
         hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(known)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
-    return known[name]
+    return found

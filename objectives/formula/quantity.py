@@ -186,7 +186,7 @@ def with_formulas(
     known = dict(found)
 
     def value(item: Quantity) -> Values:
-        if isinstance(item, FormulaQuantity) and item.name not in known:
+        if item.name not in known and isinstance(item, FormulaQuantity):
             own = {part.name: value(part) for part in item.parts}
             known[item.name] = item.combined(own, mechanism, dimensions, gradients=gradients)
         return known[item.name]

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, Whole, distinct
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
@@ -53,7 +53,7 @@ def strict_multipliers(
     nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
     the weights of each objective add to 1, the conditions of the least sum with none held.
     """
-    names = np.unique(owner)
+    names = distinct(owner)
     p, q, m = len(goals), len(active), len(names)
     size, lengths = _sizes(goals, active)
     k = goals.shape[1]

@@ -27,7 +27,7 @@ SHORTEST = 1e-9
 class Part(BaseModel):
     """A table of a job file: unknown keys are refused, nothing changes after reading."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 def required(description: str, *examples: object, default: Any = ..., **rules: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, Mask, Whole, distinct
 from ...model.kinematics.in_line import without_rounding
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
@@ -89,7 +89,7 @@ def _torn(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
     found = np.zeros(len(dimensions), np.bool_)
     asked = {item.quantity: item.sense == "maximise" for item in problem.objectives}
     formulas = [of for of in problem.own if isinstance(of, FormulaQuantity) and of.name in asked]
-    for variant in np.unique(variants).tolist() if formulas else []:
+    for variant in distinct(variants).tolist() if formulas else []:
         rows = np.flatnonzero(variants == variant)
         for of in formulas:
             pieces = of.pieces(problem.part(variant).mechanism, dimensions[rows])
@@ -119,7 +119,7 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
     parts: list[Columns] = []
     order, done = [], 0
     alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
-    for variant in np.unique(variants).tolist():
+    for variant in distinct(variants).tolist():
         part = problem.part(variant)
         alike.setdefault((part.mechanism, part.constraints), []).append(variant)
     for same in alike.values():

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, Mask, Whole, distinct
 from ..front.dominance import nondominated
 from ..front.hypervolume import Stand, unheard
 from ..front.stationarity import STATIONARY
@@ -108,7 +108,7 @@ class Candidates(Table):
     def dimensions(self, evaluators: list[Evaluator]) -> Array:
         """Return the designs (n, 3 + v), SI."""
         found = np.zeros((len(self), max(len(evaluator.sheet.names) for evaluator in evaluators)))
-        for index in np.unique(self.sheet).tolist():
+        for index in distinct(self.sheet).tolist():
             own, sheet = self.sheet == index, evaluators[index].sheet
             found[own, : len(sheet.names)] = sheet.dimensions(self.u[own][:, : len(sheet.free)])
         return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, distinct
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 
@@ -51,4 +51,4 @@ class Growth:
         return self._volume
 
     def _some(self, values: Array) -> Array:
-        return values[np.unique(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values
+        return values[distinct(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values

@@ -17,7 +17,7 @@ from slidercrank.service.store import Store
 
 ORDER = ("model", "objectives", "optimise", "service")  # each may import itself and those before it
 SLOW = (
-    *("numba", "numpy", "pandas", "matplotlib", "cvxpy", "optuna", "scipy", "scipy.stats", "pint"),
+    *("numba", "numpy", "numpy.ma", "pandas", "matplotlib", "cvxpy", "optuna", "scipy", "scipy.stats", "pint"),
     *("pydantic", "sqlalchemy", "alembic", "fastapi", "uvicorn", "httpx", "distributed", "psutil", "rich"),
 )
 
@@ -202,7 +202,7 @@ def solved(root: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, 
         (("--help",), set()),
         (("check", "JOB"), {"numpy", "pydantic", "rich"}),
         (("analyse", "JOB", *DESIGN), {"numpy", "pydantic", "rich"}),
-        (OPTIMISE, {"numpy", "pydantic", "rich", "psutil", "sqlalchemy", "pandas", "scipy"}),
+        (OPTIMISE, {"numpy", "pydantic", "rich", "psutil", "sqlalchemy"}),
         (("front", "latest"), {"numpy", "pydantic", "rich", "psutil", "sqlalchemy"}),
         (("jobs", "--store", "runs/slidercrank.db"), {"pydantic", "rich", "psutil", "sqlalchemy"}),
     ],

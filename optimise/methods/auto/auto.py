@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....model.arrays import Array, Mask, Whole
+from ....model.arrays import Array, Mask, Whole, distinct
 from ...front.dominance import beating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import Stand, choose
@@ -111,7 +111,7 @@ def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) ->
     """Return the rows of designs whose polish is to become the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
-        rows = np.unique(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
+        rows = distinct(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
     values, stand = group.values[rows], run.stage(SELECTING)
 
@@ -200,7 +200,7 @@ def _half_way(evaluators: list[Evaluator], best: Finished, count: int) -> list[t
         return []
     _, nearest = neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
     both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
-    pairs = np.unique(np.sort(both), axis=0)
+    pairs = distinct(np.sort(both), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     pairs = pairs[best.sheet[pairs[:, 0]] == best.sheet[pairs[:, 1]]]
     gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)
