@@ -1,4 +1,4 @@
-"""Energy of a cycle: what the drive gives, what friction takes, and the share of it that reaches the load."""
+"""Energy of a cycle: what the drive gives, what friction takes, and the share of it that reaches the loads."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.machine.dissipation import with_loads_alone
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import Raw
@@ -48,6 +49,18 @@ def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, 
     return np.where(np.isinf(work.mean[:, 0]), np.inf, heat), slopes
 
 
+def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
+    """Return the work done against the loads in a turn, J (n,), and its derivatives (n, 3 + k).
+
+    What a torque on the crank takes is no force on a path: with such loads it is what drives them alone.
+    """
+    if not any(load.on_crank for load in mechanism.loads):
+        return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]
+    alone, factor = with_loads_alone(mechanism), _TURN * mechanism.direction
+    found = average_torque(alone, designs, gradients=work.gradients is not None)
+    return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
+
+
 @dataclass(frozen=True, kw_only=True)
 class EnergyPerCycle(Quantity):
     """Work of the drive torque over a cycle in the sense of rotation; infinite where friction locks."""
@@ -77,9 +90,9 @@ class FrictionLoss(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class Efficiency(Quantity):
-    """U / (U + H), of the work U done against the load and the friction heat H.
+    """U / (U + H), of the work U done against the loads, on the crank too, and the friction heat H.
 
-    NaN for a design whose load takes no net work, which has none; -inf where friction locks.
+    NaN for a design whose loads take no net work, which has none; -inf where friction locks.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -88,14 +101,14 @@ class Efficiency(Quantity):
             return undefined(dimensions, gradients)
         work = turn_work(mechanism, dimensions, gradients=gradients)
         heat, by_heat = _heat(mechanism, dimensions, work)
-        useful, locks = _TURN * work.mean[:, LOAD], np.isinf(heat)
+        locks = np.isinf(heat)
+        useful, by_useful = _useful(mechanism, dimensions, work)
         there = (useful > 0.0) & ~locks
         useful, heat = np.where(there, useful, 1.0), np.where(there, heat, 0.0)
         given = useful + heat
         values = np.where(locks, -np.inf, np.where(there, useful / given, np.nan))
-        if work.gradients is None or by_heat is None:
+        if by_useful is None or by_heat is None:
             return Values(values, None)
-        by_useful = _TURN * work.gradients[:, LOAD]
         slopes = ((heat / given)[:, None] * by_useful - (useful / given)[:, None] * by_heat) / given[:, None]
         return Values(values, np.where(there[:, None], slopes, np.where(locks, 0.0, np.nan)[:, None]))
 
@@ -106,9 +119,9 @@ EFFICIENCY = Efficiency(
     kind=RATIO,
     place=436,
     group=Group.DRIVE,
-    sentence="The share of the energy of a cycle that reaches the load: the rest is heat of guide and pins.",
-    advice="Undefined for a design whose load takes no net work over a cycle, such as masses alone.",
-    formula="U / (U + H): U = -(integral of F dx), H the friction loss, over a cycle",
+    sentence="The share of the energy of a cycle that reaches the loads: the rest is heat of guide and pins.",
+    advice="Undefined for a design whose loads take no net work over a cycle, such as masses alone.",
+    formula="U / (U + H): U = -(integral of F dx + M d theta), M: torques on the crank, H: friction loss, over a cycle",
     section=_SECTION,
     picture="torque",
     example=0.9,

@@ -9,9 +9,12 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Hashable
+from dataclasses import replace
 
-from .links import Bar, Link
+from .links import Bar, Link, RigidLink
 from .mechanism import Mechanism
+from .remembered import remembered
+from .varying import Varying
 
 _ROUNDING = 1e-12
 """Share of the forces that their sum may be off by, as decimal numbers add up."""
@@ -30,6 +33,28 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
 def load_works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the loads may take or give net work over a turn for some design; see `works_over_a_turn`."""
     return any(map(_load_works, _tried(mechanism)))
+
+
+@remembered
+def with_loads_alone(mechanism: Mechanism) -> Mechanism:
+    """Return the machine without what weighs and what rubs: all that its drive gives goes into the loads."""
+    nothing = RigidLink(mass=0.0)
+    of_loads = {"loads", "speed", "speed_profile"}
+
+    def own(item: Varying) -> Varying:
+        sets = tuple(each for each in item.sets if each[0].partition(".")[0] in of_loads)
+        return replace(item, sets=sets, idle=not sets)
+
+    return Mechanism(
+        speed=mechanism.speed,
+        crank=nothing,
+        rod=nothing,
+        loads=mechanism.loads,
+        branch=mechanism.branch,
+        arrangement=mechanism.arrangement,
+        speed_profile=mechanism.speed_profile,
+        varying=tuple(map(own, mechanism.varying)),
+    )
 
 
 def rubs_under_load(mechanism: Mechanism) -> bool:

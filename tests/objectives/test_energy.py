@@ -13,6 +13,7 @@ from slidercrank.model.cycle.efficiency import energies
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -20,6 +21,7 @@ from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import Array, linkage_of, random_designs, random_friction, random_machine
+from tests.model.swing.swings import crank_loads
 from tests.objectives.richardson import derivatives, steps_to_the_nearest_edge
 
 # None of them locks, nor do displaced ones.
@@ -55,6 +57,23 @@ def test_they_are_those_of_the_analysis_of_one_design_and_balance() -> None:
                 driven += 1
                 assert efficiency[n] == pytest.approx(found.efficiency, rel=1e-10)
     assert 0 < driven < 36
+
+
+def test_what_torques_on_the_crank_take_is_useful_too() -> None:
+    random, defined = np.random.default_rng(85), 0
+    for machine in rubbing_machines(4, seed=85):
+        torques = crank_loads(random, spring=False)
+        for loads in ((*machine.loads, *torques), torques):
+            own = replace(machine, loads=loads)
+            efficiency, energy, loss = (values(name, own) for name in NAMES)
+            for n, design in enumerate(DESIGNS):
+                found = energies(own, linkage_of(design, machine.branch))
+                assert energy[n] == pytest.approx(found.useful + loss[n], abs=1e-11 * found.throughput)
+                assert math.isnan(efficiency[n]) == (found.efficiency is None)
+                if found.efficiency is not None:
+                    defined += 1
+                    assert efficiency[n] == pytest.approx(found.efficiency, rel=1e-10)
+    assert 0 < defined < 48
 
 
 def test_a_guide_that_rubs_under_its_own_weight_loses_the_path_times_its_friction() -> None:
@@ -105,7 +124,8 @@ def test_gradients_with_friction_in_all_joints_are_those_of_extrapolated_differe
     )
     resistance = StrokeForce(outward=-2000.0, inward=2000.0)
     for machine in rubbing_machines(3, seed=84):
-        machine = replace(machine, loads=(*machine.loads, resistance), speed=10.0, varying=more)
+        loads = (*machine.loads, resistance, CrankTorque(torque=-150.0, resistance=20.0))
+        machine = replace(machine, loads=loads, speed=10.0, varying=more)
         designs = np.column_stack([DESIGNS, np.tile([0.1, 0.005, 10.0], (len(DESIGNS), 1))])
         lengths = 0.3 * steps_to_the_nearest_edge(DESIGNS, kink_without_offset=True)
         first = np.column_stack([lengths, np.tile([0.01, 0.0005, 1.0], (len(DESIGNS), 1))])
