@@ -1,4 +1,4 @@
-"""Measurements of a view: width, clipped text, text over other text, and the size of what is clicked."""
+"""Measurements of a view: width, clipped text, text over other text, the size of what is clicked and of labels."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ _SCRIPT = (
 
 
 def faults(page: Page) -> dict[str, list[str]]:
-    """Faults of a view: "wider" than the window; text "clipped", or "over" other text; "small" targets."""
+    """Faults of a view: "wider" than the window; text "clipped", or "over" other text; "small" targets, "tiny" labels."""
     found: dict[str, list[str]] = page.evaluate(f"(least) => {{ {_SCRIPT} return measured(least); }}", LEAST_TARGET)
     return found

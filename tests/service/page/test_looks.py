@@ -21,6 +21,10 @@ from tests.service.page.looks import faults
 
 VIEWS = ("runs", "new_run", "live", "no_solution", "front", "design", "designs", "compare", "help", "quantity")
 
+# Curves out of sight are drawn anew a moment after those in sight.
+DRAWN = """() => [...document.querySelectorAll(".curves .chart")].every((chart) =>
+  Math.abs(chart.getAttribute("viewBox").split(" ")[2] - chart.getBoundingClientRect().width) < 2)"""
+
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory: pytest.TempPathFactory, solved: Solved) -> Iterator[tuple[str, dict[str, View]]]:
@@ -46,6 +50,7 @@ def test_a_view_is_whole_and_legible_on_every_screen(
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": HEIGHTS[width]})
         page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        page.wait_for_function(DRAWN)
         if worst := faults(page):
             found[f"{width} px"] = worst
     page.set_viewport_size({"width": 1280, "height": 900})

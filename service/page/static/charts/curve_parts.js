@@ -9,7 +9,7 @@ import { extremes } from "./cycle.js";
  * @import { Drawn, Shown } from "./curves.js"
  */
 
-export const ROOM = { left: 52, right: 12, top: 18, bottom: 22 };
+export const ROOM = { left: 56, right: 12, top: 25, bottom: 24 };
 const QUARTERS = [0, 90, 180, 270, 360];
 
 /** @typedef {{ x: Page.Scale, y: Page.Scale, across: Across, height: number }} Pen Scales of a chart, and what it is drawn over. */
@@ -37,7 +37,7 @@ export function centreLines({ x, across, height }, first) {
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     return svg("g", { class: "centre" },
       svg("line", { x1: at, x2: at, y1: ROOM.top, y2: height - ROOM.bottom }),
-      svg("text", { x: at, y: ROOM.top - 4, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, n ? "outer" : "inner"));
+      svg("text", { x: at, y: ROOM.top - 11, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, n ? "outer" : "inner"));
   });
 }
 
@@ -70,7 +70,7 @@ export function peaks(one, { x, y, across }) {
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
     return svg("g", { class: "peak" },
       svg("circle", { cx: at, cy: y.at(value), r: 2.5, "data-series": series }),
-      svg("text", { x: at, y: y.at(value) + (end === "low" ? 12 : -5), "text-anchor": anchor }, text(value, "", 4)));
+      svg("text", { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor }, text(value, "", 4)));
   });
 }
 

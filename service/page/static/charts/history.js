@@ -5,7 +5,7 @@ import { text } from "../lib/numbers.js";
 import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
-const [WIDTH, HEIGHT] = [560, 200];
+const [WIDTH, HEIGHT] = [460, 190]; // no wider than on a laptop, where its texts have 12 pixels
 const AREA = { left: 76, right: 14, top: 12, bottom: 40 };
 
 /**

@@ -1,5 +1,7 @@
-/** Faults of a view as it stands, measured in a browser: what is wider than the window, clipped, over other text, or too small to hit. */
+/** Faults of a view as it stands, measured in a browser: what is wider than the window, clipped, over other text, or too small to hit or read. */
 /* global document, getComputedStyle, NodeFilter */
+
+const [WIDE, LEAST_TEXT] = [1280, 12]; // px: of the window, from where on texts in pictures have that size
 
 /** Return the faults by their kind. least: of what is clicked, px. */
 export function measured(least) {
@@ -7,7 +9,7 @@ export function measured(least) {
   const name = (node) => `${node.tagName.toLowerCase()}.${node.getAttribute("class") ?? ""} "${(node.textContent || node.value || "").trim().slice(0, 50)}"`;
   const style = (node) => getComputedStyle(node);
   const cutting = (node, kinds) => kinds.includes(style(node).overflowX) || kinds.includes(style(node).overflowY);
-  const found = { wider: [], clipped: [], over: [], small: [] };
+  const found = { wider: [], clipped: [], over: [], small: [], tiny: [] };
   const width = document.documentElement.clientWidth;
   if (document.documentElement.scrollWidth > width) {
     const wide = [...document.querySelectorAll("main *")].filter((node) => seen(node) && node.getBoundingClientRect().right > width + 1);
@@ -40,6 +42,13 @@ export function measured(least) {
   }
   for (const input of document.querySelectorAll("input[type=text], input[type=search], input[type=number], input:not([type])"))
     if (seen(input) && input.value && input.scrollWidth > input.clientWidth + 2) found.clipped.push(name(input));
+
+  // Texts in pictures, as large as they are drawn; on a phone pictures shrink with the screen.
+  for (const text of width >= WIDE ? document.querySelectorAll("svg text") : []) {
+    const drawn = text.getScreenCTM();
+    const size = drawn && seen(text) && text.textContent.trim() ? parseFloat(style(text).fontSize) * Math.hypot(drawn.a, drawn.b) : LEAST_TEXT;
+    if (size < LEAST_TEXT - 0.05) found.tiny.push(`${name(text)} of ${size.toFixed(1)} px`);
+  }
 
   // Texts over texts: by more than a third of a line in height, and more than two pixels across.
   texts.sort((one, other) => one.top - other.top);
