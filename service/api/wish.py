@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
 from ..designs.wishing import wished_record
+from ..store.wishes import note_wish, wishes_of
 from .fronts import Cells, ColumnModel, column_models
 from .models import UnitsAsked
 from .problems import problem_responses
-from .stored_fronts import FrontDep
+from .settings import StoreDep
+from .stored_fronts import FrontDep, StoredFront
 from .throttle import SIMULATING
+
+if TYPE_CHECKING:
+    from ...optimise.questions.wishes import Wish
 
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
@@ -30,6 +36,29 @@ class WishesGiven(BaseModel, extra="forbid", strict=True):
 
     at: dict[_NAME, _TEXT] = Field(max_length=100, examples=[{"time_ratio": "1.2", "transmission_angle": "45 deg"}])
     design: int | None = Field(None, ge=1, le=2**31)
+
+
+class WishModel(BaseModel):
+    """A wish for an objective. value: that is wished, or that it may worsen to, in the unit of the objective."""
+
+    wish: Literal["value", "improve", "keep", "limit"]
+    value: float | None = Field(examples=[45.0])
+
+
+class MadeWishModel(BaseModel):
+    """A wish that somebody made of a front. wishes: by objective. design: that classes speak of. at: s since 1970."""
+
+    number: int = Field(examples=[3])
+    wishes: dict[str, WishModel]
+    design: int | None = Field(examples=[None])
+    at: float
+
+
+class WishesModel(BaseModel):
+    """The wishes that were made of the front of a job, the latest first."""
+
+    job: int = Field(examples=[7])
+    made: list[MadeWishModel]
 
 
 class OutcomeModel(BaseModel):
@@ -71,12 +100,44 @@ class WishedModel(BaseModel):
 
 
 @router.post("/jobs/{number}/wish")
-def make_wish(found: FrontDep, given: WishesGiven, units: UnitsAsked = "metric") -> WishedModel:
-    """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked."""
+def make_wish(found: FrontDep, given: WishesGiven, store: StoreDep, units: UnitsAsked = "metric") -> WishedModel:
+    """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked.
+
+    The wish is noted among those of the job.
+    """
     if given.design is not None:
         found.row(given.design)
     with SIMULATING.turn():
         answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
         record: dict[str, Any] = wished_record(answer, units)
+    note_wish(store, found.job.id, _told(found, answer.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=found.job.id, columns=columns, **record)
+
+
+@router.get("/jobs/{number}/wishes")
+def list_wishes(found: FrontDep, store: StoreDep) -> WishesModel:
+    """List the wishes that were made of the front of a job, the latest first."""
+    made = [
+        MadeWishModel(
+            number=one.number,
+            wishes={
+                name: WishModel.model_validate(dict(zip(("wish", "value"), of, strict=True)))
+                for name, of in one.wishes.items()
+            },
+            design=one.design,
+            at=one.at,
+        )
+        for one in wishes_of(store, found.job.id)
+    ]
+    return WishesModel(job=found.job.id, made=made)
+
+
+def _told(found: StoredFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
+    """Return wishes by their objectives, free ones left out, with values in the units of these."""
+    told: dict[str, tuple[str, float | None]] = {}
+    for objective, wish in zip(found.front.objectives, wishes, strict=True):
+        factor = found.problem.quantity(objective.quantity).unit.factor
+        if wish.kind != "free":
+            told[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
+    return told

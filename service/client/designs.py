@@ -70,6 +70,11 @@ class Designs:
         """
         return self._connection.post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
 
+    def wishes(self, number: int) -> list[Record]:
+        """Return the wishes that were made of the front of a job, the latest first: wishes, design and time of each."""
+        found: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
+        return found
+
     def kept(self, number: int) -> list[Record]:
         """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
         found: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]

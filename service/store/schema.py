@@ -128,6 +128,16 @@ kept = sa.Table(
     sa.Column("at", sa.Double, nullable=False),
 )
 
+wishes = sa.Table(
+    "wishes",
+    metadata,
+    _of_a_job(),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("wishes", sa.Text, nullable=False),
+    sa.Column("design", sa.Integer),
+    sa.Column("at", sa.Double, nullable=False),
+)
+
 workers = sa.Table(
     "workers",
     metadata,

@@ -55,6 +55,7 @@ declare global {
     type JobPage = Schemas["JobPage"];
     type Kept = Schemas["KeptDesign"];
     type Limit = Schemas["LimitModel"];
+    type MadeWish = Schemas["MadeWishModel"];
     type Objective = Schemas["ObjectiveModel"];
     type Preset = Schemas["PresetModel"];
     type Preview = Schemas["PreviewModel"];

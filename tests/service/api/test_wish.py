@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -12,6 +14,9 @@ from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from slidercrank.service.store.wishes import MOST_WISHES, note_wish
 from tests.service.api.fixed_front import Solved, client_of, served
 
 AT = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
@@ -46,6 +51,32 @@ def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client
             key: pytest.approx(value, rel=1e-6, abs=1e-6) if isinstance(value, float) else value
             for key, value in other.items()
         }
+
+
+def test_wishes_are_kept_for_all_the_latest_first_and_each_once(solved: Solved, tmp_path: Path) -> None:
+    back_up(solved.store, tmp_path / "store.db")
+    with Store(tmp_path / "store.db") as store, served(store) as address, Client(address) as opened:
+        for at, design in (
+            (AT, None),
+            ({"time_ratio": "improve", "transmission_angle": "may worsen to 0.75 rad"}, 3),
+            ({"transmission_angle": "50 deg", "time_ratio": "1.3"}, None),
+            ({"time_ratio": "improve"}, 3),
+        ):
+            opened.wish(solved.number, at, design=design)
+        found = opened.wishes(solved.number)
+        for value in range(MOST_WISHES + 5):
+            note_wish(store, solved.number, {"time_ratio": ("value", float(value))}, None)
+        latest = [one["wishes"]["time_ratio"]["value"] for one in opened.wishes(solved.number)]
+    improves = {"wish": "improve", "value": None}
+    limit = {"wish": "limit", "value": pytest.approx(math.degrees(0.75))}
+    of = {"time_ratio": {"wish": "value", "value": 1.3}, "transmission_angle": {"wish": "value", "value": 50.0}}
+    assert [(one["wishes"], one["design"]) for one in found[:3]] == [
+        ({"time_ratio": improves}, 3),
+        (of, None),
+        ({"time_ratio": improves, "transmission_angle": limit}, 3),
+    ]
+    assert [one["at"] for one in found] == sorted((one["at"] for one in found), reverse=True)
+    assert latest == [float(value) for value in range(MOST_WISHES + 5)][::-1][:MOST_WISHES]
 
 
 def test_the_client_improves_on_a_design(client: httpx.Client, solved: Solved) -> None:

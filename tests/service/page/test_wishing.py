@@ -11,6 +11,8 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
 from tests.service.api.fixed_front import API, Solved, served
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import watch
@@ -19,10 +21,12 @@ STILL: dict[str, Any] = {"reduced_motion": "reduce", "viewport": {"width": 1280,
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
+def opened(browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
     """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
     wrong: list[str] = []
-    with served(solved.store) as address, contextlib.closing(browser.new_context(**STILL)) as context:
+    path = tmp_path_factory.mktemp("wishing") / "store.db"
+    back_up(solved.store, path)
+    with Store(path) as store, served(store) as address, contextlib.closing(browser.new_context(**STILL)) as context:
         page = context.new_page()
         watch(page, address, wrong, expected=("422",))
         page.goto(f"{address}/#/help")
@@ -84,7 +88,11 @@ def _place(answer: dict[str, Any], outcome: dict[str, Any]) -> int:
     return next(place for place, one in enumerate(answer["columns"]) if one["title"] == outcome["title"])
 
 
-def test_classes_speak_of_a_design_and_earlier_wishes_come_back(page: Page) -> None:
+def test_classes_speak_of_a_design_and_wishes_of_anybody_come_back(
+    page: Page, opened: tuple[Page, str], solved: Solved
+) -> None:
+    made = {"at": {"time_ratio": "1.22", "transmission_angle": "50 deg"}}  # in another window
+    httpx.post(f"{opened[1]}{API}/jobs/{solved.number}/wish", json=made, timeout=60.0)
     wish(page, "time ratio", "improves")
     page.get_by_label("speak of design").fill("3")
     wish(page, "least transmission angle", "may worsen to", "41")
@@ -94,9 +102,12 @@ def test_classes_speak_of_a_design_and_earlier_wishes_come_back(page: Page) -> N
     wish(page, "time ratio", "is wished", "1.25")
     wish(page, "least transmission angle", "is free")
     solve(page)
-    panel(page).get_by_text("Wishes so far (2)").click()
+    panel(page).get_by_text("Wishes so far").click()
+    told = panel(page).locator(".wish-history li")
+    for place, words in enumerate(("time ratio 1.25", "time ratio improves", "time ratio 1.22, least transmission")):
+        expect(told.nth(place)).to_contain_text(words)
     with page.expect_response("**/wish") as answered:
-        panel(page).get_by_role("button", name="time ratio improves").click()
+        panel(page).get_by_role("button", name="time ratio improves").first.click()
     assert answered.value.json()["design"] == first["design"]
     expect(panel(page).get_by_label("Value for least transmission angle")).to_have_value("41")
     panel(page).get_by_role("button", name="Without wishes").click()

@@ -1,4 +1,4 @@
-/** Wishes for the objectives of a front: to and from the address, to the service, and those that were made before. */
+/** Wishes for the objectives of a front: to and from the address, to the service and from it. */
 
 /**
  * @typedef {"free" | "value" | "improve" | "keep" | "limit"} Kind
@@ -8,7 +8,6 @@
  */
 
 const CLASSES = ["improve", "keep"];
-const MOST = 20; // wishes that are remembered of a run
 
 /** Return the wishes that an address has; null without any. @param {URLSearchParams} query @param {readonly { quantity: string }[]} objectives @returns {Wishes | null} */
 export function wishesFrom(query, objectives) {
@@ -77,27 +76,10 @@ export function placed(detail, objectives) {
   return { id: named.length === 1 ? named[0].quantity : "", text };
 }
 
-/** @param {number} job */
-const key = (job) => `wishes ${job}`;
-
-/** Return the wishes that were made of a run in this browser, the latest first, as parts of addresses. @param {number} job @returns {string[]} */
-export function wishedBefore(job) {
-  try {
-    const found = JSON.parse(localStorage.getItem(key(job)) ?? "[]");
-    return Array.isArray(found) ? found.filter((one) => typeof one === "string") : [];
-  } catch {
-    return [];
-  }
-}
-
-/** Remember wishes of a run, as the latest. @param {number} job @param {Wishes} wishes */
-export function remember(job, wishes) {
-  const text = new URLSearchParams(wishQuery(wishes)).toString();
-  try {
-    localStorage.setItem(key(job), JSON.stringify([text, ...wishedBefore(job).filter((one) => one !== text)].slice(0, MOST)));
-  } catch {
-    // A browser that keeps nothing: the link has the latest wish all the same.
-  }
+/** Return wishes that somebody made, as the service has them. @param {Api.MadeWish} made @returns {Wishes} */
+export function wishesOf({ wishes, design }) {
+  const of = Object.entries(wishes).map(([quantity, { wish, value }]) => /** @type {[string, Wish]} */ ([quantity, value === null ? { kind: wish } : { kind: wish, value }]));
+  return { of: new Map(of), design };
 }
 
 /**

@@ -2,12 +2,13 @@
 
 import { link } from "../lib/address.js";
 import { get, isAbort, post, sentenceOf } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, first, h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
 import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { keeping } from "../design/keeping.js";
 import { LENGTHS } from "./linkages.js";
-import { asked, nearest, placed, relative, remember, wishedBefore, wishesFrom, wrongIn } from "./wishes.js";
+import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
@@ -41,6 +42,8 @@ export function wishingPanel(explorer) {
   let near = 0; // the number of the nearest design of the front
   let way = ""; // the link of the design
   let turn = 0; // of the latest question
+  /** @type {Wishes[]} */
+  let made = []; // of the run, by anybody
 
   /** @param {Api.Objective} objective */
   function row({ quantity, title, unit }) {
@@ -131,8 +134,8 @@ export function wishingPanel(explorer) {
       if (own !== turn) return;
       if (given.design) await locate(given.design);
       found = given;
-      remember(job.id, wish);
       show();
+      askBefore();
     } catch (problem) {
       if (own !== turn || isAbort(problem)) return;
       found = null;
@@ -205,11 +208,21 @@ export function wishingPanel(explorer) {
         h("td", { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") }, withUnit(wished[key], unit)), h("td", { class: "number quiet" }, withUnit(beside[key], unit)))))));
   }
 
+  /** Ask for the wishes that anybody made of the run. */
+  async function askBefore() {
+    try {
+      made = (await get(`jobs/${job.id}/wishes`, {}, explorer.signal)).made.map(wishesOf);
+      drawBefore();
+    } catch (problem) {
+      if (!isAbort(problem)) sayProblem(problem);
+    }
+  }
+
   /** Offer the wishes that were made before. */
   function drawBefore() {
-    const latest = wishedBefore(job.id).map((one) => ({ one, wishes: wishesFrom(new URLSearchParams(one), objectives) }));
-    const items = latest.flatMap(({ wishes }) => (wishes ? [h("li", {}, h("button", { type: "button", class: "linked", onclick: () => take(wishes) }, inWords(wishes)))] : []));
-    fill(before, items.length > 0 && h("details", {}, h("summary", {}, `Wishes so far (${items.length})`), h("ol", {}, items)));
+    const open = first(before, "details")?.hasAttribute("open");
+    const items = made.map((wishes) => h("li", {}, h("button", { type: "button", class: "linked", onclick: () => take(wishes) }, inWords(wishes))));
+    fill(before, items.length > 0 && h("details", { open }, h("summary", {}, `Wishes so far (${items.length})`), h("p", { class: "quiet hint" }, "By all who see this run, the latest first."), h("ol", {}, items)));
   }
 
   /** @param {Wishes} wishes */
@@ -228,12 +241,13 @@ export function wishingPanel(explorer) {
   function draw(what) {
     const now = unitOf("mm");
     if (what !== "all" || units === now) return;
-    const first = units === "";
+    const early = units === "";
     units = now;
     showFields();
     drawAnswer();
     drawBefore();
-    if (first && chosen.wish) ask();
+    if (early && chosen.wish) ask();
+    else if (early && !place.hidden) askBefore();
   }
 
   return { place, draw, cells: () => found?.design ?? null };

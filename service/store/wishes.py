@@ -1,0 +1,61 @@
+"""Wishes that people made on the front of a job: the latest of them, each once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sqlalchemy import and_, delete, func, insert, select
+
+from .clock import now
+from .database import Database
+from .rows import the_job
+from .schema import wishes
+
+MOST_WISHES = 50
+"""Wishes that are kept of a job; the oldest go first."""
+Wished = Mapping[str, tuple[str, float | None]]
+"""Wishes by objective: the kind, and the value of one that has a value, in the metric unit of the objective."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MadeWish:
+    """A wish that somebody made. number: among those of its job. design: that classes speak of. at: s since 1970."""
+
+    number: int
+    wishes: Wished
+    design: int | None
+    at: float
+
+
+def wishes_of(store: Database, job: int) -> list[MadeWish]:
+    """Return the wishes that were made of a job, the latest first. Raises `NotFound` without the job."""
+    with store.reading() as connection:
+        the_job(connection, job)
+        rows = connection.execute(select(wishes).where(wishes.c.job == job).order_by(wishes.c.number.desc()))
+        return [
+            MadeWish(
+                number=row.number,
+                wishes={name: (str(kind), value) for name, (kind, value) in json.loads(row.wishes).items()},
+                design=row.design,
+                at=row.at,
+            )
+            for row in rows
+        ]
+
+
+def note_wish(store: Database, job: int, given: Wished, design: int | None) -> None:
+    """Note a wish on the front of a job as the latest, in place of the same one before."""
+    text = json.dumps({name: list(wish) for name, wish in sorted(given.items())})
+    with store.writing() as connection:
+        the_job(connection, job, lock=True)
+        own = wishes.c.job == job
+        last = connection.execute(select(func.max(wishes.c.number)).where(own)).scalar() or 0
+        same = and_(wishes.c.wishes == text, wishes.c.design.is_(None) if design is None else wishes.c.design == design)
+        connection.execute(delete(wishes).where(own, same))
+        kept = select(wishes.c.number).where(own).order_by(wishes.c.number.desc()).limit(1).offset(MOST_WISHES - 2)
+        oldest = connection.execute(kept).scalar()
+        if oldest is not None:
+            connection.execute(delete(wishes).where(own, wishes.c.number < oldest))
+        connection.execute(insert(wishes).values(job=job, number=last + 1, wishes=text, design=design, at=now()))
