@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import httpx
@@ -77,5 +78,16 @@ def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, st
     page.get_by_role("button", name="Keep design 2").click(timeout=30_000)
     expect(page.locator(".kept tbody tr")).to_have_count(before + 1)
     require_accessible(page)
+    page.get_by_role("button", name="Search near Design 2").press("Enter")
+    expect(page).not_to_have_url(re.compile(f"jobs/{solved.number}[?]"))
+    near = page.url.split("/jobs/")[1]
+    job = httpx.get(f"{address}{API}/jobs/{near}", timeout=60.0).json()
+    low, high = (
+        float(str(end).split()[0])
+        for end in httpx.get(f"{address}{API}/jobs/{near}/job", timeout=60.0).json()["variables"]["rod"]
+    )
+    rod = float(str(solved.result.designs[1]["rod_mm"]))
+    assert (job["origin"], low, high) == (solved.number, pytest.approx(0.9 * rod), pytest.approx(1.1 * rod))
+    page.go_back()
     page.get_by_role("button", name="Drop Design 2").click()
     expect(page.locator(".kept tbody tr")).to_have_count(before)

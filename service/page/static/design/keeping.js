@@ -3,6 +3,7 @@
 import { go, link } from "../lib/address.js";
 import { post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
 
 /**
  * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(): it is.
@@ -28,21 +29,27 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
       button.disabled = false;
     }
   }
-  const failed = h("p", { class: "bad", role: "alert" });
+  return h("div", { class: "row keep-or-search" }, h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
+    lengths && searching(job, lengths, { title: "Search near this" }));
+}
 
-  /** @param {HTMLButtonElement} near @param {Page.Lengths} around */
-  async function search(near, around) {
+/**
+ * Return the button that searches near lengths. name: what it is called where the title does not say it; act: what it is called in a list
+ * that is drawn anew.
+ * @param {string} job @param {() => Page.Lengths} lengths @param {{ title: string, name?: string, act?: string }} looks
+ */
+export function searching(job, lengths, { title, name, act }) {
+  /** @param {HTMLButtonElement} near */
+  const search = async (near) => {
     near.disabled = true;
-    failed.textContent = "";
     try {
-      const { id } = await post(`jobs/${job}/nearby`, around);
+      const { id } = await post(`jobs/${job}/nearby`, lengths());
       go(["jobs", id]);
     } catch (error) {
-      failed.textContent = sentenceOf(error);
+      sayProblem(error);
     } finally {
       near.disabled = false;
     }
-  }
-  return h("div", { class: "row keep-or-search" }, h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
-    lengths && h("button", { type: "button", title: "A run of its own, whose lengths vary by a tenth around these", onclick: ({ currentTarget }) => search(currentTarget, lengths()) }, "Search near this"), failed);
+  };
+  return h("button", { type: "button", title: "A run of its own, whose lengths vary by a tenth around these", "aria-label": name, "data-act": act, onclick: ({ currentTarget }) => search(currentTarget) }, title);
 }

@@ -5,6 +5,8 @@ import { address, get, isAbort, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
+import { searching } from "../design/keeping.js";
+import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -96,6 +98,7 @@ export function keptPanel(explorer) {
       h("td", {}, h("input", { type: "radio", name: "decided", checked: one.decided, "aria-label": `Decided for ${name}`, "data-act": `decided-${number}`, onchange: () => change(number, { decided: true }) })),
       words("reason", "Why, or why not,"),
       LENGTHS.map((key) => h("td", { class: "number quiet", "data-key": key, "data-value": String(one.cells[key] ?? "") }, withUnit(one.cells[key], "mm", 6))),
+      h("td", {}, searching(`${job.id}`, () => lengthsOf(one.cells), { title: "Search near", name: `Search near ${name}`, act: `near-${number}` })),
       h("td", {}, h("button", { type: "button", class: "small", "aria-label": `Drop ${name}`, title: "Drop", onclick: () => drop(one) }, "×")));
   }
 
@@ -109,10 +112,10 @@ export function keptPanel(explorer) {
     const decided = designs.find((one) => one.decided);
     fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`, " ", reportOf(decided)]);
     why.hidden = !decided;
-    const heads = ["", "name", ...data.objectives.map(({ title }) => title), "note", "decided", "because, or why not", "crank", "rod", "offset", ""];
+    const heads = ["", "name", ...data.objectives.map(({ title }) => title), "note", "decided", "because, or why not", "crank", "rod", "offset", "", ""];
     const words = 2 + data.objectives.length; // where those that are no numbers begin
     fill(table, h("table", {}, h("caption", { class: "hidden" }, "Kept designs"),
-      h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n > 1 && (n < words || n > words + 2) && title ? "number" : null }, title || h("span", { class: "hidden" }, n ? "Drop" : "Star"))))), h("tbody", {}, shown.map(line))));
+      h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n > 1 && (n < words || n > words + 2) && title ? "number" : null }, title || h("span", { class: "hidden" }, n ? (n < heads.length - 1 ? "Search near" : "Drop") : "Star"))))), h("tbody", {}, shown.map(line))));
     if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();
   }
 

@@ -7,6 +7,7 @@ import { sayProblem } from "../lib/notices.js";
 import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { keeping } from "../design/keeping.js";
+import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 
@@ -179,7 +180,7 @@ export function wishingPanel(explorer) {
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
     fill(answer, sentence, outcomes(found, nearby),
       h("div", { class: "row" }, way ? h("a", { class: "button primary", href: way }, "Open the wished design") : h("span", { class: "quiet" }, "More than its lengths is new, so all of its numbers are here."),
-        keeping({ job: `${job.id}`, design: near, dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])), kept: () => explorer.kept?.ask() })),
+        keeping({ job: `${job.id}`, design: near, dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])), kept: () => explorer.kept?.ask(), lengths: () => lengthsOf(wished) })),
       h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)));
   }
 
