@@ -142,22 +142,24 @@ class Boxes:
         """Return crank, rod and offset, (n, 1); those that are computed are held to their ranges."""
         n, k = lower.shape
         sheet = self.sheet
-        known: dict[str, Enclosure] = {}
-        for name, bounds in sheet.bounds.items():
-            if bounds.fixed:
-                known[name] = Enclosure(np.full((n, 1), bounds.lower), np.zeros((k, n, 1)), np.zeros((n, 1)))
+
+        def everywhere(value: float) -> Enclosure:
+            return Enclosure(np.full((n, 1), value), np.zeros((k, n, 1)), np.zeros((n, 1)))
+
+        known = {name: everywhere(bounds.lower) for name, bounds in sheet.bounds.items() if bounds.fixed}
         for column, name in enumerate(sheet.free):
             first, last = [
                 sheet.lower[column] * (1.0 - u[:, column]) + sheet.upper[column] * u[:, column] for u in (lower, upper)
             ]
             known[name] = coordinate(first, last, column, k)
         for step in sheet.steps:
-            found = step.formula(*(known[name] for name in step.sources))
+            given = [known[name] for name in step.sources]
+            found = step.formula(*given) if given else everywhere(float(step.formula()))
             bounds = sheet.bounds[step.target]
             scale = max(bounds.upper, 1e-300)
             limits.add((found - bounds.upper) * (1.0 / scale))
             limits.add((bounds.lower - found) * (1.0 / scale))
-            known[step.target] = found.confined(*_room(step.target, known, bounds, self.lean))
+            known[step.target] = found.confined(*_room(step.target, known, bounds, self.lean, n))
         return known["crank"], known["rod"], known["offset"] * sheet.sign
 
     def _closed(
@@ -194,11 +196,11 @@ class Boxes:
         return middle, found
 
 
-def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float) -> tuple[Array, Array]:
-    """Return the ends of a computed dimension from its range, and from r + |e| <= lean l if known."""
+def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:
+    """Return the ends (n, 1) of a computed dimension from its range, and from r + |e| <= lean l if known."""
     others = [known[other].ends() for other in DIMENSIONS if other != name and other in known]
     slack = _SLACK * bounds.upper
-    low, high = np.full_like(others[0][0], bounds.lower - slack), np.full_like(others[0][0], bounds.upper + slack)
+    low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)
     if len(others) < 2:
         return low, high
     (one, two), (three, four) = others  # in the order crank, rod, offset

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...model.errors import JobError
-from ...objectives.formula.quantity import FormulaQuantity
+from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
 from ...objectives.reach import CLEAR, Ranges
@@ -107,12 +107,17 @@ def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Pro
     key = key_of(["constraints", of.name])
     least, greatest = box.possible(of)
     assert of.reach is not None
-    got = f"got {_bounds(constraint, of)}"
     room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + room:
-        raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.more}, or ask for less")
-    if constraint.upper is not None and constraint.upper + room < least:
-        raise JobError(f"{key}: {_possible(problem, constraint)}; {got}; {of.reach.less}, or ask for more")
+        told, remedy = _possible(problem, constraint), f"{of.reach.more}, or ask for less"
+    elif constraint.upper is not None and constraint.upper + room < least:
+        told, remedy = _possible(problem, constraint), f"{of.reach.less}, or ask for more"
+    else:
+        return
+    same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
+    if same is not None and not same.names:
+        told, remedy = f"it is {_shown(of, float(same.constant))} for every design", "leave it out"
+    raise JobError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
 
 
 def _possible(problem: Problem, constraint: Constraint) -> str:

@@ -6,6 +6,7 @@ either sign of the offset; full rotation, rod >= crank + |offset|, is a row of i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -22,6 +23,8 @@ from ..search.linear_rules import linear_equations, on_side
 from .messages import key_of
 
 _UNIT = 1e3  # lengths in mm: rounding of the programme is 1e-7 of its unit
+_ANY: dict[str, tuple[float, float]] = {"crank": (1e-6, math.inf), "rod": (1e-6, math.inf), "offset": (0.0, math.inf)}
+"""Ranges, m, that no job widens further."""
 _NONE = 2
 """Status of `linprog` where nothing meets all rows."""
 
@@ -71,11 +74,17 @@ def _told(part: Problem) -> str:
         told += [f"{name} {word} {bound * face.factor:.6g} {face.symbol}".rstrip() for word, bound in asked[name].sides]
     side = part.slow_side()
     kept = "" if side is None else f"; constraints.slow_stroke keeps the offset {'above' if side > 0.0 else 'below'} 0"
+    ever = any(
+        _possible([row for row in rows if row.name in names], ends | _ANY, turning=part.motion is None)
+        for rows, ends in sides
+    )
     if len(names) == 1:
-        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; widen the ranges{kept}"
+        remedy = "widen the ranges" if ever else "no ranges change that: give it up"
+        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; {remedy}{kept}"
+    remedy = "give up one of them, or widen the ranges" if ever else "no ranges change that: give up one of them"
     return (
         f"{first}: requirements together leave some crank, rod and offset within the ranges; got {' and '.join(told)}, "
-        f"which exclude each other; give up one of them, or widen the ranges{kept}"
+        f"which exclude each other; {remedy}{kept}"
     )
 
 

@@ -45,8 +45,22 @@ def test_linear_rules_that_a_design_meets_are_taken_and_those_that_exclude_each_
         parse_job(job(constraints=given))
         total = factors.sum(axis=0)
         given[rule(total)] = {"equals": f"{float(1e3 * total @ design + 1.0)!r} mm"}
-        with pytest.raises(JobError, match="which exclude each other; give up one of them"):
+        with pytest.raises(JobError, match="which exclude each other; .*give up one of them"):
             parse_job(job(constraints=given))
+
+
+def test_rules_that_no_ranges_make_possible_do_not_advise_to_widen_them() -> None:
+    """Crank and rod of two ratios, or a formula that is a number: no ranges help; with a constant, some may."""
+    random = np.random.default_rng(17)
+    for _ in range(10):
+        one, two = np.round(random.uniform(1.2, 9.0, 2), 2).tolist()
+        with pytest.raises(JobError, match="no ranges change that: give up one of them"):
+            parse_job(job(constraints={"rod": {"equals": f"{one} * crank"}, "crank": {"equals": f"rod / {two}"}}))
+        lift = {"rod": {"equals": "3 * crank"}, "rod - 2 * crank": {"equals": f"{60.0 + 10.0 * one} mm"}}
+        with pytest.raises(JobError, match="or widen the ranges"):
+            parse_job(job(constraints=lift))
+        with pytest.raises(JobError, match="mm for every design; got min 0 mm; leave it out"):
+            parse_job(job(constraints={"crank": {"min": f"crank + {one} mm"}}))
 
 
 def test_rules_that_meet_beyond_the_ranges_are_refused_and_name_those_that_matter() -> None:

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.varying import Varying
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.infeasible import prove_infeasible
+from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
 
@@ -41,6 +43,30 @@ def test_given_dimensions_either_have_the_stroke_or_not(stroke: float, infeasibl
     held: dict[str, Bounds] = {"stroke": (stroke * 0.98, stroke * 1.02)}
     given = problem({"peak_torque": "minimise"}, held, crank=0.1, rod=0.3, offset=0.05)
     assert prove_infeasible(given) is infeasible
+
+
+def test_rules_that_leave_one_value_are_bounded_where_they_contradict_a_stroke_and_where_they_do_not() -> None:
+    """Linear equalities of a drawn design fix one, two or all of its dimensions; the stroke is its own, or is not."""
+    random, told = np.random.default_rng(61), 0
+    for fixed in (("crank",), ("offset",), ("crank", "offset"), ("crank + offset", "offset"), ("rod", "rod - 3*crank")):
+        for _ in range(3):
+            crank, offset = random.uniform(0.03, 0.045), random.uniform(0.0, 0.03)
+            design = {"crank": crank, "rod": random.uniform(0.1, 0.2), "offset": offset}
+            stroke = float(Linkage(crank, design["rod"], offset).stroke)
+            rules = {rule: {"equals": f"{eval(rule, {}, design)!r} m"} for rule in fixed}
+            for factor in (1.0, 1.2):
+                job = parse_job(
+                    {
+                        "name": "one value",
+                        "mechanism": {"speed": "100 rpm", "slider": {"mass": "2 kg"}},
+                        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["80 mm", "250 mm"], "offset": [0, "40 mm"]},
+                        "constraints": rules | {"stroke": {"equals": f"{factor * stroke!r} m"}},
+                        "objectives": {"peak_torque": "minimise"},
+                    }
+                )
+                assert not (factor == 1.0 and prove_infeasible(job))
+                told += prove_infeasible(job, seconds=20.0)
+    assert told == 9
 
 
 @pytest.mark.parametrize("job", JOBS)
