@@ -64,3 +64,21 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/motor"
     told = httpx.get(path, params=lengths, timeout=60.0).json()["told"]
     expect(panel.locator("tr", has_text="peak torque").first).to_contain_text(told[1]["rows"][0][1])
+
+
+def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> None:
+    page, address = opened
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/4")
+    page.evaluate("() => { window.print = () => { window.left = document.querySelectorAll('.busy').length; }; }")
+    page.get_by_role("button", name="Print").press("Enter", timeout=30_000)  # nothing was scrolled into sight
+    page.wait_for_function("() => window.left !== undefined", timeout=60_000)
+    assert page.evaluate("window.left") == 0
+    page.emulate_media(media="print")
+    expect(page.get_by_role("heading", name="What it is sensitive to")).to_be_visible()
+    assert page.locator(".analysis img").evaluate("image => image.complete && image.naturalWidth") > 100
+    expect(page.get_by_role("button")).to_have_count(0)
+    page.goto(f"{address}/#/jobs/{solved.number}")
+    expect(page.get_by_role("columnheader", name="time ratio")).to_contain_text("time ratio", timeout=30_000)
+    expect(page.locator("table.designs tbody tr")).to_have_count(len(solved.result.designs))
+    page.emulate_media(media="screen")

@@ -3,6 +3,7 @@
 import { address, get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
+import { beforePrinting } from "../lib/printing.js";
 import { capital, inWords } from "../lib/words.js";
 import { scrolled } from "./numbers.js";
 import { proof } from "./proof.js";
@@ -30,19 +31,27 @@ export function analyses(place, { job, number, drawn, signal }) {
   let turn = 0;
   let seen = false;
 
+  /** @type {Promise<void> | null} */
+  let begun = null;
   const watcher = new IntersectionObserver((now) => {
-    if (!now.some((one) => one.isIntersecting)) return;
-    watcher.disconnect();
-    seen = true;
-    begin();
+    if (now.some((one) => one.isIntersecting)) begun ??= begin();
   }, { rootMargin: NEAR });
   watcher.observe(place);
+  beforePrinting(() => (begun ??= begin()).then(pictured), signal);
   signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
 
+  /** Wait for the figure of the tab. */
+  async function pictured() {
+    const picture = panel.querySelector("img");
+    if (picture && !picture.complete) await new Promise((done) => ["load", "error"].forEach((name) => picture.addEventListener(name, done, { once: true })));
+  }
+
   async function begin() {
+    watcher.disconnect();
+    seen = true;
     try {
       topics = [...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)), CERTIFY];
-      choose(topics[0].name);
+      await choose(topics[0].name);
     } catch (error) {
       if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
     }
@@ -55,7 +64,7 @@ export function analyses(place, { job, number, drawn, signal }) {
       type: "button", role: "tab", id: `tab-${one.name}`, "aria-controls": "analysis", "aria-selected": String(one.name === name), tabindex: one.name === name ? 0 : -1, title: one.shows, onclick: () => choose(one.name),
     }, one.title)));
     panel.setAttribute("aria-labelledby", `tab-${name}`);
-    ask();
+    return ask();
   }
 
   /** @param {KeyboardEvent} event */

@@ -4,6 +4,7 @@ import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { say } from "../lib/notices.js";
+import { printWhole } from "../lib/printing.js";
 import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [
@@ -32,6 +33,14 @@ export function takeAway(job, number, { signal } = {}) {
     ...["png", "svg"].map((kind) => anchor(`jobs/${job}/figures/design_${number}.${kind}`, `Sheet ${kind.toUpperCase()}`, "All curves on one sheet")),
   ];
   const said = h("span", { class: "quiet", role: "status" });
+  const print = h("button", { type: "button", title: "The whole view on paper or as PDF, all of its parts computed", onclick: async ({ currentTarget }) => {
+    currentTarget.setAttribute("aria-busy", "true");
+    try {
+      await printWhole();
+    } finally {
+      currentTarget.removeAttribute("aria-busy");
+    }
+  } }, "Print");
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
   /** @param {Page.Lengths | null} other */
   const show = (other) => {
@@ -46,7 +55,7 @@ export function takeAway(job, number, { signal } = {}) {
   window.addEventListener("units", () => show(lengths), { signal });
   const list = h("ul", { class: "files" }, links.map(({ node, words: about }) => h("li", {}, node, h("span", { class: "quiet" }, about))));
   const button = menu("Export", h("div", { class: "chooser-list panel at-left" }, list));
-  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, button, copy, said), show };
+  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, button, print, copy, said), show };
 }
 
 async function copyLink() {

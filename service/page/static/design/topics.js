@@ -2,6 +2,7 @@
 
 import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { beforePrinting } from "../lib/printing.js";
 import { readySystem } from "../lib/numbers.js";
 import { capital, inWords } from "../lib/words.js";
 import { extremes } from "./extremes.js";
@@ -31,20 +32,26 @@ export function topics(place, { job, number, objectives, requirements, signal })
     const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     const section = h("section", { class: name }, h("h2", {}, title), body);
     if (name === "tolerances" && !requirements.tolerances) {
-      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; give it some, such as 0.05 mm of the crank."));
+      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; give it some."));
       return section;
     }
-    const watcher = new IntersectionObserver(async (seen) => {
-      if (!seen.some((one) => one.isIntersecting)) return;
+    /** @type {Promise<void> | null} */
+    let asked = null;
+    const ask = async () => {
       watcher.disconnect();
       try {
         const [{ analysis }] = await Promise.all([get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal), readySystem()]);
         show(body, analysis[name], { objectives, signal });
       } catch (error) {
-        if (!isAbort(error)) fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}.`));
+        if (isAbort(error)) return;
+        fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}.`));
       }
+    };
+    const watcher = new IntersectionObserver((seen) => {
+      if (seen.some((one) => one.isIntersecting)) asked ??= ask();
     }, { rootMargin: NEAR });
     watcher.observe(section);
+    beforePrinting(() => (asked ??= ask()), signal);
     signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
     return section;
   });

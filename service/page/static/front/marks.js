@@ -25,7 +25,7 @@ export function marksPanel(explorer) {
     front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)),
     list,
     front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), costs],
-    several && [h("h3", {}, "Weigh the objectives"),
+    several && [h("h3", { class: "weights" }, "Weigh the objectives"),
       h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
       h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
   /** @type {ReturnType<typeof setTimeout> | undefined} */
