@@ -45,7 +45,7 @@ def test_linear_rules_that_a_design_meets_are_taken_and_those_that_exclude_each_
         parse_job(job(constraints=given))
         total = factors.sum(axis=0)
         given[rule(total)] = {"equals": f"{float(1e3 * total @ design + 1.0)!r} mm"}
-        with pytest.raises(JobError, match="which exclude each other; .*give up one of them"):
+        with pytest.raises(JobError, match=r"which exclude each other; .*give up one of them"):
             parse_job(job(constraints=given))
 
 
