@@ -63,6 +63,13 @@ class Submission(BaseModel, extra="forbid", strict=True):
     job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
     priority: Priority = 0
     limits: AskedLimits = AskedLimits()
+    origin: int | None = Field(
+        None,
+        ge=1,
+        le=LARGEST,
+        description="the job that it is a changed copy of, left out once that is gone",
+        examples=[1],
+    )
 
 
 class Clone(BaseModel, extra="forbid", strict=True):
@@ -79,12 +86,13 @@ class Clone(BaseModel, extra="forbid", strict=True):
 
 @dataclass(frozen=True, kw_only=True)
 class Asked:
-    """A submission that was read. source: the job file, if one was sent."""
+    """A submission that was read. source: the job file, if one was sent. origin: the job that it is a copy of."""
 
     tables: Mapping[str, Any]
     priority: int = 0
     limits: Limits = NO_LIMITS
     source: Artefact | None = None
+    origin: int | None = None
 
 
 async def asked_for(request: Request) -> Asked:
@@ -108,7 +116,7 @@ async def asked_for(request: Request) -> Asked:
         found = error.errors(include_url=False)
         raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None
     limits = within(stated.limits, settings.limits)
-    return Asked(tables=stated.job, priority=stated.priority, limits=limits)
+    return Asked(tables=stated.job, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
 def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:

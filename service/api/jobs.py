@@ -71,7 +71,8 @@ QueueDep = Annotated[Queue, Depends()]
 @router.post("/jobs", **SUBMITTED)
 def submit_job(asked: Annotated[Asked, Depends(asked_for)], queue: QueueDep) -> dict[str, Any]:
     """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
-    return queue.put(asked)
+    known = asked.origin is not None and queue.store.jobs(numbers={asked.origin}, limit=1)
+    return queue.put(asked, origin=asked.origin if known else None)
 
 
 @router.get("/jobs", response_model=JobPage)

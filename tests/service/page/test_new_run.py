@@ -80,6 +80,11 @@ def test_every_preset_and_a_copy_of_a_job_are_shown_whole_and_stay_as_they_are(
     expect(page.get_by_role("button", name="Bring back")).to_be_hidden()
     ready(page)
     assert text_of(page) == shipped["support"]
+    start(page)
+    page.wait_for_url("**/#/jobs/2")
+    assert (store.job(2).origin, store.job(1).origin) == (1, None)
+    httpx.post(f"{page.url.split('#')[0]}api/v1/jobs", json={"job": shipped["sieve"], "origin": 99}, timeout=60.0)
+    assert store.job(3).origin is None  # it is gone
 
 
 def test_the_first_job_of_an_empty_form_can_be_solved_and_its_sketch_moves_until_paused(

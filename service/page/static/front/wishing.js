@@ -193,7 +193,7 @@ export function wishingPanel(explorer) {
       return h("tr", {}, h("th", { scope: "row" }, one.title), h("td", { class: "number quiet" }, words),
         h("td", { class: "number", "data-key": one.quantity, "data-value": String(one.reached) }, withUnit(one.reached, one.unit)),
         h("td", {}, one.wish === "free" ? null : h("span", { class: one.met ? "good" : "at-limit" }, one.met ? "✓ met" : `short by ${withUnit(one.short, one.unit, 3)}`)),
-        h("td", { class: "number quiet" }, value === undefined ? "" : signed(one.reached - value, one.unit)));
+        h("td", { class: "number quiet" }, value === undefined ? "" : signed(one.reached, value, one.unit)));
     });
     return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Wished and reached" }, h("table", {}, h("caption", { class: "hidden" }, "Wished and reached"),
       h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Objective"), h("th", { scope: "col", class: "number" }, "wished"), h("th", { scope: "col", class: "number" }, "reached"), h("th", { scope: "col" }, h("span", { class: "hidden" }, "met")), h("th", { scope: "col", class: "number" }, "against ", nearby))),
@@ -254,7 +254,8 @@ export function wishingPanel(explorer) {
   return { place, draw, cells: () => found?.design ?? null };
 }
 
-/** Return a difference with its sign. @param {number} value @param {string} unit */
-function signed(value, unit) {
-  return value === 0 ? "=" : `${value > 0 ? "+" : ""}${text(value, unit, 3)}`;
+/** Return by how much a value is from another, with its sign; of rounding alone, that they are equal. @param {number} value @param {number} other @param {string} unit */
+function signed(value, other, unit) {
+  const by = value - other;
+  return Math.abs(by) <= APART * Math.abs(other) ? "=" : `${by > 0 ? "+" : ""}${text(by, unit, 3)}`;
 }

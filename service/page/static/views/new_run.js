@@ -191,8 +191,9 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     start.disabled = true;
     keepDraft(draft); // with its key: should the answer be lost, the same is sent again
     const { priority, ...limits } = form.submission;
+    const { from } = addressOf(draft.source);
     try {
-      const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits }, { headers: { "Idempotency-Key": draft.key } });
+      const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits, origin: from ? Number(from) : null }, { headers: { "Idempotency-Key": draft.key } });
       keepDraft(null);
       go(["jobs", String(job.id)]);
     } catch (error) {
