@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 from collections.abc import Iterator
 from typing import Any
@@ -12,12 +11,11 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
-from tests.service.api.fixed_front import Solved, served
+from tests.service.api.fixed_front import Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 DESIGN = 3
-STILL: dict[str, Any] = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 900}}
 CELLS = """table => [...table.tBodies[0].rows].map(row => [row.cells[0].textContent,
   ...[...row.cells].slice(1).filter(cell => cell.dataset.value !== undefined)
     .map(cell => cell.dataset.value === "" ? null : Number(cell.dataset.value))])"""
@@ -33,13 +31,9 @@ def told(solved: Solved, *arguments: str) -> Any:
 @pytest.fixture(scope="module")
 def opened(browser: Browser, solved: Solved) -> Iterator[Page]:
     """Return one page for all tests here, of which nothing may go wrong but refusals."""
-    wrong: list[str] = []
-    with served(solved.store) as address, contextlib.closing(browser.new_context(**STILL)) as context:
-        page = context.new_page()
-        watch(page, address, wrong, expected=("422",))
+    with watched(browser, solved.store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page
-    assert wrong == []
 
 
 @pytest.fixture

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
 
 import httpx
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.service.api.fixed_front import API, Solved, served
+from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import watched
 
 DESIGN = 3
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
@@ -20,13 +19,9 @@ LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 @pytest.fixture(scope="module")
 def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
     """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
-    wrong: list[str] = []
-    with served(solved.store) as address, contextlib.closing(browser.new_context(reduced_motion="reduce")) as context:
-        page = context.new_page()
-        watch(page, address, wrong, expected=("422",))
+    with watched(browser, solved.store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page, address
-    assert wrong == []
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -13,25 +12,19 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from tests.service.api.fixed_front import API, Solved, served
+from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watch
-
-STILL: dict[str, Any] = {"reduced_motion": "reduce", "viewport": {"width": 1280, "height": 900}}
+from tests.service.page.conftest import watched
 
 
 @pytest.fixture(scope="module")
 def opened(browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
     """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
-    wrong: list[str] = []
     path = tmp_path_factory.mktemp("wishing") / "store.db"
     back_up(solved.store, path)
-    with Store(path) as store, served(store) as address, contextlib.closing(browser.new_context(**STILL)) as context:
-        page = context.new_page()
-        watch(page, address, wrong, expected=("422",))
+    with Store(path) as store, watched(browser, store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page, address
-    assert wrong == []
 
 
 @pytest.fixture
