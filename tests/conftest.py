@@ -7,6 +7,9 @@ import pytest
 from hypothesis import settings
 
 from tests.order import shared_out
+from tests.shared import shared_by_workers
+
+__all__ = ["shared_by_workers"]  # a fixture for all tests
 
 # Kernels may compile within a test, so that no deadline holds; the same cases come in every run.
 settings.register_profile("fixed", deadline=None, derandomize=True)

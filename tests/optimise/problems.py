@@ -18,6 +18,7 @@ from slidercrank.optimise.methods.auto import auto
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
 from slidercrank.optimise.solve import solve
+from tests.shared import computed_once
 
 JOBS = ("feeder", "sieve", "turning_support", "compressor")
 RUNS = Path(__file__).parents[2] / "runs"
@@ -99,7 +100,7 @@ def shipped(job: str) -> Problem:
     return load_job((DATA if job == "turning_support" else RUNS) / f"{job}.toml")
 
 
-@cache
+@computed_once
 def shipped_front(job: str) -> ParetoFront:
     """Return the front of a shipped job."""
     return solve(shipped(job))
