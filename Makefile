@@ -30,7 +30,7 @@ test-all: MARKED :=
 test-all: test
 
 # The numbers with another rounding: neither fused multiply-add nor this processor's wide vectors. A part that takes a
-# minute and a half; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"
+# minute; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"
 ROUNDING ?= tests/optimise/test_shipped_jobs.py tests/optimise/test_known_optima.py
 test-rounding: $(VENV)/.installed-test
 	NUMBA_CPU_NAME=generic OPENBLAS_CORETYPE=Nehalem $(BIN)/python -m pytest $(ROUNDING)
