@@ -138,14 +138,7 @@ class Shaft:
         return np.asarray(found[2][:, 0] == 1)
 
     def _follow(
-        self,
-        kind: int,
-        members: Whole,
-        row: Whole,
-        inside: Array,
-        angle: Array,
-        rate: Array | None,
-        wanted: bool,
+        self, kind: int, members: Whole, row: Whole, inside: Array, angle: Array, rate: Array | None, wanted: bool
     ) -> tuple[Array, Array, Whole]:
         """Return curve, sizes and strokes; for an angle where every force vanishes at once those beside it."""
         found = self._asked(kind, members, row, inside, angle, rate, wanted)
@@ -160,14 +153,7 @@ class Shaft:
         return found
 
     def _asked(
-        self,
-        kind: int,
-        members: Whole,
-        row: Whole,
-        inside: Array,
-        angle: Array,
-        rate: Array | None,
-        wanted: bool,
+        self, kind: int, members: Whole, row: Whole, inside: Array, angle: Array, rate: Array | None, wanted: bool
     ) -> tuple[Array, Array, Whole]:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
         items = Items(

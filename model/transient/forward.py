@@ -142,8 +142,8 @@ class _Run:
         tolerance: float,
         samples: int,
     ) -> None:
-        marks = tuple(start.angle + turn * TURN for turn in range(cycle_turns(mechanism)))
-        self.equation = equation_of(mechanism, linkage, marks=marks)
+        starts = tuple(start.angle + turn * TURN for turn in range(cycle_turns(mechanism)))
+        self.equation = equation_of(mechanism, linkage, marks=starts)
         self.period = self.equation.period
         self.equation.require_inertia(drive.inertia)
         self.drive, self.duration, self.tolerance = drive, duration, tolerance
@@ -152,11 +152,10 @@ class _Run:
         first = float(breakpoints[0])
         self.local = first + (start.angle - first) % self.period
         self.turn = round((start.angle - self.local) / self.period)
-        gaps = np.abs((breakpoints - self.local + math.pi) % self.period - math.pi)
-        self.mark = int(np.argmin(gaps))  # the start is a breakpoint, or as good as one
-        later = np.abs((breakpoints - self.local - TURN + math.pi) % self.period - math.pi)
-        self.marks = {self.mark, int(np.argmin(later))}
-        self.index = self.mark
+        gaps = breakpoints - self.local - np.array([[0.0], [TURN]])
+        marks = np.argmin(np.abs((gaps + math.pi) % self.period - math.pi), axis=1).tolist()
+        self.index = self.mark = marks[0]  # the start is a breakpoint, or as good as one
+        self.marks = {*marks}
         if self.local > first + self.period - 2.0 * NEAREST:
             self.turn, self.local = self.turn + 1, first
         self.time, self.speed, self.at_mark, self.at_cycle = 0.0, start.speed, True, True
@@ -219,17 +218,14 @@ class _Run:
             self.turn, self.local = self.turn - 1, self.local + self.period
 
     def _pass_edge(self, stretch: Span) -> None:
-        count = len(self.equation.breakpoints)
-        if self.way > 0.0:
-            self.local, self.index = stretch.high, (self.index + 1) % count
-            self.at_mark, self.at_cycle = self.index in self.marks, self.index == self.mark
-            if self.index == 0:
-                self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
-        else:
-            self.at_mark, self.at_cycle = self.index in self.marks, self.index == self.mark
-            self.local = stretch.low
-            self.index = (self.index - 1) % count
+        count, forward = len(self.equation.breakpoints), self.way > 0.0
+        edge = (self.index + forward) % count
+        self.at_mark, self.at_cycle = edge in self.marks, edge == self.mark
+        self.local, self.index = (stretch.high, edge) if forward else (stretch.low, (edge - 1) % count)
+        if not forward:
             self._lift(self.index == count - 1)
+        elif edge == 0:
+            self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
 
     def _speed_scale(self, speed: float) -> float:
         """Return a speed, rad/s, against which errors are measured while the crank is slow."""
@@ -258,10 +254,7 @@ class _Run:
             acceleration = surplus / (terms.inertia[0] + added)
             return np.array([speed, acceleration, torque * speed, (drag - terms.load[0]) * speed])
 
-        events: list[Any] = [
-            lambda _time, y: way * (y[0] - edge),
-            lambda _time, y: way * y[1],
-        ]
+        events: list[Any] = [lambda _time, y: way * (y[0] - edge), lambda _time, y: way * y[1]]
         if math.isfinite(limit := fastest if way > 0.0 else -slowest):
             events.append(lambda _time, y: limit - way * y[1])
         for event, sense in zip(events, (1.0, -1.0, -1.0), strict=False):

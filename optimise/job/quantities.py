@@ -51,12 +51,15 @@ class Bounds(Part):
             raise InputError("must have either equals, or min and max; got both; leave out one of the two")
         both = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
         if both and lower > upper:
-            given = data if isinstance(data, Mapping) else {"min": lower, "max": upper}
-            raise InputError(
-                f"min must not exceed max; got min {shown(given['min'])} and max "
-                f"{shown(given['max'])}, which no design can meet; swap the two or leave out one"
-            )
+            raise InputError(_crossed(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))
         return bounds
+
+
+def _crossed(given: Mapping[Any, object]) -> str:
+    return (
+        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}, which no design can "
+        "meet; swap the two or leave out one"
+    )
 
 
 class Target(Part):
@@ -278,10 +281,7 @@ def _bounded(key: str, name: str, given: Mapping[Word, object], formulas: Formul
         found.setdefault(bounded.name, {})[word] = bound
     for quantity, ends in found.items():
         if "min" in ends and "max" in ends and ends["min"] > ends["max"]:
-            raise JobError(
-                f"{key}: min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}, which "
-                "no design can meet; swap the two or leave out one"
-            )
+            raise JobError(f"{key}: {_crossed(given)}")
         yield Constraint(quantity=quantity, **_ends(ends))
 
 

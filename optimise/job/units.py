@@ -134,8 +134,7 @@ def kind_of(symbol: str) -> Kind:
     for kind in KINDS:
         if symbol in (kind.unit, kind.metric.symbol):  # without pint, which takes 0.2 s to import
             return kind
-    kind = kind_for(symbol)
-    if kind in KINDS:
+    if (kind := kind_for(symbol)) in KINDS:
         return kind
     raise InputError(f"no kind of value has the unit {shown(symbol)}; add one to the list of kinds")
 
@@ -220,10 +219,8 @@ def is_value(text: str) -> bool:
 
 def shown(value: object) -> str:
     """Return a value for a message: as a job file writes it, printable, of moderate length."""
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return "true" if value else "false"
+    if value is None or isinstance(value, bool):
+        return json.dumps(value)
     if isinstance(value, str):
         text = value if len(value) <= _LONGEST else value[:_LONGEST] + "..."
         return json.dumps(text, ensure_ascii=not text.isprintable())

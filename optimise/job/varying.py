@@ -159,13 +159,11 @@ def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
                 raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
             yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
     for part in job.choice:
-        yield (
-            part.name,
-            [
-                _Option(o.name, o.paths, tuple(constraints_of(o.constraints, formulas)), slow_stroke_of(o.constraints))
-                for o in part.option
-            ],
-        )
+        options = [
+            _Option(o.name, o.paths, tuple(constraints_of(o.constraints, formulas)), slow_stroke_of(o.constraints))
+            for o in part.option
+        ]
+        yield part.name, options
 
 
 def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant:

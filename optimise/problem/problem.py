@@ -36,12 +36,6 @@ if TYPE_CHECKING:
 _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
 
 
-def _whole(value: object, least: int) -> bool:
-    if isinstance(value, bool):
-        return False
-    return isinstance(value, Integral) and int(value) >= least
-
-
 @dataclass(frozen=True, kw_only=True)
 class Settings:
     """Settings of the search.
@@ -62,7 +56,7 @@ class Settings:
             value = getattr(self, name)
             if value is None and name in ("samples", "evaluations"):
                 continue
-            if not _whole(value, least):
+            if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
                 raise InputError(f"{name} must be at least {least}, a whole number; got {value!r}")
 
 
@@ -147,13 +141,11 @@ class Problem:
             reason = self.quantity(name).undefined_because(machines)
             if reason:
                 raise InputError(f"{table}.{name}: {reason}")
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError(f"the objective {name} is given twice; keep one")
         constrained = [constraint.quantity for constraint in self.constraints]
-        for name in constrained:
-            if constrained.count(name) > 1:
-                raise InputError(f"the constraint on {name} is given twice; merge the two")
+        for what, given, remedy in (("objective", names, "keep one"), ("constraint on", constrained, "merge the two")):
+            for name in given:
+                if given.count(name) > 1:
+                    raise InputError(f"the {what} {name} is given twice; {remedy}")
         if self.offset.lower <= 0.0 <= self.offset.upper:
             for objective in self.objectives:
                 if self.quantity(objective.quantity).in_line == math.inf and objective.sense == "maximise":

@@ -227,7 +227,7 @@ def _values(problem: Problem, name: str, designs: Array) -> Array:
 def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
     """Whether dimensions that were computed from equalities lie in their ranges."""
     good = np.ones(len(designs), dtype=bool)
-    for column, name in enumerate(("crank", "rod", "offset")):
+    for column, name in enumerate(DIMENSIONS):
         ends = getattr(problem, name)
         slack = _CLOSE * max(abs(ends.lower), abs(ends.upper))
         with np.errstate(invalid="ignore"):
