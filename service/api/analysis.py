@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -16,14 +15,17 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ..designs.columns import all_columns
-from ..designs.cycle_table import LEAST, MOST, cycle_table
+from ..designs.cycle_table import LEAST, MOST
+from ..designs.design_curves import design_curves
 from ..designs.holding import held
 from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
+from ..designs.stored_designs import StoredDesign
 from ..designs.trade_offs import trade_offs_of
+from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_lengths
 from ..runs.result import Row, finite
 from ..text.options import Dimensions, speed_option
-from ..topics.design_analysis import analysis_of, numbers_of
+from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .fronts import Cells, ColumnModel, OfDesign, column_models
 from .job_requests import given_problem
@@ -62,15 +64,19 @@ class StoredAnalysisModel(OfDesign, AnalysisModel):
 
 
 class CycleModel(BaseModel):
-    """Curves over a turn of the crank.
+    """Curves over the cycle: a turn of the crank, two turns where a load has a cycle of 720 deg, or a swing.
 
     columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
-    undetermined. slow_stroke: outward, inward or equal.
+    undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
+    and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
+    without a speed, and of a slow swing. slow_stroke: outward, inward or equal.
     """
 
-    inner_dead_centre_deg: float
-    outer_dead_centre_deg: float
-    slow_stroke: str = Field(examples=["inward"])
+    turns: int = Field(examples=[1])
+    seconds: float | None = Field(examples=[0.2])
+    inner_dead_centre_deg: float | None
+    outer_dead_centre_deg: float | None
+    slow_stroke: str | None = Field(examples=["inward"])
     columns: list[ColumnModel]
     curves: dict[str, list[float | None]] = Field(
         examples=[{"crank_angle_deg": [0.0, 90.0, 180.0, 270.0], "slider_position_mm": [100.8, 60.8, 20.8, 22.4]}]
@@ -78,7 +84,7 @@ class CycleModel(BaseModel):
 
 
 class CurvesModel(OfDesign, CycleModel):
-    """Curves of a design of a front over a turn of the crank."""
+    """Curves of a design of a front over its cycle."""
 
 
 class WhatIf(BaseModel, extra="forbid"):
@@ -175,6 +181,10 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
     topics = chosen_topics(show, job=True)
     stored = found.design(design)
+    if stored.part.motion is not None:
+        if topics:
+            require_turning(stored.part, f"the analysis {', '.join(topics)}")
+        return StoredAnalysisModel(job=found.job.id, number=design, analysis=finite(numbers_of_swing(stored)), notes=[])
     row = numbers_of(stored.mechanism, stored.linkage, stored.part.own)
     record, notes = _with_topics(row, stored.mechanism, stored.linkage, topics, lenient=ALL in show)
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
@@ -184,12 +194,12 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
 def show_curves(
     found: FrontDep,
     design: DesignNumber,
-    angles: Annotated[Whole, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced")] = 360,
+    angles: Annotated[
+        Whole, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced; of a swing times")
+    ] = 360,
 ) -> CurvesModel:
-    """Give slider motion, torque, transmission angle and joint forces over a turn of the crank, from 0 deg."""
-    stored = found.design(design)
-    cycle = cycle_model(stored.mechanism, stored.linkage, angles)
-    return CurvesModel(job=found.job.id, number=design, **dict(cycle))
+    """Give slider motion, drive, transmission angle and joint forces over the cycle: see the answer's description."""
+    return CurvesModel(job=found.job.id, number=design, **dict(cycle_model(found.design(design), angles)))
 
 
 @router.post("/analyse")
@@ -198,6 +208,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     topics = chosen_topics(asked.show, job=True)
     with READING:
         problem = given_problem(asked.job, settings.allowed_quantities, asked.values)
+    require_turning(problem, "an analysis")
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))
@@ -247,7 +258,7 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     stored = found.design(design)
     stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
     changed = variation_of(stored, found.result, found.minimised)
-    cycle = cycle_model(stored.mechanism, stored.linkage, asked.angles) if asked.angles else None
+    cycle = cycle_model(stored, asked.angles) if asked.angles else None
     return WhatIfModel(
         job=found.job.id,
         number=design,
@@ -263,16 +274,19 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     )
 
 
-def cycle_model(mechanism: Mechanism, linkage: Linkage, angles: int) -> CycleModel:
-    """Return the curves of a fully turning linkage as JSON has them."""
-    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
-    table = cycle_table(mechanism, linkage, angles=angles)
+def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
+    """Return the curves of a design as JSON has them."""
+    found = design_curves(of, angles)
+    inner, outer = found.centres or (None, None)
+    slow = None if inner is None else str(of.linkage.slow_stroke(direction=of.mechanism.speed or 1.0))
     return CycleModel(
+        turns=found.turns,
+        seconds=found.seconds,
         inner_dead_centre_deg=inner,
         outer_dead_centre_deg=outer,
-        slow_stroke=str(linkage.slow_stroke(direction=mechanism.speed or 1.0)),
-        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in table],
-        curves={column.key: finite(column.values) for column in table},
+        slow_stroke=slow,
+        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
+        curves={column.key: finite(column.values) for column in found.columns},
     )
 
 

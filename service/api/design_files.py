@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from fastapi import APIRouter, Depends, Query, Response
 
 from ...objectives.kinds import System
-from ..designs.cycle_table import cycle_csv
+from ..designs.design_curves import design_csv
 from ..drawings.design_drawing import design_drawing
 from ..drawings.dxf import dxf_file
 from ..drawings.shapes import Drawing
@@ -113,8 +113,8 @@ def print_report(shown: ShownDep, store: StoreDep, units: UnitsAsked = "metric")
 
 @router.get("/cycle.csv", **of_type("text/csv"))
 def export_cycle(shown: ShownDep, units: UnitsAsked = "metric") -> Response:
-    """Give the curves of a design as a table, a row for each degree of the crank, as `export --cycle`."""
-    content = cycle_csv(shown.design.mechanism, shown.design.linkage, units)
+    """Give the curves of a design as a table, as `export --cycle`: each degree, or both ways of a swing."""
+    content = design_csv(shown.design, units)
     return _file(shown, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 
 

@@ -19,6 +19,7 @@ from ..designs.inverse import SliderMotion, inverse_record
 from ..designs.measured_file import read_measured
 from ..designs.rounding import rounded_record, rounded_record_in, steps_of
 from ..designs.shown_units import record_in
+from ..designs.turning import require_turning
 from ..runs.result import finite
 from ..swing.record import swing_record
 from ..topics.measured import MEASURED
@@ -147,6 +148,7 @@ def compare_measured(
 ) -> MeasuredModel:
     """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
     stored = found.design(design)
+    require_turning(stored.part, "a comparison with measured curves")
     with SIMULATING.turn():
         samples = read_measured(given.csv, stored.mechanism, stored.linkage)
         topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})

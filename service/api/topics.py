@@ -9,6 +9,7 @@ from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
 from ...model.errors import NotFound
+from ..designs.turning import require_turning
 from ..runs.result import finite
 from ..topics.discovery import TOPICS
 from ..topics.topic import Topic, TopicOfDesign
@@ -123,6 +124,7 @@ def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"]) -> bytes:
 
 
 def _of(topic: Topic, shown: ShownDesign) -> TopicOfDesign:
+    require_turning(shown.design.part, f"the analysis {topic.name}")
     return topic.of(shown.design.mechanism, shown.design.linkage)
 
 

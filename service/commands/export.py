@@ -10,7 +10,6 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, System
 from ..designs.selection import chosen_rows, none_meets, numbered, part_of
-from ..designs.turning import require_turning
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
@@ -78,8 +77,6 @@ def export(
         of_table = csv is not None or json is not None
         number = choice.number(result, run, None if choice.design is not None and of_table else where)
         found = stored_design(problem_of(folder, result), result, number)
-        if "--cycle" in files:
-            require_turning(found.part, "--cycle")
         named = {"name": result.name, "design": f"design {number}"}
         with waiting("drawing"):
             made = {file: _content(option, found, angle, units, **named) for option, file in files.items()}
@@ -105,9 +102,9 @@ def export(
 def _content(option: str, found: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
     """Return the file of one design that an option asks for. angle: of the crank in drawings, rad."""
     if option == "--cycle":
-        from ..designs.cycle_table import cycle_csv
+        from ..designs.design_curves import design_csv
 
-        return cycle_csv(found.mechanism, found.linkage, units).encode()
+        return design_csv(found, units).encode()
     if option == "--motion":
         from ..motion.player_page import player_page
 

@@ -75,7 +75,8 @@ def swing(
     """
     from ...model.swing.asked import AskedSwing, asked_swing
     from ...model.swing.summary import summarise
-    from ..swing.record import show_swing, swing_record, swing_rows
+    from ..designs.swing_curves import swing_rows
+    from ..swing.record import show_swing, swing_record
 
     drawable(figure)
     if "-" in (str(curves), str(figure)):

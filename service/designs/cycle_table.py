@@ -32,14 +32,15 @@ class CurveColumn:
     values: list[float]
 
 
-def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360) -> list[CurveColumn]:
+def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, turns: int = 1) -> list[CurveColumn]:
     """Return the curves of one fully turning linkage at evenly spaced crank angles from 0 deg, in metric units.
 
-    They are those of `objectives.tables.cycle_curves`; raises `InputError` for too few or too many angles.
+    turns: of the crank, that the angles are spread over. The curves are those of `objectives.tables.cycle_curves`;
+    raises `InputError` for too few or too many angles.
     """
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
-    curves = cycle_curves(mechanism, linkage, even_angles(angles, MOST))
+    curves = cycle_curves(mechanism, linkage, turns * even_angles(angles, MOST))
     return [
         CurveColumn(curve.field, curve.title, curve.shown.symbol, (curve.shown.factor * curve.values).tolist())
         for curve in curves

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.errors import InputError
+from ...model.swing.closure import passes
 
 if TYPE_CHECKING:
     from ...model.arrays import Array
+    from ...optimise.problem.problem import Problem
     from ...optimise.problem.requirements import Constraint
     from .stored_designs import StoredDesign
 
@@ -25,7 +27,8 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     """Return lengths, m, near the given ones, the moved one as given, that meet every equality of the job.
 
     Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
-    equalities, halved while the linkage would not turn fully. Raises `InputError` where it finds none.
+    equalities, halved while the linkage would not turn fully, or not swing as asked. Raises `InputError` where it finds
+    none.
     """
     part = design.part
     equal = [constraint for constraint in part.constraints if constraint.equality]
@@ -34,7 +37,7 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     values = np.array([*lengths, *design.values[3:]])
     if not equal:
         return lengths
-    if not _turns(values):
+    if not _moves(part, values):
         raise _refused(design, equal, moved, values[place])
     for _ in range(_ROUNDS):
         misses, slopes, sizes = _misses(design, equal, values)
@@ -45,7 +48,7 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
         step = np.zeros(len(values))
         step[free] = -np.linalg.lstsq(slopes[:, free] / sizes[:, None], misses / sizes, rcond=1e-10)[0]
         for _ in range(_HALVINGS):
-            if _turns(values + step):
+            if _moves(part, values + step):
                 break
             step *= 0.5
         else:
@@ -61,7 +64,10 @@ def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tup
     return found[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
-def _turns(values: Array) -> bool:
+def _moves(part: Problem, values: Array) -> bool:
+    """Return whether a design turns fully, or swings as far as its job asks."""
+    if part.motion is not None:
+        return bool(passes(part.mechanism, part.motion, values[None])[0])
     crank, rod, offset = values[:3]
     return bool(crank > 0.0 and rod > crank + abs(offset))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -100,3 +101,36 @@ def both_ways(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[Swi
         swing_curves(mechanism, own, swing, share),
         swing_curves(mechanism, own, swing, share, back=True),
     )
+
+
+def at_even_times(mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int) -> tuple[SwingCurves, SwingCurves]:
+    """Return the curves at even times of a swing, of the way forth and of the way back.
+
+    swing: between two crank angles, of a linkage that can make it. count: of all times, an even number; the first one
+    is the start, the middle one the end, which is of the way forth.
+    """
+    place: Array = np.arange(count, dtype=np.float64) * (2.0 / count)
+    return (
+        swing_curves(mechanism, linkage, swing, place[place <= 1.0]),
+        swing_curves(mechanism, linkage, swing, place[place > 1.0] - 1.0, back=True),
+    )
+
+
+def tolerated(mechanism: Mechanism, swing: Swing) -> bool:
+    """Return whether the driven side has an error."""
+    return mechanism.tolerances.given or swing.actuator_tolerance > 0.0
+
+
+def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
+    """Return a row for each place of both ways, metric: time, motion, drive, power, joint forces, errors."""
+    shown = (*motion_and_drive(swing), *force_components())
+    rows = []
+    for way, curves in zip(("forth", "back"), both_ways(mechanism, linkage, swing), strict=True):
+        time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
+        columns = time | {curve.field: curve.of(curves) for curve in shown}
+        rows += [{"way": way} | {name: _plain(values[i]) for name, values in columns.items()} for i in range(POINTS)]
+    return rows
+
+
+def _plain(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

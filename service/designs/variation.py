@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.swing.swing import require_swing
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
 from .requirements import ranges_of, requirements_of, unmet
@@ -36,7 +37,10 @@ class Variation:
 def with_lengths(design: StoredDesign, lengths: tuple[float, float, float]) -> StoredDesign:
     """Return a design with other lengths, m: choices and varying numbers stay. Raises `InputError` for lengths."""
     changed = replace(design, values=(*lengths, *design.values[3:]))
-    changed.linkage.require_full_rotation()
+    if changed.part.motion is None:
+        changed.linkage.require_full_rotation()
+    else:
+        require_swing(changed.mechanism, changed.linkage, changed.part.motion)
     return changed
 
 
@@ -53,7 +57,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
         row=row,
         design=design,
         broken=unmet(requirements_of(design.part), row)
-        + (["slow_stroke"] if design.part.slow_stroke not in (None, row["slow_stroke"]) else []),
+        + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
         outside=unmet(ranges_of(design.part), row),
         **_beside(result, row, minimised),
     )

@@ -12,12 +12,12 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
+from ..designs.swing_curves import at_even_times
 from ..drawings.parts import look_of, moving, pins_at, scenery
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..figures.painting import paint, show_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
-from .swing_play import swung
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
@@ -70,7 +70,7 @@ def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
 
 def _swinging(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
     of = swing_look(mechanism, linkage, swing)
-    ways = swung(mechanism, of.linkage, of.swing, FRAMES)
+    ways = at_even_times(mechanism, of.linkage, of.swing, FRAMES)
     frames = []
     for way, angle in (
         (way, angle)

@@ -6,13 +6,11 @@ import math
 
 import numpy as np
 
-from ...model.arrays import Array, Mask
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.forces import SwingCurves, swing_curves
 from ...model.swing.swing import Swing
 from ..designs.cycle_table import CurveColumn
-from ..designs.swing_curves import motion_and_drive
+from ..designs.swing_curves import at_even_times, motion_and_drive, tolerated
 from ..drawings.parts import lengths_in_words
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swing_scenery
@@ -28,33 +26,10 @@ _WORDS = Words(
 _LEFT_OUT = ("crank_angle", "load")
 
 
-def times_of(count: int) -> tuple[Array, Mask]:
-    """Return shares of the time of one way, and whether it is the way back, at even times of a swing forth and back.
-
-    count: of the times, an even number; the first is the start, the middle one the end.
-    """
-    place = np.arange(count) * (2.0 / count)
-    back = place > 1.0
-    return np.where(back, place - 1.0, place), back
-
-
-def swung(mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves at these times, of the way forth and of the way back.
-
-    swing: between two crank angles, of a linkage that can make it.
-    """
-    share, back = times_of(count)
-    forth = int(np.count_nonzero(~back))
-    return (
-        swing_curves(mechanism, linkage, swing, share[:forth]),
-        swing_curves(mechanism, linkage, swing, share[forth:], back=True),
-    )
-
-
 def play_of_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play:
     """Return the motion of a linkage that swings. Raises what `require_swing` raises."""
     of = swing_look(mechanism, linkage, swing)
-    ways = swung(mechanism, of.linkage, of.swing, ANGLES)
+    ways = at_even_times(mechanism, of.linkage, of.swing, ANGLES)
     angles = np.concatenate([way.crank_angle for way in ways])
     at = of.linkage.at(angles)
     columns = [
@@ -62,7 +37,7 @@ def play_of_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play:
             curve.field, curve.title, curve.kind.metric.symbol, np.concatenate([curve.of(way) for way in ways]).tolist()
         )
         for curve in motion_and_drive(of.swing)
-        if curve.name not in _LEFT_OUT and (curve.attribute != "driven_error" or _tolerated(mechanism, of.swing))
+        if curve.name not in _LEFT_OUT and (curve.attribute != "driven_error" or tolerated(mechanism, of.swing))
     ]
     moving = links_of(of.look)
     if of.body is not None:
@@ -91,7 +66,3 @@ def play_of_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play:
         size=of.look.size,
         words=_WORDS,
     )
-
-
-def _tolerated(mechanism: Mechanism, swing: Swing) -> bool:
-    return mechanism.tolerances.given or swing.actuator_tolerance > 0.0

@@ -7,20 +7,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Window
 from ...model.swing.over import At, Over
 from ...model.swing.summary import SwingSummary
-from ...model.swing.swing import Swing
 from ...objectives.kinds import ANGLE, FORCE, POWER, TORQUE
 from ..designs.columns import split_unit
 from ..designs.swing_curves import (
-    POINTS,
-    both_ways,
     drive_kind,
     driven,
     error_kind,
-    force_components,
     motion_and_drive,
     sizes_of_forces,
 )
@@ -135,17 +130,6 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
     if found.swing.law == "constant":
         notes.append(COASTS)
     return notes
-
-
-def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
-    """Return a row for each place of both ways, metric: time, motion, drive, power, joint forces, errors."""
-    shown = (*motion_and_drive(swing), *force_components())
-    rows = []
-    for way, curves in zip(("forth", "back"), both_ways(mechanism, linkage, swing), strict=True):
-        time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
-        columns = time | {curve.field: curve.of(curves) for curve in shown}
-        rows += [{"way": way} | {name: plain(values[i]) for name, values in columns.items()} for i in range(POINTS)]
-    return rows
 
 
 def swing_title(record: Mapping[str, Any]) -> str:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...objectives.quantity import Quantity
+    from ..designs.stored_designs import StoredDesign
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,15 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
     from .peaks import row_of
 
     return rows_of(columns_of(mechanism, row_of(linkage), own=own))[0]
+
+
+def numbers_of_swing(design: StoredDesign) -> Row:
+    """Return every quantity of a design that swings."""
+    import numpy as np
+
+    from ...objectives.tables.swinging import columns_of
+
+    return rows_of(columns_of(design.part.mechanism, np.array([design.values]), design.part.own))[0]
 
 
 def analysis_of(

@@ -78,6 +78,15 @@ declare global {
       curves: Record<string, Record<string, unknown> & { title: string }>;
       strokes: Record<string, unknown> & { outward: Record<string, unknown>; inward: Record<string, unknown> };
     }
+    /** What /swing gives, which its description leaves open: numbers whose keys end with their units beside these. */
+    type Swing = Record<string, unknown> & {
+      driver: string;
+      law: string;
+      duration_s: number | null;
+      holds_by_friction: boolean;
+      extremes: Extremes["curves"];
+      notes: string[];
+    };
     /** What /inverse gives, which its description leaves open. */
     interface Inverse {
       solutions: { crank_angle_deg: number; stroke: string | null; crank_speed_rpm: number | null; crank_acceleration_rad_s2: number | null }[];

@@ -69,14 +69,19 @@ declare namespace Page {
     row: Api.Row;
     curves: Api.Curves;
     curveColumns: Api.Column[];
+    /** Places in the cycle of the inner and the outer dead centre, or of both ends of a swing. */
     centres: Point;
+    /** Of the crank in a cycle; 0 of a swing forth and back. */
+    turns: number;
+    /** Of the cycle; null where it has no speed. */
+    seconds?: number | null;
   }
   interface Lengths {
     crank_mm: number;
     rod_mm: number;
     offset_mm: number;
   }
-  /** The crank angle that the parts of a view share, as it changes. */
+  /** The place in the cycle that the parts of a view share, as it changes: of a turn the crank angle. */
   interface Turn {
     angle: number;
     playing: boolean;

@@ -16,13 +16,13 @@ from matplotlib.text import Text
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
+from slidercrank.service.designs.swing_curves import swing_rows
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture, Report, Table
 from slidercrank.service.report.html import html_file
 from slidercrank.service.report.pages import pages
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
-from slidercrank.service.swing.record import swing_rows
 from tests.service.report.test_report import text_of, texts
 
 CRANK = {

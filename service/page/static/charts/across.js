@@ -1,19 +1,20 @@
-/** What curves are drawn over: crank angle, time, or the way of the slider. */
+/** What curves are drawn over: crank angle, time, the way of the slider, or both ways of a swing. */
 
 import { inShown, unitOf } from "../lib/numbers.js";
-import { between, innerPosition, turned } from "./cycle.js";
+import { between, crankAt, innerPosition, turned } from "./cycle.js";
 import { range } from "./scale.js";
 
 /**
- * @typedef {Pick<Page.Machine, "curves" | "centres">} Curved
+ * @typedef {Pick<Page.Machine, "curves" | "centres" | "turns">} Curved
  * @typedef {{ x: number, n: number }} Passed A point that a curve passes: x in shown units, and its place among the values.
  * @typedef {object} Across
  * @property {string} title
  * @property {string} unit as it is shown
+ * @property {{ at: number, text: string }[]} [ticks] where they are not those of the scale
  * @property {(series: Curved[]) => Page.Range} span
  * @property {(one: Curved, count: number) => Passed[]} path the way through the values of a turn, back to the first
- * @property {(one: Curved, angle: number) => number | null} place of a crank angle
- * @property {((x: number) => number) | null} angle at a place, where there is only one
+ * @property {(one: Curved, angle: number) => number | null} place of a place in the cycle
+ * @property {((x: number) => number) | null} angle the place in the cycle, where there is only one
  */
 
 /** What there is to choose from; time needs a crank that turns at a speed. @type {{ name: string, title: string }[]} */
@@ -23,6 +24,15 @@ export const OVER = [
   { name: "position", title: "slider position" },
   { name: "way", title: "way from the inner dead centre" },
 ];
+/** The same of a swing. @type {{ name: string, title: string }[]} */
+export const OVER_SWING = [
+  { name: "angle", title: "both ways" },
+  { name: "time", title: "time" },
+  { name: "crank", title: "crank angle" },
+  { name: "position", title: "slider position" },
+];
+const QUARTERS = [0, 90, 180, 270, 360];
+const ENDS = [{ at: 0, text: "start" }, { at: 180, text: "end" }, { at: 360, text: "start" }];
 
 /** Return the way of the slider from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
 export function wayAt({ curves, centres }, angle) {
@@ -30,13 +40,18 @@ export function wayAt({ curves, centres }, angle) {
   return at === null || inner === null ? null : at - inner;
 }
 
-/** Return what is chosen by name. rpm: of the crank, its sign the direction. @param {string} name @param {number} rpm @returns {Across} */
-export function acrossOf(name, rpm) {
+/**
+ * Return what is chosen by name. rpm: cycles a minute, its sign the direction of the crank. turns: of the crank in a cycle, 0 of a swing.
+ * @param {string} name @param {number} rpm @param {number} turns @returns {Across}
+ */
+export function acrossOf(name, rpm, turns = 1) {
   if (name === "time" && rpm) return overTime(60 / Math.abs(rpm), Math.sign(rpm));
   if (name === "position" || name === "way") return overWay(name);
+  if (name === "crank") return overCrank();
   return {
-    title: "crank angle",
+    title: turns ? "crank angle" : "way forth and back",
     unit: "°",
+    ticks: turns ? QUARTERS.map((at) => ({ at, text: `${turns * at}°` })) : ENDS,
     span: () => ({ low: 0, high: 360 }),
     path: (_, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: (360 * n) / count, n: n % count })),
     place: (_, angle) => angle,
@@ -56,6 +71,20 @@ function overTime(seconds, direction) {
   };
 }
 
+/** Over the crank angle of a swing, forth and back. @returns {Across} */
+function overCrank() {
+  /** @param {Curved} one @param {number} place */
+  const place = (one, place) => crankAt(one, place);
+  return {
+    title: "crank angle",
+    unit: "°",
+    span: (series) => range(series.flatMap(({ curves }) => curves.crank_angle_deg), 0.02),
+    path: (one, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: place(one, (360 * n) / count), n: n % count })),
+    place,
+    angle: null,
+  };
+}
+
 /** @param {string} name @returns {Across} */
 function overWay(name) {
   /** @param {Curved} one @param {number} angle */
@@ -66,7 +95,7 @@ function overWay(name) {
   return {
     title: name === "way" ? "way from the inner dead centre" : "slider position",
     unit: unitOf("mm"),
-    span: (series) => range(series.flatMap((one) => one.centres.map((angle) => place(one, angle))), 0.02),
+    span: (series) => range(series.flatMap((one) => (one.turns ? one.centres.map((angle) => place(one, angle)) : one.curves.slider_position_mm.map((at) => at === null ? null : inShown(at, "mm")))), 0.02),
     path: (one, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: place(one, (360 * n) / count) ?? NaN, n: n % count })),
     place,
     angle: null,

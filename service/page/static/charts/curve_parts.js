@@ -2,7 +2,7 @@
 
 import { svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
-import { extremes } from "./cycle.js";
+import { crankAt, extremes } from "./cycle.js";
 
 /**
  * @import { Across } from "./across.js"
@@ -10,14 +10,13 @@ import { extremes } from "./cycle.js";
  */
 
 export const ROOM = { left: 56, right: 12, top: 25, bottom: 24 };
-const QUARTERS = [0, 90, 180, 270, 360];
+const NAMES = { turn: ["inner", "outer"], swing: ["start", "end"] };
 
 /** @typedef {{ x: Page.Scale, y: Page.Scale, across: Across, height: number }} Pen Scales of a chart, and what it is drawn over. */
 
 /** @param {Pen} pen @param {number} width */
 export function axes({ x, y, across, height }, width) {
-  const turn = across.unit === "°";
-  const ticks = turn ? QUARTERS : x.ticks;
+  const ticks = across.ticks ?? x.ticks.map((at, n, all) => ({ at, text: n === all.length - 1 ? `${x.text(at)} ${across.unit}` : x.text(at) }));
   return svg(
     "g",
     { class: "axes" },
@@ -25,19 +24,20 @@ export function axes({ x, y, across, height }, width) {
       svg("line", { class: tick === 0 ? "zero" : "grid", x1: ROOM.left, x2: width - ROOM.right, y1: y.at(tick), y2: y.at(tick) }),
       svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
     ]),
-    ticks.map((tick, n) => svg("text", { x: x.at(tick), y: height - 6, "text-anchor": x.at(tick) > width - 3 * ROOM.right ? "end" : "middle" }, turn ? `${tick}°` : n === ticks.length - 1 ? `${x.text(tick)} ${across.unit}` : x.text(tick))),
+    ticks.map(({ at, text: words }) => svg("text", { x: x.at(at), y: height - 6, "text-anchor": x.at(at) > width - 3 * ROOM.right ? "end" : "middle" }, words)),
   );
 }
 
 /** @param {Pen} pen @param {Shown | undefined} first */
 export function centreLines({ x, across, height }, first) {
   if (!first) return [];
-  return first.centres.map((angle, n) => {
+  const again = first.turns === 2 ? first.centres.map((place) => place + 180) : [];
+  return [...first.centres, ...again].map((angle, n) => {
     const at = x.at(across.place(first, angle) ?? NaN);
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     return svg("g", { class: "centre" },
       svg("line", { x1: at, x2: at, y1: ROOM.top, y2: height - ROOM.bottom }),
-      svg("text", { x: at, y: ROOM.top - 11, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, n ? "outer" : "inner"));
+      svg("text", { x: at, y: ROOM.top - 11, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, NAMES[first.turns ? "turn" : "swing"][n % 2]));
   });
 }
 
@@ -79,11 +79,12 @@ export function peaks(one, { x, y, across }) {
  * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Across} across
  */
 export function summary(words, unit, series, key, across) {
-  const each = series.map(({ name, curves }) => {
+  const each = series.map((one) => {
+    const { name, curves } = one;
     const found = extremes(curves[key]);
     if (!found) return `${name}: not defined`;
     /** @param {{ value: number, angle: number }} given */
-    const at = ({ value, angle }) => `${withUnit(value, unit, 4)} at ${text(angle, "", 4)}°`;
+    const at = ({ value, angle }) => `${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
   });
   return `${words} over the ${across.title}. ${each.join(". ")}.`;

@@ -1,4 +1,4 @@
-/** Curves of a turn of the crank: one chart for each, large or small, with a common cursor at the crank angle. */
+/** Curves of a cycle: one chart for each, large or small, with a common cursor at the crank angle. */
 
 import { fill, h, svg } from "../lib/dom.js";
 import { inShown, text, unitOf } from "../lib/numbers.js";
@@ -11,7 +11,7 @@ import { range, scale } from "./scale.js";
  * @import { Across } from "./across.js"
  *
  * What a chart shows of a design: its curves under a name; series: which colour it has.
- * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "centres">} Shown
+ * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "centres" | "turns">} Shown
  * @typedef {{ key: string } & Page.Heading} Panel
  * @typedef {Shown & { values: (number | null)[] }} Drawn
  */

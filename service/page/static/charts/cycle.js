@@ -1,4 +1,31 @@
-/** Curves over a turn of the crank, as the API gives them: values at evenly spaced angles from 0 deg. */
+/**
+ * Curves over a cycle, as the API gives them: values at even places of it, from 0 to 360. Of a turn of the crank the places are its
+ * angles from 0 deg on; of a cycle of two turns half of them; of a swing times, forth up to 180 and then back.
+ */
+
+/** @typedef {Pick<Page.Machine, "curves" | "turns">} Cranked What says where the crank stands. */
+
+/** Return the crank angle at a place, deg. @param {Cranked} machine @param {number} place @returns {number} */
+export function crankAt({ curves, turns }, place) {
+  return turns ? turns * place : (between(curves.crank_angle_deg, place) ?? NaN);
+}
+
+/**
+ * Return the place at which the crank stands at an angle, deg, or as near to it as it comes; of several the one in the half of the cycle
+ * that it is in now.
+ * @param {Cranked} machine @param {number} angle @param {number} now a place
+ */
+export function placeOf(machine, angle, now) {
+  const half = turned(now) < 180 ? 0 : 180;
+  if (machine.turns === 1) return turned(angle);
+  if (machine.turns === 2) return half + turned(angle) / 2;
+  let [best, least] = [half, Infinity];
+  for (let place = half; place <= half + 180; place += 0.25) {
+    const off = Math.abs(turned(crankAt(machine, place) - angle + 180) - 180);
+    if (off < least) [best, least] = [place, off];
+  }
+  return turned(best);
+}
 
 /** Return an angle in [0, 360). @param {number} angle */
 export function turned(angle) {

@@ -5,7 +5,8 @@ import { text, unitOf, valueOf } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
 
 const ENDS = ["least", "greatest"];
-const HEADS = ["Curve", ...ENDS.flatMap((end) => [end, "at crank angle", "at slider position"]), "Unit"];
+/** Heads of a table of the extremes of curves. */
+export const HEADS = ["Curve", ...ENDS.flatMap((end) => [end, "at crank angle", "at slider position"]), "Unit"];
 const STROKES = /** @type {const} */ (["outward", "inward"]);
 /** @type {[string, string, string, string][]} */
 const ROWS = [ // of the strokes: title, key of a stroke, of the difference, of the ratio
@@ -27,11 +28,15 @@ export function extremes(place, found, { signal }) {
 
 /** @param {Api.Extremes} found */
 function curves({ curves: every }) {
-  const rows = Object.values(every).map((curve) => {
+  return table("Extremes of every curve", HEADS, extremeRows(every));
+}
+
+/** Return a row for each curve. @param {Api.Extremes["curves"]} every */
+export function extremeRows(every) {
+  return Object.values(every).map((curve) => {
     const ends = ENDS.map((end) => [cell(curve, end), cell(curve, `${end}_at_crank_angle`, { withUnit: true }), cell(curve, `${end}_at_slider_position`, { withUnit: true })]);
     return h("tr", {}, h("th", { scope: "row" }, curve.title), ends, h("td", { class: "quiet" }, unitOf(valueOf(curve, "least").unit)));
   });
-  return table("Extremes of every curve", HEADS, rows);
 }
 
 /** @param {Api.Extremes} found */
@@ -50,8 +55,8 @@ function cell(record, name, { withUnit = false } = {}) {
   return h("td", { class: "number", "data-key": name, "data-value": value === null ? "" : String(value) }, text(value, unit), shown && shown !== "°" ? `\u00a0${shown}` : shown);
 }
 
-/** @param {string} caption @param {readonly string[]} heads @param {Node[]} rows */
-function table(caption, heads, rows) {
+/** Return a table of numbers. @param {string} caption @param {readonly string[]} heads @param {Node[]} rows */
+export function table(caption, heads, rows) {
   return h("table", {}, h("caption", { class: "hidden" }, caption),
-    h("thead", {}, h("tr", {}, heads.map((head, n) => h("th", { scope: "col", class: n && head !== "Unit" ? "number" : null }, head)))), h("tbody", {}, rows));
+    h("thead", {}, h("tr", {}, heads.map((head, n) => h("th", { scope: "col", class: n && !["Unit", "Where"].includes(head) ? "number" : null }, head)))), h("tbody", {}, rows));
 }

@@ -20,12 +20,15 @@ export function lengthsOf(row) {
 }
 
 /**
- * Return the curves of an answer of the API: {curves, curveColumns, centres}.
- * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres">}
+ * Return the curves of an answer of the API: {curves, curveColumns, centres, turns, seconds}; centres: places in the cycle of the dead
+ * centres, or of both ends of a swing.
+ * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "turns" | "seconds">}
  */
 export function cycleOf(cycle) {
-  const { curves, columns } = withResultants(cycle);
-  return { curves, curveColumns: columns, centres: [cycle.inner_dead_centre_deg, cycle.outer_dead_centre_deg] };
+  const { turns, seconds, inner_dead_centre_deg: inner, outer_dead_centre_deg: outer } = cycle;
+  const centres = /** @type {Page.Point} */ (inner === null || outer === null ? [0, 180] : [inner / turns, outer / turns]);
+  const { curves, columns } = withResultants(cycle, turns ? centres[0] : null);
+  return { curves, curveColumns: columns, centres, turns, seconds };
 }
 
 /**

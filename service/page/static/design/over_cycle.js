@@ -1,6 +1,6 @@
 /** The curves of a design: over crank angle, time or the way of the slider, three of them large, and as CSV. */
 
-import { acrossOf, OVER } from "../charts/across.js";
+import { acrossOf, OVER, OVER_SWING } from "../charts/across.js";
 import { curveCharts } from "../charts/curves.js";
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -8,29 +8,33 @@ import { apiSystem } from "../lib/numbers.js";
 import { panelsOf } from "./panels.js";
 
 const KEPT = "large curves";
+const KEPT_OF_SWING = "large curves of a swing";
 const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // unless the reader has chosen others
+const LARGE_OF_SWING = ["slider_position_mm", "drive_N", "drive_Nm", "transmission_angle_deg"];
 
 /**
  * Put the curves into `place`; turned: of the charts. told(over): the reader chose what they are over. Returns
  * - show(series): each {name, series, curves, curveColumns, centres}, the first in front. - of(lengths): of a changed design, for the
  *   file; null for the design itself. - turn, close: of the charts.
  * @param {HTMLElement} place
- * @param {{ path: string, rpm: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} given
+ * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing.
+ * @param {{ path: string, rpm: number, turns: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} given
  */
-export function overCycle(place, { path, rpm, over, turned, told }) {
-  const choices = OVER.filter(({ name }) => name !== "time" || rpm !== 0);
+export function overCycle(place, { path, rpm, turns, over, turned, told }) {
+  const kept = turns ? KEPT : KEPT_OF_SWING;
+  const choices = (turns ? OVER : OVER_SWING).filter(({ name }) => name !== "time" || rpm !== 0);
   let chosen = choices.some(({ name }) => name === over) ? over : "angle";
   const choice = h("select", { name: "over", onchange: ({ currentTarget }) => {
     chosen = currentTarget.value;
     draw();
     told(chosen === "angle" ? "" : chosen);
   } }, choices.map(({ name, title }) => h("option", { value: name, selected: name === chosen }, title)));
-  const file = h("a", { class: "button", download: "", title: "A row for each degree, all curves" }, "Curves as CSV");
-  place.append(h("div", { class: "row spread" }, h("h2", {}, "Over the cycle"), h("label", {}, "Over ", choice), file));
-  const charts = curveCharts(place, turned, { large: largeKept(), told: (keys) => localStorage.setItem(KEPT, keys.join()) });
+  const file = h("a", { class: "button", download: "", title: turns ? "A row for each degree, all curves" : "Both ways, all curves" }, "Curves as CSV");
+  place.append(h("div", { class: "row spread" }, h("h2", {}, turns ? "Over the cycle" : "Over the swing"), h("label", {}, "Over ", choice), file));
+  const charts = curveCharts(place, turned, { large: largeKept(kept, turns ? LARGE : LARGE_OF_SWING), told: (keys) => localStorage.setItem(kept, keys.join()) });
   /** @type {Page.Machine[]} */
   let shown = [];
-  const draw = () => charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm)); // in the units of now
+  const draw = () => charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm, turns)); // in the units of now
   /** @type {Page.Lengths | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));
@@ -52,7 +56,8 @@ export function overCycle(place, { path, rpm, over, turned, told }) {
   };
 }
 
-function largeKept() {
-  const kept = (localStorage.getItem(KEPT) ?? "").split(",").filter(Boolean);
-  return kept.length ? kept : LARGE;
+/** @param {string} name @param {string[]} usual */
+function largeKept(name, usual) {
+  const kept = (localStorage.getItem(name) ?? "").split(",").filter(Boolean);
+  return kept.length ? kept : usual;
 }

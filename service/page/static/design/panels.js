@@ -7,10 +7,14 @@ const RESULTANTS = [
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
   ["slider_pin_N", "Slider pin force", "slider_pin_x_N", "slider_pin_y_N"],
 ];
-const ORDER = ["way_mm", "slider_position", "slider_velocity", "slider_acceleration", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm"];
+const ORDER = ["way_mm", "slider_position", "slider_velocity", "slider_acceleration", "drive_", "power_W", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm", "slider_position_error", "crank_position_error"];
 
-/** Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre. @param {Api.Cycle} cycle */
-export function withResultants({ curves, columns, inner_dead_centre_deg: centre }) {
+/**
+ * Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre, where
+ * there is one: at this place in the cycle.
+ * @param {Api.Cycle} cycle @param {number | null} inner
+ */
+export function withResultants({ curves, columns }, inner) {
   /** @type {Api.Curves} */
   const more = { ...curves };
   /** @type {Api.Column[]} */
@@ -20,7 +24,8 @@ export function withResultants({ curves, columns, inner_dead_centre_deg: centre 
     more[key] = curves[x].map((value, n) => (value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n])));
     known.push({ key, title, unit: "N" });
   }
-  const start = innerPosition(curves, [centre]);
+  if (inner === null) return { curves: more, columns: known };
+  const start = innerPosition(curves, [inner]);
   more.way_mm = curves.slider_position_mm.map((value) => (value === null || start === null ? null : value - start));
   known.push({ key: "way_mm", title: "displacement from inner dead centre", unit: "mm" });
   return { curves: more, columns: known };

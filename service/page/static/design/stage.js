@@ -1,6 +1,6 @@
 /** The mechanisms that move together, and what moves them: play, speed, crank angle, forces. */
 
-import { between } from "../charts/cycle.js";
+import { between, crankAt, placeOf } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { ARROWS, forceAt, largestForce, scaleOf } from "../mechanism/arrows.js";
@@ -11,22 +11,30 @@ import { around, frameOf } from "../mechanism/frame.js";
 /** @import { turning as turningOf } from "../mechanism/turning.js" */
 
 const EVERY = 100; // ms between two readouts while it moves
+/** What sets the place in the cycle, and how, by the turns in it. */
+const WORDS = [
+  ["Forth and back", "Drag the crank, or use the arrow and page keys on the way forth and back."],
+  ["Crank angle", "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."],
+  ["Crank angle", "Drag the crank, or use the arrow keys (2°) and the page keys (20°) on the crank angle; a cycle is two turns."],
+];
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
 /**
  * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
- * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof turningOf>} turning
+ * turns: of the crank in a cycle, 0 of a swing.
+ * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof turningOf>} turning @param {number} turns
  */
-export function stage(place, strip, turning) {
+export function stage(place, strip, turning, turns) {
+  const [named, hint] = WORDS[turns];
   const drawn = h("div", { class: "machines" });
   /** @type {Page.Machine[]} */
   let machines = [];
   /** @type {ReturnType<typeof drawing>[]} */
   let drawings = [];
   const toggle = h("button", { type: "button", class: "primary play", onclick: () => (turning.playing ? turning.pause() : turning.play()) }, "Play");
-  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": "Crank angle", onkeydown: byKey, oninput: (event) => hold(Number(event.currentTarget.value)) });
+  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": named, onkeydown: byKey, oninput: (event) => hold(Number(event.currentTarget.value)) });
   const told = h("output", { class: "number angle" });
   const where = h("output", { class: "number where" });
   const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.currentTarget.value)]) },
@@ -40,10 +48,10 @@ export function stage(place, strip, turning) {
     drawn,
     h("div", { class: "row controls" }, h("label", {}, "Speed ", pace), h("label", {}, forces, " Forces"), largest),
     legend,
-    h("p", { class: "quiet hint" }, "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."),
+    h("p", { class: "quiet hint" }, hint),
   );
 
-  fill(strip, toggle, h("label", { class: "crank-angle" }, h("span", {}, "Crank angle"), angle), told, where);
+  fill(strip, toggle, h("label", { class: "crank-angle" }, h("span", {}, named), angle), told, where);
 
   /** @param {number} to */
   function hold(to) {
@@ -81,7 +89,7 @@ export function stage(place, strip, turning) {
       drawings.forEach((one) => one.close());
       const places = machines.map(() => h("div", { class: "machine" }));
       fill(drawn, places);
-      drawings = places.map((each) => draggable(drawing(each, { label: "" }), hold));
+      drawings = places.map((each, n) => draggable(drawing(each, { label: "" }), (at) => hold(placeOf(machines[n], at, turning.angle))));
     }
     const frame = around(machines.map(({ row, curves }) => frameOf(lengthsOf(row), curves)));
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
@@ -94,7 +102,7 @@ export function stage(place, strip, turning) {
         const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
         title.textContent = name;
       }
-      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest });
+      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest, turns });
       one.turn(turning.angle);
     });
     showForces();
@@ -108,7 +116,7 @@ export function stage(place, strip, turning) {
     if (!machines.length || (playing && now - since < EVERY)) return;
     since = now;
     angle.value = String(at);
-    const words = `${Math.round(at) % 360}°`;
+    const words = `${Math.round(crankAt(machines[0], at)) % (turns === 2 ? 720 : 360)}°`.replace("-", "−");
     if (told.textContent !== words) told.textContent = words;
     const position = between(machines[0].curves.slider_position_mm, at);
     where.textContent = `slider at ${withUnit(position, "mm", 4)}`;

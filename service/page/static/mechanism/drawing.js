@@ -1,6 +1,6 @@
 /** A mechanism that moves: drawn once, then only moved. */
 
-import { between } from "../charts/cycle.js";
+import { between, crankAt } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
@@ -9,7 +9,7 @@ import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
@@ -20,7 +20,8 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
- *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before).
+ *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
+ *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js).
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
@@ -48,10 +49,13 @@ export function drawing(place, { label }) {
     view = fitted(options.frame ?? own, width, options.small);
     for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
-    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg), view, block: own.block, link, direction: options.direction ?? 1, written: !options.small }));
+    const { turns = 1 } = options;
+    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block: own.block, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0 }));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
-    parts.size({ linkage, view, block: own.block, link, written: !options.small, crossed: (between(motion.slider_position_mm, 90) ?? 0) < 0 });
+    parts.size({ linkage, view, block: own.block, link, written: !options.small, crossed: crossed(linkage, motion, turns) });
     parts.forces.size(motion, view, options.largest_force);
+    // Where the slider drives, the angle that counts is between rod and crank: not the one that is marked.
+    parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N));
     turn(angle);
   }
 
@@ -61,7 +65,7 @@ export function drawing(place, { label }) {
     if (!view || !shown) return;
     const { linkage, motion } = shown;
     const position = between(motion.slider_position_mm, angle) ?? NaN;
-    const radians = (angle * Math.PI) / 180;
+    const radians = (crankAt({ curves: motion, turns: shown.options.turns ?? 1 }, angle) * Math.PI) / 180;
     const pin = /** @type {Page.Point} */ ([view.x(linkage.crank_mm * Math.cos(radians)), view.y(linkage.crank_mm * Math.sin(radians))]);
     const slider = /** @type {Page.Point} */ ([view.x(position), view.y(linkage.offset_mm)]);
     const pivot = /** @type {Page.Point} */ ([view.x(0), view.y(0)]);
@@ -100,11 +104,17 @@ export function drawing(place, { label }) {
   };
 }
 
-/** @param {Api.Curves} motion @param {Page.Point | undefined} angles */
-function deadCentres(motion, angles) {
+/** @param {Api.Curves} motion @param {Page.Point | undefined} angles @param {number} turns */
+function deadCentres(motion, angles, turns) {
   const { low, high } = reachOf(motion);
   const found = angles ?? [low.angle, high.angle];
-  return found.map((angle) => ({ angle, position: between(motion.slider_position_mm, angle) ?? NaN }));
+  return found.map((angle) => ({ angle: crankAt({ curves: motion, turns }, angle), position: between(motion.slider_position_mm, angle) ?? NaN }));
+}
+
+/** Whether the slider is on the other side of the crank pin. @param {Page.Lengths} linkage @param {Api.Curves} motion @param {number} turns */
+function crossed({ crank_mm: r }, motion, turns) {
+  const place = turns === 2 ? 45 : 90;
+  return (between(motion.slider_position_mm, place) ?? 0) < r * Math.cos((crankAt({ curves: motion, turns }, place) * Math.PI) / 180) - 1e-9 * r;
 }
 
 /** Give an element numbers as attributes. @type {(node: Element, numbers: Record<string, number>) => void} */
@@ -130,6 +140,7 @@ function movingParts() {
   return {
     nodes: [sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
+    marked,
     /** @param {{ linkage: Page.Lengths, view: View, block: number, link: number, written: boolean, crossed: boolean }} given */
     size({ linkage, view, block: height, link, written, crossed }) {
       const size = height * view.unit;

@@ -12,10 +12,10 @@ const PITCH = 9; // pixels between the strokes of a hatching
 /**
  * Return the parts that stand still, as SVG elements.
  * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels; written: whether
- * the offset stands there in words.
- * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number, written: boolean }} given
+ * the offset stands there in words; swings: whether the centres are the ends of a swing.
+ * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number, written: boolean, swings?: boolean }} given
  */
-export function scenery({ linkage, centres, view, block, link, direction, written }) {
+export function scenery({ linkage, centres, view, block, link, direction, written, swings = false }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const ends = centres.map((centre) => centre.position);
@@ -26,16 +26,24 @@ export function scenery({ linkage, centres, view, block, link, direction, writte
   return [
     line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
-    svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
+    swings ? arcOf(view, r, centres) : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
     line("path", [x(ends[0]), y(e)], [x(ends[1]), y(e)]),
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
-    rotation(view, r, direction),
+    swings ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
-    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * block * view.unit + 16)),
-    written && crankOf(view, r, e),
+    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * block * view.unit + 16), swings),
+    written && !swings && crankOf(view, r, e),
     bearing(x(0), y(0), link),
   ];
+}
+
+/** Way of the crank pin between the ends of a swing. @param {View} view @param {number} r @param {Centre[]} ends */
+function arcOf(view, r, ends) {
+  const [first, last] = ends.map(({ angle }) => (angle * Math.PI) / 180).sort((a, b) => a - b);
+  const at = [first, last].map((angle) => `${view.x(r * Math.cos(angle))} ${view.y(r * Math.sin(angle))}`);
+  const radius = view.unit * r;
+  return svg("path", { class: "path", d: `M${at[0]}A${radius} ${radius} 0 ${last - first > Math.PI ? 1 : 0} 0 ${at[1]}` });
 }
 
 /** @param {number} start @param {number} end @param {number} y @param {number} side */
@@ -90,10 +98,11 @@ function offset(view, e, x, written) {
   );
 }
 
-/** Dimension the stroke, outside of the guide. @param {View} view @param {number[]} ends @param {number} y */
-function strokeOf(view, ends, y) {
+/** Dimension the stroke, outside of the guide. @param {View} view @param {number[]} ends @param {number} y @param {boolean} swings */
+function strokeOf(view, ends, y, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
-  const words = `stroke ${withUnit(Math.abs(ends[1] - ends[0]), "mm", 4)}`;
+  const long = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);
+  const words = swings ? `travel ${long}` : `stroke ${long}`;
   const room = to - from > 90;
   const heads = `M${from + 6} ${y - 3}L${from} ${y}L${from + 6} ${y + 3}M${to - 6} ${y - 3}L${to} ${y}L${to - 6} ${y + 3}`;
   return svg("g", { class: "dimension stroke" }, svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),

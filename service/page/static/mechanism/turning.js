@@ -1,4 +1,4 @@
-/** The crank angle that all parts of the view share, and what turns it. */
+/** The place in the cycle that all parts of the view share, of a turn the crank angle, and what turns it. */
 
 import { turned } from "../charts/cycle.js";
 
@@ -10,14 +10,14 @@ const SHORTEST = 0.2; // s of a turn that a screen can show
 
 /**
  * Return the shared crank angle: {angle, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
- * rpm: of the crank, its sign the direction. told({angle, playing, settled}) is called for every change and every frame; settled:
+ * rpm: cycles a minute, the sign the direction of the crank. cycle: what it is called. told({angle, playing, settled}) is called for every change and every frame; settled:
  * whether nothing moves, so that what takes longer to draw may be drawn.
- * @param {number} rpm @param {AbortSignal} signal
+ * @param {number} rpm @param {AbortSignal} signal @param {string} cycle
  */
-export function turning(rpm, signal) {
+export function turning(rpm, signal, cycle = "one turn") {
   /** @type {((turn: Page.Turn) => void)[]} */
   const listeners = [];
-  const paces = pacesOf(rpm);
+  const paces = pacesOf(rpm, cycle);
   const direction = rpm < 0 ? -1 : 1;
   let frame = 0;
   let last = 0;
@@ -68,25 +68,25 @@ export function turning(rpm, signal) {
 
 /**
  * Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen.
- * @param {number} rpm @returns {Pace[]}
+ * @param {number} rpm @param {string} cycle @returns {Pace[]}
  */
-function pacesOf(rpm) {
+function pacesOf(rpm, cycle) {
   const real = rpm ? 60 / Math.abs(rpm) : null;
-  const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds)}${real ? `, ${share(real / seconds)}` : ""}` }));
+  const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds, cycle)}${real ? `, ${share(real / seconds)}` : ""}` }));
   if (real && real >= SHORTEST) {
     const same = paces.findIndex(({ seconds }) => Math.abs(seconds / real - 1) < 1e-9);
     if (same >= 0) paces.splice(same, 1);
-    paces.push({ seconds: real, title: `${turn(real)}, real speed` });
+    paces.push({ seconds: real, title: `${turn(real, cycle)}, real speed` });
     paces.sort((one, other) => other.seconds - one.seconds);
   }
   const chosen = real && real >= READABLE[0] && real <= READABLE[1] ? real : 4;
   return paces.map((pace) => ({ ...pace, chosen: pace.seconds === chosen }));
 }
 
-/** @param {number} seconds */
-function turn(seconds) {
-  if (seconds >= 120) return `one turn in ${Number((seconds / 60).toPrecision(3))} min`;
-  return `one turn in ${Number(seconds.toPrecision(3))} s`;
+/** @param {number} seconds @param {string} cycle */
+function turn(seconds, cycle) {
+  if (seconds >= 120) return `${cycle} in ${Number((seconds / 60).toPrecision(3))} min`;
+  return `${cycle} in ${Number(seconds.toPrecision(3))} s`;
 }
 
 /** @param {number} ratio */

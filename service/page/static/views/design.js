@@ -7,6 +7,7 @@ import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
 import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
+import { swinging } from "../design/swinging.js";
 import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
 import { DRAWN, topics } from "../design/topics.js";
@@ -15,6 +16,7 @@ import { tradeOffs } from "../design/trade_offs.js";
 import { turning } from "../mechanism/turning.js";
 import { wayBack } from "../design/way_back.js";
 import { whatIf } from "../design/what_if.js";
+import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
@@ -22,6 +24,7 @@ import { fill, h } from "../lib/dom.js";
 export const title = "Design";
 
 const SOON = 150; // ms
+const CYCLES = ["forth and back", "one turn", "two turns"];
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
 /** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} given */
@@ -39,7 +42,9 @@ export async function show(place, { parts, query, signal }) {
 
   const objectives = front.objectives;
   const shared = { job, number, front, objectives, rows, main, others, requirements, names, signal };
-  const angle = turning(requirements.speed_rpm, signal);
+  const { turns, seconds } = main;
+  const rpm = seconds ? (Math.sign(requirements.speed_rpm) || 1) * (60 / seconds) : 0; // cycles a minute
+  const angle = turning(rpm, signal, CYCLES[turns]);
   /** @param {number} at @param {boolean} taken */
   const hold = (at, taken) => {
     if (taken && angle.playing) angle.pause();
@@ -51,9 +56,9 @@ export async function show(place, { parts, query, signal }) {
   fill(place, top(shared), files.node, places.objectives,
     h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), strip, places.curves, places["way-back"], places.numbers, places.topics, places.analyses);
   for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
-  const machines = stage(places.stage, strip, angle);
+  const machines = stage(places.stage, strip, angle, turns);
   let over = query.get("over") ?? "";
-  const charts = overCycle(places.curves, { path, rpm: requirements.speed_rpm, over, turned: hold, told: (now) => { over = now; keepAll(); } });
+  const charts = overCycle(places.curves, { path, rpm, turns, over, turned: hold, told: (now) => { over = now; keepAll(); } });
   angle.listen(charts.turn);
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
   signal.addEventListener("abort", () => clearTimeout(later), { once: true });
@@ -65,7 +70,7 @@ export async function show(place, { parts, query, signal }) {
   /** @type {Page.Lengths | null} */
   let kept = startOf(query); // of the changed design
   const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, ...kept });
-  const further = analyses(places.analyses, { job, number, drawn: DRAWN, signal });
+  const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, signal }) : null; // all are of full turns
   const draw = () => {
     const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
@@ -75,7 +80,7 @@ export async function show(place, { parts, query, signal }) {
     charts.show(series);
     legend(places.curves, series);
     return () => {
-      further.show(changed && lengthsOf(changed.design));
+      further?.show(changed && lengthsOf(changed.design));
       showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
     };
   };
@@ -100,8 +105,9 @@ export async function show(place, { parts, query, signal }) {
   };
   drawAll();
   tradeOffs(places["trade-offs"], shared);
-  wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(at, true), signal });
-  topics(places.topics, shared);
+  wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(placeOf(main, at, angle.angle), true), signal });
+  if (turns) topics(places.topics, shared);
+  else swinging(places.topics, shared);
   window.addEventListener("units", () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()), { signal });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }

@@ -1,0 +1,77 @@
+"""The curves of a design, which turns through or swings: as CSV, and at even places of its cycle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...model.errors import InputError
+from ...model.machine.two_turns import TURN, cycle_turns
+from ...model.swing.swing import placed, require_swing
+from ...objectives.kinds import System
+from ..runs.result import csv_text
+from .cycle_table import LEAST, MOST, CurveColumn, cycle_csv, cycle_table
+from .shown_units import rows_in
+from .stored_designs import StoredDesign
+from .swing_curves import at_even_times, force_components, motion_and_drive, swing_rows, tolerated
+
+
+@dataclass(frozen=True)
+class DesignCurves:
+    """Curves of a design at even places of its cycle. turns: of the crank in it; 0 of a swing forth and back.
+
+    seconds: that the cycle takes; None without a speed, and of a slow swing. centres: crank angles of the inner and the
+    outer dead centre, deg; None of a swing.
+    """
+
+    turns: int
+    seconds: float | None
+    centres: tuple[float, float] | None
+    columns: list[CurveColumn]
+
+
+def design_curves(of: StoredDesign, count: int) -> DesignCurves:
+    """Return the curves at so many places: crank angles from 0 deg on, or even times forth and back.
+
+    A cycle of 720 deg has both turns. Of a swing the first place is its start, the middle one its end, and the number
+    is even. Raises `InputError` for too few or too many places, and what the design's motion raises.
+    """
+    if of.part.motion is None:
+        turns = cycle_turns(of.mechanism)
+        inner, outer = (math.degrees(float(angle)) for angle in of.linkage.dead_centre_angles)
+        seconds = turns * TURN / abs(of.mechanism.speed) if of.mechanism.speed else None
+        return DesignCurves(
+            turns, seconds, (inner, outer), cycle_table(of.mechanism, of.linkage, angles=count, turns=turns)
+        )
+    if not LEAST <= count <= MOST or count % 2:
+        raise InputError(
+            f"curves of a swing have {LEAST} to {MOST} places, as many forth as back; got {count}; ask for an even "
+            "number"
+        )
+    own = require_swing(of.mechanism, of.linkage, of.part.motion)
+    swing = placed(of.mechanism, own, of.part.motion)
+    ways = at_even_times(of.mechanism, own, swing, count)
+    return DesignCurves(
+        0,
+        None if swing.duration is None else 2.0 * swing.duration,
+        None,
+        [
+            CurveColumn(
+                curve.field,
+                curve.title,
+                curve.kind.metric.symbol,
+                np.concatenate([curve.of(way) for way in ways]).tolist(),
+            )
+            for curve in (*motion_and_drive(swing), *force_components())
+            if tolerated(of.mechanism, swing) or curve.attribute != "driven_error"
+        ],
+    )
+
+
+def design_csv(of: StoredDesign, system: System = "metric") -> str:
+    """Return the curves as CSV: those of `cycle_csv`, or of both ways of a swing."""
+    if of.part.motion is None:
+        return cycle_csv(of.mechanism, of.linkage, system)
+    return csv_text(rows_in(swing_rows(of.mechanism, of.linkage, of.part.motion), system))

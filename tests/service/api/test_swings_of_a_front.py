@@ -1,0 +1,119 @@
+"""Designs of a job that swings, and of a cycle of two turns, over the API: curves, numbers, files, other lengths."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from slidercrank.optimise.job import parse_job
+from slidercrank.service.store import Store
+from tests.service.api.fixed_front import API, client_of
+from tests.service.api.swinging import ENGINE, solved_at_once, support
+
+SLOW, TIMED, TURNS = "slow", "timed", "turns"
+
+
+@dataclass
+class Served:
+    client: httpx.Client
+    jobs: dict[str, int]
+
+    def get(self, job: str, path: str, status: int = 200, **query: Any) -> httpx.Response:
+        answer = self.client.get(f"{API}/jobs/{self.jobs[job]}/designs/1{path}", params=query or None)
+        assert answer.status_code == status, answer.text
+        return answer
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with Store(tmp_path_factory.mktemp("swing") / "store.db") as store:
+        timed = support(law="cycloidal", duration="20 s")
+        jobs = {name: solved_at_once(store, job) for name, job in ((SLOW, support()), (TIMED, timed), (TURNS, ENGINE))}
+        with client_of(store) as client:
+            yield Served(client, jobs)
+
+
+def lengths(row: dict[str, Any]) -> list[float]:
+    return [float(row[f"{name}_mm"]) for name in ("crank", "rod", "offset")]
+
+
+@pytest.mark.parametrize("job", [SLOW, TIMED])
+def test_curves_of_a_swing_go_forth_and_back(served: Served, job: str) -> None:
+    found, row = served.get(job, "/curves", angles=72).json(), served.get(job, "").json()["design"]
+    assert (found["turns"], found["inner_dead_centre_deg"], found["slow_stroke"]) == (0, None, None)
+    curves = {key: np.array(values) for key, values in found["curves"].items()}
+    assert {column["key"] for column in found["columns"]} == set(curves)
+    r, l, e = lengths(row)
+    angle = np.radians(curves["crank_angle_deg"])
+    assert np.degrees(angle[[0, 36]]) == pytest.approx([11.16, 101.16])
+    x = r * np.cos(angle) + np.sqrt(l * l - (e - r * np.sin(angle)) ** 2)
+    np.testing.assert_allclose(curves["slider_position_mm"], x, rtol=1e-9)
+    np.testing.assert_allclose(curves["slider_position_mm"][1:36], curves["slider_position_mm"][:36:-1], rtol=1e-9)
+    assert max(abs(curves["drive_N"])) == pytest.approx(row["peak_actuator_force_N"], rel=1e-3)
+    assert ("power_W" in curves) == (job == TIMED)
+    assert "even number" in served.get(job, "/curves", 422, angles=73).text
+
+
+def test_a_cycle_of_two_turns_has_the_curves_of_both(served: Served) -> None:
+    found = served.get(TURNS, "/curves", angles=144).json()
+    assert found["turns"] == 2
+    assert found["curves"]["crank_angle_deg"] == pytest.approx([5.0 * n for n in range(144)])
+    once, twice = (np.array(found["curves"]["torque_Nm"][part]) for part in (slice(72), slice(72, None)))
+    assert np.abs(once - twice).max() > 100.0
+    position = found["curves"]["slider_position_mm"]
+    assert position[:72] == pytest.approx(position[72:])
+
+
+def test_numbers_and_other_lengths_are_those_of_the_swing(served: Served) -> None:
+    row = served.get(SLOW, "").json()["design"]
+    analysis = served.get(SLOW, "/analysis").json()["analysis"]
+    for key in ("peak_actuator_force_N", "swing_angle_error_deg", "actuator_travel_mm"):
+        assert analysis[key] == pytest.approx(row[key], rel=1e-6)
+    assert "stroke_mm" not in analysis
+    r, l, e = lengths(row)
+    body = {"crank_mm": r, "rod_mm": l * 1.01, "offset_mm": e, "angles": 36}
+    path = f"{API}/jobs/{served.jobs[SLOW]}/designs/1/what-if"
+    found = served.client.post(path, json=body).json()
+    force = parse_job(support()).evaluate([[r / 1e3, l * 1.01e-3, e / 1e3]], ["peak_actuator_force"])[0, 0]
+    assert found["design"]["peak_actuator_force_N"] == pytest.approx(force, rel=1e-6)
+    assert found["cycle"]["turns"] == 0
+    refused = served.client.post(path, json={**body, "rod_mm": 300.0})
+    assert (refused.status_code, "must close over the whole swing" in refused.text) == (422, True)
+
+
+def test_files_of_a_design_that_swings(served: Served) -> None:
+    rows = list(csv.DictReader(io.StringIO(served.get(TIMED, "/cycle.csv").text)))
+    assert {row["way"] for row in rows} == {"forth", "back"}
+    assert float(rows[180]["time_s"]) == pytest.approx(20.0)
+    for file, start in (
+        ("linkage.dxf", b"  0"),
+        ("linkage.svg", b"<?xml"),
+        ("motion.html", b"<!doctype"),
+        ("motion.gif", b"GIF"),
+        ("report.html", b"<!doctype"),
+    ):
+        content = served.get(TIMED, f"/{file}").content
+        assert content.lower().startswith(start.lower()), file
+    assert "got 200 deg" in served.get(SLOW, "/linkage.svg", 422, crank_angle_deg=200.0).text
+
+
+def test_the_swing_of_the_job_is_what_is_asked_without_a_word(served: Served) -> None:
+    row, swing = served.get(TIMED, "").json()["design"], served.get(TIMED, "/swing").json()["swing"]
+    assert (swing["driver"], swing["law"], swing["duration_s"]) == ("slider", "cycloidal", 20.0)
+    assert abs(swing["peak_drive_N"]) == pytest.approx(row["peak_actuator_force_N"], rel=1e-6)
+    assert swing["crank_position_error_deg"] == pytest.approx(row["swing_angle_error_deg"], rel=1e-6)
+    other = served.get(TIMED, "/swing", end_deg=60.0).json()["swing"]
+    assert math.isclose(other["end_crank_angle_deg"], 60.0)
+
+
+@pytest.mark.parametrize("path", ["/topics/balance", "/topics/extremes", "/analysis?show=tolerances"])
+def test_an_analysis_of_a_full_turn_is_refused(served: Served, path: str) -> None:
+    assert "is of a crank that turns through; got a job whose crank swings" in served.get(SLOW, path, 422).text

@@ -1,0 +1,81 @@
+"""A design that swings, and one whose cycle has two turns, in a browser."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from slidercrank.service.store import Store
+from tests.service.api.swinging import ENGINE, solved_at_once, support
+from tests.service.page.accessibility import findings
+from tests.service.page.conftest import watched
+
+
+@pytest.fixture(scope="module")
+def service(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
+    with Store(tmp_path_factory.mktemp("page") / "store.db") as store:
+        for job in (support(law="cycloidal", duration="20 s"), ENGINE):
+            solved_at_once(store, job)
+        with watched(browser, store) as opened:
+            yield opened
+
+
+def put(page: Page, name: str, place: int) -> None:
+    page.get_by_role("slider", name=name, exact=True).fill(str(place))
+
+
+def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str]) -> None:
+    page, address = service
+    page.goto(f"{address}/#/jobs/1/designs/1")
+    told = page.locator("output.angle")
+    for place, angle in ((0, "11°"), (180, "101°"), (359, "11°")):
+        put(page, "Forth and back", place)
+        expect(told).to_have_text(angle)
+    put(page, "Forth and back", 0)
+    turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
+    assert float(turned.split("rotate(")[1].rstrip(")")) == pytest.approx(-11.16, abs=0.01)
+    expect(page.locator("svg.still .ghost")).to_have_count(2)
+    expect(page.get_by_text("travel ", exact=False).first).to_be_visible()
+    titles = page.locator(".curves .title")
+    expect(titles.filter(has_text="Force on the slider")).to_have_count(1)
+    expect(titles.filter(has_text="Power of the drive")).to_have_count(1)
+    over = page.locator('select[name="over"]')
+    assert over.locator("option").all_text_contents() == ["both ways", "time", "crank angle", "slider position"]
+    over.select_option("crank")
+    expect(page.locator('figure[data-key="drive_N"] svg.chart')).to_have_attribute(
+        "aria-label", re.compile("over the crank angle")
+    )
+    numbers = page.locator("section.topics")
+    numbers.scroll_into_view_if_needed()
+    expect(numbers.get_by_role("heading", name="The swing")).to_be_visible()
+    expect(numbers.locator('[data-key="start_crank_angle_deg"]')).to_have_text("11.16")
+    page.set_viewport_size({"width": 390, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.set_viewport_size({"width": 1280, "height": 900})
+    assert findings(page) == []
+
+
+def test_other_lengths_swing_too(service: tuple[Page, str]) -> None:
+    page, address = service
+    page.goto(f"{address}/#/jobs/1")
+    page.goto(f"{address}/#/jobs/1/designs/2")
+    rod = page.locator("#what-if-rod_mm")
+    rod.fill(f"{float(rod.input_value()) + 20.0}")
+    expect(page.locator("section.what-if .results")).to_contain_text("peak actuator force")
+    expect(page.locator("section.curves .legend")).to_contain_text("What if")
+
+
+def test_curves_of_two_turns_are_both_there(service: tuple[Page, str]) -> None:
+    page, address = service
+    page.goto(f"{address}/#/jobs/2/designs/1")
+    chart = page.locator('figure[data-key="torque_Nm"]')
+    expect(chart.locator(".axes text", has_text="720°")).to_have_count(1)
+    expect(chart.locator(".centre")).to_have_count(4)
+    put(page, "Crank angle", 270)
+    expect(page.locator("output.angle")).to_have_text("540°")
+    turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
+    assert math.isclose(abs(float(turned.split("rotate(")[1].rstrip(")"))), 180.0, abs_tol=0.01)
