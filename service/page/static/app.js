@@ -6,6 +6,7 @@ import { byId, fill, h } from "./lib/dom.js";
 import { watchDownloads } from "./lib/download.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
+import { keepPlaces, lookForPlace } from "./lib/place.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
@@ -29,6 +30,7 @@ async function showView() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { parts, query } = read();
+  const found = lookForPlace(signal);
   const main = byId("main");
   markNavigation();
   const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
@@ -42,6 +44,7 @@ async function showView() {
     if (signal.aborted) return;
     document.title = `${module.title} · slidercrank`;
     await module.show(place, { parts, query, signal });
+    found();
     if (changed && !signal.aborted) main.focus({ preventScroll: true });
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
@@ -82,6 +85,7 @@ document.querySelector(".skip")?.addEventListener("click", (event) => {
 });
 window.addEventListener("hashchange", showView);
 watchDownloads();
+keepPlaces();
 showPreferences();
 const units = readySystem().catch(() => {}); // what is wrong with the service, the view says
 if (system() === "inch") units.then(showView);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import httpx
@@ -64,6 +65,18 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/motor"
     told = httpx.get(path, params=lengths, timeout=60.0).json()["told"]
     expect(panel.locator("tr", has_text="peak torque").first).to_contain_text(told[1]["rows"][0][1])
+    expect(page).to_have_url(re.compile("tab=motor"))
+    panel.evaluate("node => node.scrollIntoView()")
+    page.wait_for_function("() => history.state?.top === Math.round(scrollY) && scrollY > 500")
+    before = page.evaluate("scrollY")
+    page.reload()
+    expect(page.get_by_role("tab", selected=True)).to_have_text("Motor", timeout=30_000)
+    page.wait_for_function(f"() => Math.abs(scrollY - {before}) <= 2", timeout=30_000)
+    page.evaluate("location.hash = '#/help'")  # as by a bookmark: a link at the top is reached by going there
+    expect(page.get_by_role("heading", level=1)).to_have_text("Help")
+    assert page.evaluate("scrollY") == 0
+    page.go_back()
+    page.wait_for_function(f"() => Math.abs(scrollY - {before}) <= 2", timeout=30_000)
 
 
 def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> None:

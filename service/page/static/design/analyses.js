@@ -14,22 +14,21 @@ const NEAR = "200px"; // before they are in sight
 const CERTIFY = { name: "certify", title: "Certify", shows: "how far the front can be from the true one" };
 
 /**
- * Put the tabs into `place`. drawn: names of topics that the view draws itself. Returns show(lengths): of a changed design,
- * null for the design itself.
+ * Put the tabs into `place`. drawn: names of topics that the view draws itself. tab: that is chosen; told(tab): another one is, "" for the
+ * first. Returns show(lengths): of a changed design, null for the design itself.
  * @param {HTMLElement} place
- * @param {{ job: string, number: number, drawn: readonly string[], signal: AbortSignal }} given
+ * @param {{ job: string, number: number, drawn: readonly string[], tab: string, told: (tab: string) => void, signal: AbortSignal }} given
  */
-export function analyses(place, { job, number, drawn, signal }) {
+export function analyses(place, { job, number, drawn, tab, told, signal }) {
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown: step });
   const panel = h("div", { class: "panel analysis", role: "tabpanel", id: "analysis", tabindex: 0 });
   fill(place, h("h2", {}, "Analyses"), tabs, panel);
   /** @type {Api.Topic[]} */
   let topics = [];
-  let chosen = "";
+  let chosen = tab;
   /** @type {Page.Lengths | null} */
   let lengths = null;
   let turn = 0;
-  let seen = false;
 
   /** @type {Promise<void> | null} */
   let begun = null;
@@ -48,10 +47,9 @@ export function analyses(place, { job, number, drawn, signal }) {
 
   async function begin() {
     watcher.disconnect();
-    seen = true;
     try {
       topics = [...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)), CERTIFY];
-      await choose(topics[0].name);
+      await choose((topics.find(({ name }) => name === chosen) ?? topics[0]).name);
     } catch (error) {
       if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
     }
@@ -60,6 +58,7 @@ export function analyses(place, { job, number, drawn, signal }) {
   /** @param {string} name */
   function choose(name) {
     chosen = name;
+    if (begun) told(name === topics[0].name ? "" : name);
     fill(tabs, topics.map((one) => h("button", {
       type: "button", role: "tab", id: `tab-${one.name}`, "aria-controls": "analysis", "aria-selected": String(one.name === name), tabindex: one.name === name ? 0 : -1, title: one.shows, onclick: () => choose(one.name),
     }, one.title)));
@@ -89,10 +88,10 @@ export function analyses(place, { job, number, drawn, signal }) {
     try {
       const found = await get(path, { ...lengths }, signal);
       if (own !== turn || !found) return;
-      const { told } = found;
+      const { told: blocks } = found;
       const file = address(`${path}.svg`, { ...lengths });
       const picture = h("img", { src: file, alt: `Figure: ${title}`, onerror: ({ currentTarget }) => currentTarget.remove() });
-      fill(panel, head, h("div", { class: "analysis-columns" }, h("div", {}, told.map(block)), picture));
+      fill(panel, head, h("div", { class: "analysis-columns" }, h("div", {}, blocks.map(block)), picture));
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
       const lacks = statusOf(error) === 422;
@@ -105,7 +104,7 @@ export function analyses(place, { job, number, drawn, signal }) {
     show(now) {
       if (JSON.stringify(now) === JSON.stringify(lengths)) return;
       lengths = now;
-      if (seen && chosen && chosen !== CERTIFY.name) ask(); // a proof is of the front, whatever the design
+      if (topics.length && chosen !== CERTIFY.name) ask(); // a proof is of the front, whatever the design
     },
   };
 }

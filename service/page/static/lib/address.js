@@ -21,7 +21,7 @@ export function link(parts, query = {}) {
  * @param {Record<string, Dom.Value>} query
  */
 export function keep(query) {
-  history.replaceState(null, "", link(read().parts, query));
+  history.replaceState(history.state, "", link(read().parts, query));
 }
 
 /**

@@ -58,6 +58,7 @@ export async function show(place, { parts, query, signal }) {
   for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
   const machines = stage(places.stage, strip, angle, turns);
   let over = query.get("over") ?? "";
+  let tab = query.get("tab") ?? ""; // of the analyses
   const charts = overCycle(places.curves, { path, rpm, turns, over, turned: hold, told: (now) => { over = now; keepAll(); } });
   angle.listen(charts.turn);
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
@@ -69,8 +70,8 @@ export async function show(place, { parts, query, signal }) {
   let later = 0;
   /** @type {Page.Lengths | null} */
   let kept = startOf(query); // of the changed design
-  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, ...kept });
-  const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, signal }) : null; // all are of full turns
+  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept });
+  const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
   const draw = () => {
     const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
