@@ -4,6 +4,7 @@ import { fill, first, focused, h } from "../lib/dom.js";
 import { ends, fromShown, text } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { headed, helpLink } from "./columns.js";
+import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Axis } from "./choices.js" */
@@ -52,7 +53,7 @@ export function axisFields(explorer) {
       h("div", { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
         act("⇅", "Flip", () => explorer.flipAxis(index)),
-        explorer.mayBeLogged(key) && act("log", "Logarithmic", () => explorer.logAxis(key), false, explorer.logged(key)),
+        mayBeLogged(explorer, key) && act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
         act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
         act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
   }

@@ -2,7 +2,7 @@
 
 import { parallel } from "../charts/parallel.js";
 import { scatter } from "../charts/scatter.js";
-import { colours, mayBeLog } from "../charts/scale.js";
+import { colours } from "../charts/scale.js";
 import { keep, link } from "../lib/address.js";
 import { isAbort } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -19,6 +19,7 @@ import { Limits } from "./limits.js";
 import { keepListed } from "./listed.js";
 import { linkagePanel } from "./linkage_panel.js";
 import { linkages } from "./linkages.js";
+import { logged } from "./logarithmic.js";
 import { marksOf, othersOf } from "./marked.js";
 import { marksPanel } from "./marks.js";
 import { saving } from "./saving.js";
@@ -87,12 +88,12 @@ export class Explorer {
     this.fields = axisFields(this);
     this.lines = parallel({
       data, limits, axes: () => chosen.axes, colour: () => chosen.colour, marks: () => marksOf(this, "lines"), limit: (key, limit) => this.limit(key, limit),
-      log: (key) => this.logged(key), say: (row) => this.said(row),
+      log: (key) => logged(this, key), say: (row) => this.said(row),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
     });
     this.dots = scatter({
       data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => marksOf(this, "dots"), others: () => othersOf(this).map(({ cells }) => cells),
-      log: (key) => this.logged(key), say: (row) => this.said(row),
+      log: (key) => logged(this, key), say: (row) => this.said(row),
       behind: () => (chosen.behind && this.before ? this.before.rows(chosen.x, chosen.y) : []),
       point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
       box: (x, y) => {
@@ -297,22 +298,6 @@ export class Explorer {
     if (!keys.length) return;
     const { axes } = this.chosen;
     this.setAxes(keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }));
-  }
-
-  /** Whether the axis of a column may be logarithmic. @param {string} key */
-  mayBeLogged(key) {
-    return this.data.has(key) && !this.data.words(key) && mayBeLog(this.data.range(key));
-  }
-
-  /** Whether the axis of a column is logarithmic. @param {string} key */
-  logged(key) {
-    return this.chosen.log.includes(key) && this.mayBeLogged(key);
-  }
-
-  /** Make the axes of a column logarithmic, or linear again. @param {string} key */
-  logAxis(key) {
-    const { log } = this.chosen;
-    this.change({ log: log.includes(key) ? log.filter((other) => other !== key) : [...log, key] }, "all");
   }
 
   /** Return a design in words, with its objectives. @param {number} row */

@@ -5,6 +5,7 @@ import { fill, h } from "../lib/dom.js";
 import { ends } from "../lib/numbers.js";
 import { headed } from "./columns.js";
 import { correlations } from "./correlation.js";
+import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 
 /**
  * @import { Explorer } from "./explorer.js"
@@ -21,7 +22,7 @@ export function scatterPanel(explorer, dots) {
   const pick = (label, name, none = "") => {
     const select = h("select", { name, onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all") },
       none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title)));
-    const log = h("input", { type: "checkbox", "aria-label": `Logarithmic, ${label.toLowerCase()}`, onchange: () => explorer.logAxis(chosen[name]) });
+    const log = h("input", { type: "checkbox", "aria-label": `Logarithmic, ${label.toLowerCase()}`, onchange: () => logAxis(explorer, chosen[name]) });
     const logs = h("label", { class: "log", title: "Logarithmic axis" }, log, " log");
     return { name, select, log, logs, node: h("span", { class: "pick" }, h("label", {}, `${label} `, select), name !== "colour" && logs) };
   };
@@ -41,8 +42,8 @@ export function scatterPanel(explorer, dots) {
   function draw() {
     for (const one of picks) {
       one.select.value = chosen[one.name];
-      one.logs.hidden = !explorer.mayBeLogged(chosen[one.name]);
-      one.log.checked = explorer.logged(chosen[one.name]);
+      one.logs.hidden = !mayBeLogged(explorer, chosen[one.name]);
+      one.log.checked = logged(explorer, chosen[one.name]);
     }
   }
 
