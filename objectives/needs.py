@@ -141,8 +141,9 @@ SHAKES = Need(
 """Cylinders whose shaking forces leave something."""
 COUPLES = _defining(
     couples,
-    "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got none; add for "
-    'example [mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',
+    "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got no "
+    "places, or all forces at one; add for example "
+    '[mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',
 )
 ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,

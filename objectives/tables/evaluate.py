@@ -18,6 +18,7 @@ from ..cycle_peak import screened
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
 from ..registry import quantity
+from .swinging import require_in_motion
 
 
 @overload
@@ -68,6 +69,7 @@ def evaluate(
     """
     if isinstance(quantities, str):
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
+    require_in_motion(quantities, own, swing)
     chosen = [quantity(name, own) for name in quantities]
     for item in chosen:
         reason = item.undefined_because([mechanism])

@@ -31,6 +31,28 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
     return tuple(replace(of, swing=swing) for of in swing_facts() if of.unfit(swing) is None)
 
 
+def why_not(name: str, swing: Swing | None) -> str | None:
+    """Return why a motion does not have a quantity of a swing; None where it has it, and for every other name."""
+    fact = next((of for of in swing_facts() if of.name == name), None)
+    if fact is None:
+        return None
+    if swing is None:
+        return (
+            'it is of a crank that swings; got one that turns through; add [motion] kind = "swing" with from and to, '
+            "or leave it out"
+        )
+    return fact.unfit(swing)
+
+
+def require_in_motion(names: Iterable[str], own: Iterable[Quantity], swing: Swing | None) -> None:
+    """Raise `InputError` for the name of a quantity of a swing that a motion does not have. own: of the problem."""
+    known = {of.name for of in own}
+    for name in names:
+        reason = None if name in known else why_not(name, swing)
+        if reason is not None:
+            raise InputError(f"{name}: {reason}")
+
+
 def require_loads(mechanism: Mechanism) -> None:
     """Raise `InputError` for what is of a full turn: loads from a dead centre, cylinders, how the speed goes."""
     of_turns = {

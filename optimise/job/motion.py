@@ -227,11 +227,16 @@ def require_start(varying: Mapping[str, bool]) -> None:
     """Raise JobError where another number of [motion] than the start is to vary. varying: paths, and whether chosen."""
     free = {f"motion.{name}" for name in _STARTS.values()}
     for path, chosen in varying.items():
-        if path.startswith("motion.") and (chosen or path not in free):
+        if path.startswith("motion.") and path not in free:
             raise JobError(
-                f"{path}: of a swing its start may vary, within a range; got "
-                f"{'a choice' if chosen else 'a range of another number'}; give it in [motion] alone, and let "
-                f"{' or '.join(sorted(free))} vary, with swing or slider_travel if the end goes along"
+                f"{path}: of the numbers of a swing only its start may vary; got {path.removeprefix('motion.')} as a "
+                "variable; give it in [motion] alone; for several values solve a job for each, and `slidercrank "
+                "compare` them"
+            )
+        if path.startswith("motion.") and chosen:
+            raise JobError(
+                f"{path}: the start of a swing varies within a range; got a choice; write its least and its greatest "
+                "value, with swing or slider_travel in [motion] if the end goes along"
             )
 
 

@@ -21,7 +21,7 @@ from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
-from ...objectives.tables.swinging import swinging
+from ...objectives.tables.swinging import require_in_motion, swinging
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,6 +42,7 @@ class Analysis(Mapping[str, float]):
     A mapping from the names of job files. Quantities that the machine does not define are no part of it: asking for one
     raises `InputError` with the reason, and `undefined` has the reasons of all. mechanism: the machine of this design.
     linkage: its dimensions. found: the mapping itself. title: of the problem that it is a design of, "" without one.
+    swing: what its crank makes in place of a full turn.
     """
 
     mechanism: Mechanism
@@ -50,6 +51,7 @@ class Analysis(Mapping[str, float]):
     undefined: Mapping[str, str]
     quantities: tuple[Quantity, ...]
     title: str = ""
+    swing: Swing | None = None
 
     def __getitem__(self, name: str) -> float:
         """Return a quantity, SI. Raises `InputError` for one that is not defined, or not known."""
@@ -57,7 +59,14 @@ class Analysis(Mapping[str, float]):
             return self.found[name]
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
-        return self.found[quantity(name, self.quantities).name]
+        require_in_motion([name], self.quantities, self.swing)
+        known = quantity(name, self.quantities)
+        if known.name not in self.found:
+            raise InputError(
+                f"{name} is of a crank that turns through; got one that swings; ask for a quantity of a swing, "
+                f"such as {', '.join(of.name for of in self.quantities if of.name in self.found)}"
+            )
+        return self.found[known.name]
 
     @overload
     def get(self, name: str, /) -> float | None: ...
@@ -196,4 +205,4 @@ def analyse(
             undefined[item.name] = reason
         else:
             values[item.name] = float(item.evaluate(mechanism, row).values[0])
-    return Analysis(machine, linkage, values, undefined, chosen, title)
+    return Analysis(machine, linkage, values, undefined, chosen, title, swing)

@@ -22,7 +22,13 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, quantity
 from ...objectives.tables.evaluate import evaluate
-from ...objectives.tables.swinging import require_loads, require_of_swing, swing_facts, swing_quantities
+from ...objectives.tables.swinging import (
+    require_in_motion,
+    require_loads,
+    require_of_swing,
+    swing_facts,
+    swing_quantities,
+)
 from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
 from .discrete import Discrete, require_known
@@ -196,6 +202,7 @@ class Problem:
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
+        require_in_motion([name], self.own, self.motion)
         return quantity(name, self.own)
 
     @overload
