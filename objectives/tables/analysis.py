@@ -23,6 +23,7 @@ from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from ..time_ratio import TIME_RATIO
 from ..transmission_angle import TRANSMISSION_ANGLE
+from .of_a_turn import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE
 from .varying_column import varying_column
 
 if TYPE_CHECKING:
@@ -61,13 +62,13 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
         **{key: unit.factor * dimensions[:, 3 + place] for place, (key, unit) in enumerate(varying)},
         STROKE.field: 1e3 * linkage.stroke,
         TIME_RATIO.field: linkage.time_ratio,
-        "slow_stroke": linkage.slow_stroke(direction=mechanism.direction),
-        "loaded_stroke": loaded_stroke(mechanism, dimensions),
-        "outer_dead_centre_deg": np.degrees(outer),
-        "inner_dead_centre_deg": np.degrees(inner),
+        SLOW_STROKE: linkage.slow_stroke(direction=mechanism.direction),
+        LOADED_STROKE: loaded_stroke(mechanism, dimensions),
+        OUTER_DEAD_CENTRE: np.degrees(outer),
+        INNER_DEAD_CENTRE: np.degrees(inner),
         TRANSMISSION_ANGLE.field: np.degrees(linkage.least_transmission_angle),
         PEAK_TORQUE.field: torque.values[:, 0],
-        "peak_torque_angle_deg": np.degrees(torque.angles[:, 0]),
+        PEAK_TORQUE_ANGLE: np.degrees(torque.angles[:, 0]),
         RMS_TORQUE.field: averages.rms,
         MEAN_TORQUE.field: averages.mean,
     }

@@ -13,6 +13,7 @@ from ...model.arrays import Array
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
+from ..problem.table_columns import slack_field
 from ..problem.violation import FEASIBLE, violated_by
 from .slack import slack_of
 
@@ -119,7 +120,7 @@ class Rounded:
         found["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
         for place, constraint in enumerate(self.constraints):
             of = self.problem.quantity(constraint.quantity)
-            found[f"slack_{of.field}"] = slack_of(constraint, self.held[:, place]) * of.unit.factor + 0.0
+            found[slack_field(of)] = slack_of(constraint, self.held[:, place]) * of.unit.factor + 0.0
         return found
 
     @cached_property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -33,6 +32,7 @@ from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
 from .discrete import Discrete, require_known
 from .requirements import Constraint, Objective, Range, Word, merged
+from .table_columns import require_own_columns
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
@@ -126,6 +126,7 @@ class Problem:
         else:
             for own in self.variants or (self,):
                 require_no_winding(own.mechanism)
+        require_own_columns(self.own, self.mechanism.varying, self.choices)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
@@ -338,11 +339,6 @@ def _in_words(of: Quantity, constraint: Constraint) -> str:
     unit = of.unit
     ends = [f"{_IN_WORDS[word]}{unit.factor * bound:.6g} {unit.symbol}".rstrip() for word, bound in constraint.sides]
     return f"{of.title}: {', '.join(ends)}"
-
-
-def choice_field(name: str) -> str:
-    """Return the key of the column that says what was chosen."""
-    return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
 
 
 def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:

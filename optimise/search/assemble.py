@@ -16,7 +16,8 @@ from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.slack import slack_of
 from ..front.stationarity import STATIONARY, multipliers
-from ..problem.problem import Problem, choice_field
+from ..problem.problem import Problem
+from ..problem.table_columns import RESIDUAL, STATUS, choice_field, slack_field
 from ..problem.violation import constraints_of
 from .candidates import Finished
 from .evaluation import Evaluator
@@ -57,9 +58,9 @@ def assemble(
     variants = np.array([evaluators[index].sheet.variant for index in best.sheet], dtype=np.int64)
     finishing = run.stage(FINISHING)
     columns = columns_of(problem, variants, dimensions, finishing)
-    columns["residual"] = residual
+    columns[RESIDUAL] = residual
     proven = (residual <= STATIONARY) & ~_torn(problem, variants, dimensions)
-    columns["status"] = np.where(proven, "stationary", "best found")
+    columns[STATUS] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
     message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluated} evaluated"
     if status == "cancelled":
@@ -156,7 +157,7 @@ def _slacks(problem: Problem, dimensions: Array) -> Columns:
     for constraint in constraints_of(problem):
         quantity = problem.quantity(constraint.quantity)
         values = quantity.evaluate(problem.mechanism, dimensions).values
-        slacks[f"slack_{quantity.field}"] = slack_of(constraint, values) * quantity.unit.factor + 0.0  # no -0
+        slacks[slack_field(quantity)] = slack_of(constraint, values) * quantity.unit.factor + 0.0  # no -0
     return slacks
 
 

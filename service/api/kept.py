@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ...optimise.problem.problem import choice_field
+from ...optimise.problem.table_columns import choice_field
 from ..designs.columns import all_columns
 from ..designs.requirements import ranges_of
 from ..designs.shown_units import rows_in

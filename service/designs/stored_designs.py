@@ -15,8 +15,9 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import Varying
 from ...objectives.tables.varying_column import varying_column
-from ...optimise.problem.problem import Problem, Variant, choice_field
+from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
+from ...optimise.problem.table_columns import choice_field
 from ..runs.result import Cell, Exact, Result, Row
 
 if TYPE_CHECKING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 import re
 from dataclasses import replace
@@ -279,3 +280,23 @@ def test_a_design_like_another_needs_gradients() -> None:
     )
     with pytest.raises(InputError, match=r"a design like another needs the gradient .* got mine .*; set gradient ="):
         like_design(front, 0, ranges={"crank": (0.055, None)})
+
+
+def test_no_quantity_takes_the_column_of_another_number() -> None:
+    """Every column of a front, as the name of a formula that has no unit, of an angle, and of a length."""
+    units = {"": "rod / crank", "deg": "2 * transmission_angle", "mm": "crank + offset"}
+    asked = {"stroke": {"min": "30 mm"}, "crank - offset": {"min": "0 mm"}}
+    tables = job(constraints=asked, objectives={"time_ratio": "maximise"})
+    columns = [*solve(parse_job(tables)).columns, "design"]
+    assert {"status", "residual", "slow_stroke", "slack_stroke_mm", "crank_minus_offset_mm"} <= set(columns)
+    refused = 0
+    for column in columns:
+        name, _, unit = column.rpartition("_")
+        for stem, formula in ((column, units[""]), *([(name, units[unit])] if name and unit in units else [])):
+            own = tables | {"quantity": {stem: {"formula": formula}}}
+            with contextlib.suppress(InputError):
+                found = {of.name: of.field for of in parse_job(own).own}
+                assert found[stem] not in columns
+                continue
+            refused += 1
+    assert refused >= len(columns) // 2

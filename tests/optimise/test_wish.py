@@ -11,7 +11,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job.tables import problem as stated
 from slidercrank.optimise.methods.scalar import SUM
-from slidercrank.optimise.problem.problem import choice_field
+from slidercrank.optimise.problem.table_columns import choice_field
 from slidercrank.optimise.questions.wish import Wishes, wish
 from slidercrank.optimise.questions.wished import Wished
 from slidercrank.optimise.questions.wishes import aimed
