@@ -35,6 +35,8 @@ def report(
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
+    if out is not None and out.suffix.lower() not in ("", ".html", ".htm", ".pdf"):
+        raise InputError(f"a report is HTML or PDF; got --out {out}; let its name end in .html or .pdf")
     folder, result = run_of(run, runs)
     number = choice.number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")

@@ -169,11 +169,19 @@ class RunFolder:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Write a file as a whole or not at all. Raises `RunError` when the disk refuses, `InputError` for a folder."""
+    """Write a file as a whole or not at all; what is no file, as a pipe or a device, takes it as it comes.
+
+    A link stays one, and a file that is there keeps its permissions. Raises `RunError` when the disk refuses,
+    `InputError` for a folder.
+    """
     if path.is_dir():
         raise InputError(f"what is written needs the name of a file; got the folder {path}; name a file in it")
     with disk(path.parent):
-        _write(path, content)
+        if path.exists() and not path.is_file():
+            with path.open("wb") as stream:
+                stream.write(_bytes(content))
+        else:
+            _write(path.resolve(), content)
 
 
 def _lock(folder: Path) -> int | None:
@@ -210,15 +218,20 @@ def _rename(hidden: Path, wanted: Path) -> Path:
     raise RunError(f"no name is left for a run in {wanted.parent}; move old runs away")
 
 
+def _bytes(content: str | bytes) -> bytes:
+    return content.encode() if isinstance(content, str) else content
+
+
 def _write(path: Path, content: str | bytes) -> None:
     """Write a file under another name, make sure that it is on the disk, then rename it."""
-    data = content.encode() if isinstance(content, str) else content
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with draft.open("wb") as file:
-            file.write(data)
+            file.write(_bytes(content))
             file.flush()
             os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, draft)
         draft.replace(path)
     except OSError:
         draft.unlink(missing_ok=True)

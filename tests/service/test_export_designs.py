@@ -170,6 +170,7 @@ def test_a_report_is_written_as_html_and_as_pdf(
         (("--design", 1, "--where", "time_ratio > 1"), 2, "a design is chosen in one way"),
         (("--knee", "--where", "time_ratio > 9"), 3, "none of the 8 designs meets time_ratio > 9"),
         (("--knee", "--pdf", "--out", "a.html"), 2, "--pdf writes PDF; got --out a.html"),
+        (("--knee", "--out", "a.docx"), 2, "HTML or PDF; got --out a.docx; let its name end in"),
         (("--knee", "--out", "none/there/a.html"), 2, "must be a folder that can be written"),
     ],
 )

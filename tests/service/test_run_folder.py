@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import stat
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -142,6 +144,27 @@ def test_a_file_is_replaced_as_a_whole(tmp_path: Path, monkeypatch: pytest.Monke
         write_file(tmp_path, "new")
     assert file.read_text() == "old"
     assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links, pipes and permissions of Unix")
+def test_a_link_stays_one_and_a_pipe_takes_what_is_written(tmp_path: Path) -> None:
+    file, link, pipe = (tmp_path / name for name in ("front.csv", "link.csv", "pipe"))
+    file.write_text("old")
+    file.chmod(0o640)
+    link.symlink_to(file)
+    write_file(link, "new")
+    assert link.is_symlink()
+    assert (file.read_text(), stat.S_IMODE(file.stat().st_mode)) == ("new", 0o640)
+    os.mkfifo(pipe)
+    with ThreadPoolExecutor() as pool:
+        read = pool.submit(pipe.read_text)
+        write_file(pipe, "through the pipe")
+        assert read.result(timeout=20.0) == "through the pipe"
+    assert pipe.is_fifo()
+    dangling = tmp_path / "later.csv"
+    dangling.symlink_to(tmp_path / "not there yet.csv")
+    write_file(dangling, "made")
+    assert (tmp_path / "not there yet.csv").read_text() == "made"
 
 
 @pytest.mark.parametrize(
