@@ -17,7 +17,7 @@ from slidercrank.model.errors import RunError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import job_schema, load_job, parse_job
-from slidercrank.optimise.problem.problem import choice_field
+from slidercrank.optimise.problem.table_columns import choice_field
 from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.designs.cycle_table import cycle_table
