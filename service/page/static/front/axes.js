@@ -53,9 +53,9 @@ export function axisFields(explorer) {
       h("div", { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
         act("⇅", "Flip", () => explorer.flipAxis(index)),
-        mayBeLogged(explorer, key) && act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
         act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
-        act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1)));
+        act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1),
+        mayBeLogged(explorer, key) && act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key))));
   }
 
   /** Return an arrow to the better end of an axis; in words for a value to come near to. @param {string} key @param {boolean} flipped */
