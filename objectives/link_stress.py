@@ -77,7 +77,10 @@ CRANK_STRESS = replace(
         "The greatest stress of the crank over a turn, of either sign: axial force and bending by the crank pin's "
         "force at every place, and the net section of both eyes."
     ),
-    advice="It is that at the crank pivot where the torque is large.",
+    advice=(
+        "It is that at the crank pivot where the torque is large. In the pivot's eye the force alone counts: a torque T "
+        "that a key brings in there adds up to 6 w T / (d (w^3 - D^3))."
+    ),
     picture="crank",
     needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, LOADED),
 )
@@ -87,7 +90,7 @@ STATIC_SAFETY = LinkStress(
     least=True,
     place=444,
     sentence="The yield strength over the greatest stress of the links that are given by their sections.",
-    advice="1.5 to 3 are usual, more where loads are not well known.",
+    advice="1.5 to 3 are usual, more where loads are not well known. Negative where a pin is wider than its bar.",
     formula="S_y / max(crank stress, rod stress)",
     source=_SOURCE,
     picture="rod",
