@@ -78,8 +78,8 @@ CRANK_STRESS = replace(
         "force at every place, and the net section of both eyes."
     ),
     advice=(
-        "It is that at the crank pivot where the torque is large. In the pivot's eye the force alone counts: a torque T "
-        "that a key brings in there adds up to 6 w T / (d (w^3 - D^3))."
+        "It is that at the crank pivot where the torque is large. In the pivot's eye the force alone counts: a torque "
+        "T that a key brings in there adds up to 6 w T / (d (w^3 - D^3))."
     ),
     picture="crank",
     needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, LOADED),
