@@ -133,7 +133,7 @@ def test_gradient_of_the_second_piece_is_that_of_extrapolated_differences(quanti
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
 def test_gradient_holds_for_random_machines(quantity: Quantity) -> None:
     random = np.random.default_rng(5)
-    designs = random_designs(6, seed=6)[: designs_for(quantity, 6)]
+    designs = random_designs(6, seed=6)[: 2 if isinstance(quantity, PinRubbing) else 6]
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     for _ in range(8):
         machine = fitted(quantity, random_machine(random))
