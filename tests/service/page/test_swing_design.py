@@ -79,3 +79,14 @@ def test_curves_of_two_turns_are_both_there(service: tuple[Page, str]) -> None:
     expect(page.locator("output.angle")).to_have_text("540°")
     turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
     assert math.isclose(abs(float(turned.split("rotate(")[1].rstrip(")"))), 180.0, abs_tol=0.01)
+
+
+def test_the_picture_of_a_front_swings_between_the_ends(service: tuple[Page, str]) -> None:
+    page, address = service
+    page.goto(f"{address}/#/jobs/1")
+    picture = page.locator("section.linkage svg.still")
+    expect(picture.locator(".ghost")).to_have_count(2)
+    expect(picture.locator("path.path")).to_have_count(1)  # an arc in place of the circle
+    expect(picture.locator("circle.path")).to_have_count(0)
+    page.goto(f"{address}/#/jobs/2")
+    expect(picture.locator("circle.path")).to_have_count(1)

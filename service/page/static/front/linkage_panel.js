@@ -12,6 +12,9 @@ import { namesOf } from "./marked.js";
 /** @import { Explorer } from "./explorer.js" */
 
 const START = 60; // deg: here all links are apart
+const SOON = 120; // ms that a design is pointed at, until its swing is asked for
+const TIMES = 72; // of a swing forth and back
+const ENDS = /** @type {Page.Point} */ ([0, 180]); // places in the swing
 
 /** Return {place, draw(what), close()} of the linkage of an explorer. @param {Explorer} explorer */
 export function linkagePanel(explorer) {
@@ -28,6 +31,11 @@ export function linkagePanel(explorer) {
   /** @type {number | null} */
   let shown = null;
   let asked = false;
+  const swings = !front.columns.some(({ key }) => key === "stroke_mm"); // every design that turns has one
+  /** @type {Map<number, Promise<Api.Curves | null>>} */
+  const cycles = new Map(); // of designs that swing, by their rows
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let later;
   let within = false; // whether the pointer or the focus is in the panel itself
   for (const [name, inside] of /** @type {const} */ ([["pointerenter", true], ["focusin", true], ["pointerleave", false], ["focusout", false]])) {
     place.addEventListener(name, () => {
@@ -56,6 +64,17 @@ export function linkagePanel(explorer) {
     else motion.pause();
   }
 
+  /** Draw a design that swings between its ends, once the service has said how it goes. @param {number} row */
+  async function showSwing(row) {
+    const path = /** @type {const} */ (`jobs/${explorer.job.id}/designs/${row + 1}/curves`);
+    const asked = cycles.get(row) ?? get(path, { angles: TIMES }, explorer.signal).then(({ curves }) => curves, () => null);
+    cycles.set(row, asked);
+    const curves = await asked;
+    if (!curves || shown !== row || explorer.signal.aborted) return;
+    drawn.show(explorer.linkages.of(row), curves, { frame: explorer.linkages.frame(), direction: 0, small: true, turns: 0, dead_centres_deg: ENDS });
+    if (!motion) drawn.turn(START);
+  }
+
   /** @param {string} what */
   function draw(what) {
     const row = explorer.pointed ?? shown ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
@@ -67,8 +86,13 @@ export function linkagePanel(explorer) {
       fill(way, "Open", h("span", { class: "hidden" }, " the design of the picture"));
       way.href = explorer.hrefOf(row);
       drawn.node.setAttribute("aria-label", `Linkage of design ${row + 1}`);
-      drawn.show(linkage, motionOf(linkage), { frame: explorer.linkages.frame(), direction: motion?.direction ?? 0, small: true });
-      if (!motion) drawn.turn(START);
+      if (swings) {
+        clearTimeout(later);
+        later = setTimeout(() => showSwing(row), cycles.has(row) ? 0 : SOON);
+      } else {
+        drawn.show(linkage, motionOf(linkage), { frame: explorer.linkages.frame(), direction: motion?.direction ?? 0, small: true });
+        if (!motion) drawn.turn(START);
+      }
       fill(numbers, [...data.objectives.map(({ column }) => column), ...LENGTHS].filter((key) => data.has(key)).map((key) => {
         const { title: words, unit } = data.column(key);
         return h("div", { class: LENGTHS.includes(key) ? "length" : null }, h("dt", {}, words), h("dd", { class: "number" }, withUnit(data.cell(key, row), unit, 4)));
@@ -76,5 +100,5 @@ export function linkagePanel(explorer) {
     }
     move();
   }
-  return { place, draw, close: () => drawn.close() };
+  return { place, draw, close: () => [clearTimeout(later), drawn.close()] };
 }

@@ -7,7 +7,7 @@ import { motionOf } from "./motion.js";
 
 const WIDTH = 88;
 const HEIGHTS = [26, 64];
-const ANGLE = 60; // deg, of the crank: here all links are apart
+const ANGLES = [60, 30, 90, 0, 120, 330, 180, 270]; // deg, of the crank: at the first all links are apart, but not every one closes there
 
 /**
  * Return a picture of a linkage in a frame that several share, so that they have one scale.
@@ -22,9 +22,11 @@ export function smallLinkage(linkage, frame) {
   const x = (millimetres) => (unit * (millimetres - frame.left)).toFixed(1);
   /** @param {number} millimetres */
   const y = (millimetres) => (height / 2 + unit * ((frame.high + frame.low) / 2 - millimetres)).toFixed(1);
-  const angle = (ANGLE * Math.PI) / 180;
+  const positions = motionOf(linkage).slider_position_mm;
+  const degrees = ANGLES.find((at) => Number.isFinite(positions[at])) ?? ANGLES[0];
+  const angle = (degrees * Math.PI) / 180;
   const [across, up] = [r * Math.cos(angle), r * Math.sin(angle)];
-  const slider = motionOf(linkage).slider_position_mm[ANGLE];
+  const slider = Number.isFinite(positions[degrees]) ? positions[degrees] : 0;
   return svg("svg", { class: "small-linkage", viewBox: `0 0 ${WIDTH} ${height.toFixed(0)}`, width: WIDTH, height: height.toFixed(0), "aria-hidden": "true" },
     svg("line", { class: "way", x1: x(frame.left), x2: x(frame.right), y1: y(e), y2: y(e) }),
     svg("circle", { class: "way", cx: x(0), cy: y(0), r: (unit * r).toFixed(1) }),
