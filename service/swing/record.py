@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.machine.mechanism import Mechanism, Window
@@ -100,9 +99,10 @@ def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
             continue
         entry: dict[str, Any] = {"title": curve.title}
         for word, at in (("least", least), ("greatest", most)):
-            if found.locked is not None and curve.kind in (FORCE, TORQUE, POWER):
-                at = replace(at, value=math.nan)  # next to that place forces grow beyond all bounds
-            entry |= _at(f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word)
+            told = _at(f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word)
+            # Next to a place where friction locks forces grow beyond all bounds.
+            known = found.locked is None or curve.kind not in (FORCE, TORQUE, POWER)
+            entry |= told if known and math.isfinite(at.value) else dict.fromkeys(told)
         entries[curve.name] = entry
     return entries
 

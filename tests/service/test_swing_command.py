@@ -190,3 +190,19 @@ def test_random_ends_never_end_in_a_traceback(command: Command) -> None:
         assert done.exit_code in (0, 2)
         if done.exit_code == 0:
             json.loads(done.stdout)
+
+
+def test_extremes_of_forces_are_undefined_where_friction_locks(command: Command, tmp_path: Path) -> None:
+    stuck = 'radius = "300 mm", coefficient = 0.9'
+    text = Path("runs/support.toml").read_text(encoding="utf-8")
+    job = tmp_path / "stuck.toml"
+    job.write_text(f"{text}\n[friction]\ncrank_pivot = {{ {stuck} }}\ncrank_pin = {{ {stuck} }}\n", encoding="utf-8")
+    found = numbers_of(command, job, *SIZES)["extremes"]
+    assert found["slider_position"]["greatest_mm"] == pytest.approx(3144.679, rel=1e-6)
+    for name in ("drive", "crank_pin", "guide"):
+        assert {value for key, value in found[name].items() if key != "title"} == {None}
+    told = command("swing", job, *SIZES)
+    assert told.exit_code == 0
+    assert "undefined" in told.stdout
+    free = numbers_of(command, "runs/support.toml", *SIZES)["extremes"]["drive"]
+    assert (free["least_N"], free["least_way"]) == (pytest.approx(-26630.6, rel=1e-5), "forth")
