@@ -43,7 +43,7 @@ def points(client: httpx.Client, *numbers: int) -> dict[int, list[list[float]]]:
 
 
 def test_rows_of_the_shipped_jobs_have_600_bytes_at_most(client: httpx.Client, store: Store) -> None:
-    quick = {"method": "sobol", "evaluations": 8000, "designs": 100, "seed": 1}
+    quick = {"method": "sobol", "evaluations": 3000, "designs": 100, "seed": 1}
     for preset in client.get("/presets").json()["presets"]:
         submit(store, {**preset["job"], "optimiser": quick})
     work(store, drain=True)
