@@ -13,7 +13,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
 from .bars import LINKS, Formula, OfBars, Part, constant, strength_of, stress
 from .kinds import RATIO
-from .needs import A_BAR, EVEN_SPEED, LOADED, STRENGTH
+from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
 from .quantity import Array
 
 _COMPRESSION = ((0.0, 1.0),)
@@ -83,7 +83,7 @@ FATIGUE_SAFETY = FatigueSafety(
     picture="rod",
     example=1.5,
     better="high",
-    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, ONE_TURN, A_BAR, LOADED),
 )
 BUCKLING_SAFETY = BucklingSafety(
     name="buckling_safety",

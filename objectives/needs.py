@@ -20,6 +20,7 @@ from ..model.machine.dissipation import (
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
+from ..model.machine.two_turns import cycle_turns
 from ..model.signals.whole import couples, shakes
 
 Without = Literal["undefined", "equal", "zero"]
@@ -153,7 +154,10 @@ EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
     "strength and wear are those at a constant speed; got a speed profile; leave it out for them",
 )
-
+ONE_TURN = _defining(
+    lambda machine: cycle_turns(machine) == 1,
+    "it pairs the greatest and least stress of a place within one turn; got a cycle of 720 deg; leave it out",
+)
 STRENGTH = _defining(
     lambda machine: machine.strength is not None,
     "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in "

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..machine.mechanism import Mechanism
+from ..machine.two_turns import cycle_turns, halves
 from .section_forces import CRANK, Stress, at_share
 from .stress_points import WIDE, field_of
 
@@ -19,7 +20,7 @@ _TURN = 2.0 * np.pi
 class BarStress:
     """Stress of the two faces of a bar. None of a design that friction locks: its angles are empty.
 
-    theta: (s,), rad, over a turn. shares: (k,), of the length from the crank pin. stress: (2, k, s), Pa, tension
+    theta: (s,), rad, over a cycle. shares: (k,), of the length from the crank pin. stress: (2, k, s), Pa, tension
     positive, of the face where bending adds to tension first.
     """
 
@@ -40,6 +41,10 @@ class BarStress:
 
 def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
     """Return the stress along a link, `ROD` or `CRANK`, of one design (1, 3 + k). The link must be a `Bar`."""
+    if cycle_turns(mechanism) > 1:
+        first, second = (bar_stress(half, part, design) for half in halves(mechanism))
+        theta = np.concatenate([first.theta, second.theta + _TURN])
+        return BarStress(theta, first.shares, np.concatenate([first.stress, second.stress], axis=2))
     samples = field_of(mechanism, design).samples
     base = WIDE * (part == CRANK)
     shares = np.linspace(0.0, 1.0, _STATIONS)

@@ -26,9 +26,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Mask, Whole
+from ..errors import InputError
 from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
 from ..machine.remembered import remembered_batch
+from ..machine.two_turns import cycle_turns, halves
 from .section_forces import CRANK, ROD, Stress, at_share
 from .stress_points import WIDE, Field, field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_of, propose, room_for
@@ -43,6 +45,7 @@ _EQUAL = 1e-6  # relative; what cubics between the samples of the cycle tell of 
 # Of the spacing of samples: how far off the ends of a cubic are, and within how much of its foretold place a maximum is
 # then taken as it is: such a cubic is off by a millionth of what the last one was. Then how much closer the next is.
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
+_SECOND_TURN = 1e5  # of a label, more than all parts of a quantity take
 APART, CLASSES = 60.0, 12
 """Distance of the labels of maxima that are no neighbours, more than a turn; how many classes there are of these."""
 
@@ -208,6 +211,30 @@ def _peaks(field: Field, part: int, criteria: Array, bending: bool, gradients: b
     return found
 
 
+def require_one_sided(criteria: Array) -> None:
+    """Raise `InputError` for criteria that compare two crank angles, which may be of different turns."""
+    if (criteria > 0.0).all(axis=1).any():
+        raise InputError(
+            "greatest and least stress of one place are those of one turn; got a cycle of 720 deg; leave the fatigue "
+            "safety out"
+        )
+
+
+def _of_both(first: StressPeaks, second: StressPeaks, kept: int) -> StressPeaks:
+    """Return the highest maxima of two turns."""
+    order = np.argsort(-np.concatenate([first.values, second.values], axis=1), axis=1, kind="stable")[:, :kept]
+
+    def taken(one: Array, two: Array) -> Array:
+        both = np.concatenate([one, two], axis=1)
+        return np.take_along_axis(both, order.reshape(*order.shape, *[1] * (both.ndim - 2)), axis=1)
+
+    slopes, later = None, second.places + np.array([0.0, 0.0, _TURN, _TURN])
+    if first.gradients is not None and second.gradients is not None:
+        slopes = taken(first.gradients, second.gradients)
+    labels = taken(first.labels, second.labels + _SECOND_TURN)
+    return StressPeaks(taken(first.values, second.values), labels, taken(first.places, later), slopes)
+
+
 def stress_peaks(
     mechanism: Mechanism,
     part: int,
@@ -226,6 +253,13 @@ def stress_peaks(
     assert part in (ROD, CRANK)
     designs = turning(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
+    if cycle_turns(mechanism) > 1:
+        require_one_sided(criteria)
+        first, second = (
+            stress_peaks(half, part, designs, criteria, bending=bending, gradients=gradients, kept=kept)
+            for half in halves(mechanism)
+        )
+        return _of_both(first, second, kept)
     n = len(designs)
     found = StressPeaks(
         np.empty((n, kept)),

@@ -12,6 +12,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Bar
 from ....model.machine.mechanism import Mechanism
+from ....model.machine.two_turns import cycle_turns
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS
@@ -54,12 +55,13 @@ def _bars(mechanism: Mechanism) -> list[str]:
 def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
     """Return the greatest stresses along a bar, its eyes apart, and where they are."""
     found: dict[str, float | None] = {}
+    cycle = 360.0 * cycle_turns(mechanism)
     for sign, criterion in zip(_SIGNS, STATIC, strict=True):
         peak = stress_peaks(mechanism, LINKS[name].part, row_of(linkage), np.array([criterion]), kept=1)
         share, _, *angles = peak.places[0, 0]
         found |= {
             f"greatest_{sign}_MPa": plain(1e-6 * peak.values[0, 0]),
-            f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angles[_SIGNS.index(sign)]) % 360.0),
+            f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angles[_SIGNS.index(sign)]) % cycle),
             f"greatest_{sign}_from_crank_pin_mm": plain(1e3 * share * float(getattr(linkage, name))),
         }
     return found

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints
+from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.strength.section_forces import CRANK, ROD
 from slidercrank.model.strength.stress_cycle import stress_peaks
 from tests.model.cases import Array, random_designs
@@ -54,3 +56,27 @@ def test_no_place_or_crank_angle_is_worse_than_the_peak(part: str, pulls: Array)
         )
         peak = stress_peaks(machine, PARTS[part], design[None], pulls).values[0, 0]
         assert worst * (1.0 - 1e-7) <= peak <= worst * (1.0 + 1e-3)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_cycle_of_two_turns_has_the_greatest_stress_of_both(part: str) -> None:
+    """Tables over 720 deg that close; the worst of a dense sweep of both turns, which either of them may have."""
+    random, turns = np.random.default_rng(65), set()
+    shares = np.linspace(0.0, 1.0, 101)
+    for design in random_designs(12, seed=66, least_margin=3e-2):
+        angles = np.sort(random.uniform(0.0, 4.0 * np.pi, 9))
+        forces = random.normal(0.0, 1500.0, 9)
+        table = AngleTable(angles=tuple(angles.tolist()), forces=tuple(forces.tolist()), cycle="720 deg")
+        machine = replace(random_bars(random), loads=(table,))
+        linkage = linkage_with(machine, design)
+        theta = np.concatenate([np.arange(4320) * (np.pi / 1080.0), angles])
+        axial, bending = stress_rows(machine, part, linkage, theta, shares)
+        faces = np.abs([axial + bending, axial - bending]).max(axis=0)
+        found = stress_peaks(machine, PARTS[part], design[None], STATIC, gradients=True)
+        worst, top = faces.max(), found.values[0, 0]
+        assert worst * (1.0 - 1e-7) <= top <= worst * (1.0 + 1e-3)
+        assert (np.diff(found.values[0][np.isfinite(found.values[0])]) <= 0.0).all()
+        turns.add(int(np.nanmax(found.places[0, 0, 2:]) // (2.0 * np.pi)))
+        with pytest.raises(InputError, match="got a cycle of 720 deg; leave the fatigue safety out"):
+            stress_peaks(machine, PARTS[part], design[None], np.array([[1.0, 0.5]]))
+    assert turns == {0, 1}
