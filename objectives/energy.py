@@ -90,9 +90,9 @@ class FrictionLoss(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class Efficiency(Quantity):
-    """U / (U + H), of the work U done against the loads, on the crank too, and the friction heat H.
+    """U / (U + H), of the work U done against the loads and the friction heat H.
 
-    NaN for a design whose loads take no net work, which has none; -inf where friction locks.
+    Loads on the crank count. NaN for a design whose loads take no net work, which has none; -inf where friction locks.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

@@ -30,7 +30,7 @@ def shared_by_workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None
 
 
 def computed_once(compute: Callable[[str], Found]) -> Callable[[str], Found]:
-    """Return a function of a name that keeps its results, which a pickle must hold, for this and all other workers."""
+    """Return a function of a name that keeps its results, by pickle, for all workers."""
 
     @cache
     def shared(name: str) -> Found:

@@ -17,7 +17,7 @@ _ANGLES, _PLACES = ("start", "end"), ("slider_start", "slider_end")
 
 @dataclass(frozen=True, kw_only=True)
 class AskedSwing:
-    """What is asked of a swing; None for what stays. start, end: crank angles, rad. slider_start, slider_end: m.
+    """Limits and law asked of a swing; None for what stays. start, end: crank angles, rad. slider_start, slider_end: m.
 
     side, driver, law, duration (s), actuator_tolerance (m): as in `Swing`.
     """

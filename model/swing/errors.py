@@ -21,7 +21,7 @@ class Share:
 
 
 def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[Share, ...]:
-    """Return what each source adds to the worst case of the driven side at a crank angle, rad.
+    """Return the share of each source in the worst case of the driven side at a crank angle, rad.
 
     Where the crank drives, |dx/di| T_i of the slider's position; where the slider does, that over |x'|, of the crank
     angle, with the actuator among the sources. Sources without tolerance are left out.

@@ -32,7 +32,7 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
 
 
 def why_not(name: str, swing: Swing | None) -> str | None:
-    """Return why a motion does not have a quantity of a swing; None where it has it, and for every other name."""
+    """Return why a motion lacks a quantity of a swing; None where it has it, and for other names."""
     fact = next((of for of in swing_facts() if of.name == name), None)
     if fact is None:
         return None

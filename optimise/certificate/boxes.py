@@ -197,7 +197,7 @@ class Boxes:
 
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:
-    """Return the ends (n, 1) of a computed dimension from its range, and from r + |e| <= lean l if known."""
+    """Return the ends (n, 1) of a computed dimension from its range and r + |e| <= lean l."""
     others = [known[other].ends() for other in DIMENSIONS if other != name and other in known]
     slack = _SLACK * bounds.upper
     low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)

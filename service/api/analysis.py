@@ -64,7 +64,7 @@ class StoredAnalysisModel(OfDesign, AnalysisModel):
 
 
 class CycleModel(BaseModel):
-    """Curves over the cycle: a turn of the crank, two turns where a load has a cycle of 720 deg, or a swing.
+    """Curves over the cycle: a turn of the crank, two where a load repeats after 720 deg, or a swing.
 
     columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
     undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,

@@ -46,7 +46,7 @@ def certify_front(
         float, Query(gt=0.0, le=LONGEST_PROOF, description="stop after so long with what is proven by then")
     ] = 10.0,
 ) -> Response:
-    """Prove how far the front of a job can be from the true one; of one without designs, that nothing is feasible."""
+    """Prove how far a front can be from the true one; without designs, that nothing is feasible."""
     name = f"{epsilon!r} {seconds!r}"
 
     def make() -> tuple[tuple[str], bytes]:

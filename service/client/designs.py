@@ -71,7 +71,7 @@ class Designs:
         return self._connection.post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
 
     def wishes(self, number: int) -> list[Record]:
-        """Return the wishes that were made of the front of a job, the latest first: wishes, design and time of each."""
+        """Return the wishes made of the front of a job, the latest first, with design and time."""
         found: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
         return found
 

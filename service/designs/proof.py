@@ -28,7 +28,7 @@ def sizes_of(result: Result) -> NDArray[np.float64]:
 
 
 def infeasible_record(result: Result, *, proven: bool) -> dict[str, Any]:
-    """Return what is proven of a run that found no design, for JSON."""
+    """Return the proof about a run that found no design, for JSON."""
     text = "no design of the ranges meets all requirements"
     message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
     return {"run": result.run, "name": result.name, "infeasible": proven, "message": message}

@@ -172,7 +172,7 @@ def rails(look: Look) -> list[Shape]:
 
 
 def bearing(look: Look, *, below: bool) -> list[Shape]:
-    """Return what holds the crank pivot. below: whether it stands below it."""
+    """Return the bearing of the crank pivot. below: whether it stands below it."""
     foot = 1.5 * max(look.pin, 0.3 * look.crank_width)
     y = -2.0 * foot if below else 2.0 * foot
     legs = [Line(on.FRAME, (0.0, 0.0), (x, y)) for x in (-foot, foot)]

@@ -1,4 +1,4 @@
-"""Shapes of a linkage that swings: both ends, ways of its pins, the cylinder that drives it, the body on its crank."""
+"""Shapes of a linkage that swings: both ends, ways of its pins, its cylinder, the body on its crank."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _push(layer: Layer, slider: Point, of: Cylinder, look: Look) -> Outline:
 
 
 def cylinder_parts(of: Cylinder, look: Look) -> tuple[Outline, Outline]:
-    """Return the whole rod of the cylinder about the slider pin, a part of which is in the barrel, and the barrel."""
+    """Return the cylinder's rod about the slider pin, whole, and its barrel."""
     near = look.reach[0] if of.side > 0.0 else look.reach[1]
     rod = box(on.ACTUATOR, (of.side * 0.75 * look.block, 0.0), (of.face - near, 0.0), 0.3 * of.width)
     return rod, box(on.ACTUATOR, (of.face, look.offset), (of.foot, look.offset), of.width)

@@ -1,4 +1,4 @@
-"""The moving linkage as an animated GIF: one turn of the crank, or one swing forth and back, over and over."""
+"""The moving linkage as an animated GIF: a turn of the crank, or a swing forth and back, repeated."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def animated_gif(
 
 @dataclass(frozen=True)
 class _Scene:
-    """What is shown: still shapes, and of each frame its shapes and what is read out. dashed: what is dashed."""
+    """Shapes of the pictures: still ones, and of each frame its own and the text. dashed: which are dashed."""
 
     extent: tuple[float, float, float, float]
     size: float

@@ -169,9 +169,9 @@ class RunFolder:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Write a file as a whole or not at all; what is no file, as a pipe or a device, takes it as it comes.
+    """Write a file as a whole or not at all.
 
-    A link stays one, and a file that is there keeps its permissions. Raises `RunError` when the disk refuses,
+    A pipe or a device takes it as it comes, a link stays one, and a file that is there keeps its permissions. Raises `RunError` when the disk refuses,
     `InputError` for a folder.
     """
     if path.is_dir():

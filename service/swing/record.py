@@ -86,7 +86,7 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
 
 
 def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
-    """Return of each curve its title, its least and its greatest value over both ways, and where; null if not defined.
+    """Return title, least and greatest value of each curve over both ways, and where; null if undefined.
 
     Left out: loads that are zero, errors without tolerances, forces where nothing acts.
     """
@@ -133,7 +133,7 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
 
 
 def swing_title(record: Mapping[str, Any]) -> str:
-    """Return what drives the swing of a record, and how."""
+    """Return drive and law of the swing of a record."""
     how = "slowly" if record["law"] == "slow" else f"{record['law']} law, {record['duration_s']:g} s each way"
     return f"Swing driven at the {record['driver']}, {how}"
 

@@ -26,7 +26,7 @@ def show_extremes(console: Console, title: str, curves: Mapping[str, Mapping[str
 
 
 def extremes_line(entry: Mapping[str, Any]) -> list[str]:
-    """Return the cells of a curve: title, of both extremes value, crank angle with the way of a swing, place, unit."""
+    """Return the cells of a curve: title, both extremes with value, crank angle and place, unit."""
     return [str(entry["title"]), *(cell for word in WORDS for cell in _cells(entry, word)), _value(entry, "least")[1]]
 
 

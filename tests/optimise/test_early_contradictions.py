@@ -50,7 +50,7 @@ def test_linear_rules_that_a_design_meets_are_taken_and_those_that_exclude_each_
 
 
 def test_rules_that_no_ranges_make_possible_do_not_advise_to_widen_them() -> None:
-    """Crank and rod of two ratios, or a formula that is a number: no ranges help; with a constant, some may."""
+    """Two ratios of rod and crank, or a formula that is a number; with a constant ranges may help."""
     random = np.random.default_rng(17)
     for _ in range(10):
         one, two = np.round(random.uniform(1.2, 9.0, 2), 2).tolist()

@@ -283,7 +283,7 @@ def test_a_design_like_another_needs_gradients() -> None:
 
 
 def test_no_quantity_takes_the_column_of_another_number() -> None:
-    """Every column of a front, as the name of a formula that has no unit, of an angle, and of a length."""
+    """Every column of a front as the name of a ratio, an angle and a length."""
     units = {"": "rod / crank", "deg": "2 * transmission_angle", "mm": "crank + offset"}
     asked = {"stroke": {"min": "30 mm"}, "crank - offset": {"min": "0 mm"}}
     tables = job(constraints=asked, objectives={"time_ratio": "maximise"})

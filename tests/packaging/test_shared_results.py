@@ -1,4 +1,4 @@
-"""What the workers of the tests share is computed by one of them, and the same for all."""
+"""Results that the workers of the tests share: one computes them, all have the same."""
 
 from __future__ import annotations
 

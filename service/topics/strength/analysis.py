@@ -84,7 +84,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
-    """Return, of each bar, the stress of both faces over the crank angle where it is greatest, and its ends along it.
+    """Return the stress of each bar: both faces where it is greatest, and its ends along the bar.
 
     Raises `InputError` for a machine without material and pins, and for a design that friction locks.
     """

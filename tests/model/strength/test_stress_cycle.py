@@ -60,7 +60,7 @@ def test_no_place_or_crank_angle_is_worse_than_the_peak(part: str, pulls: Array)
 
 @pytest.mark.parametrize("part", PARTS)
 def test_a_cycle_of_two_turns_has_the_greatest_stress_of_both(part: str) -> None:
-    """Tables over 720 deg that close; the worst of a dense sweep of both turns, which either of them may have."""
+    """Tables over 720 deg: the worst of a dense sweep, which either turn may have."""
     random, turns = np.random.default_rng(65), set()
     shares = np.linspace(0.0, 1.0, 101)
     for design in random_designs(12, seed=66, least_margin=3e-2):

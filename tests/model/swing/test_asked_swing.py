@@ -1,4 +1,4 @@
-"""A swing that is asked for: by angles or by places, over that of a job, for the start that a design has."""
+"""A swing that is asked for: by angles or places, over that of a job."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def test_given_dimensions_either_have_the_stroke_or_not(stroke: float, infeasibl
 
 
 def test_rules_that_leave_one_value_are_bounded_where_they_contradict_a_stroke_and_where_they_do_not() -> None:
-    """Linear equalities of a drawn design fix one, two or all of its dimensions; the stroke is its own, or is not."""
+    """Linear equalities fix one, two or all dimensions of a drawn design; the stroke is its own, or not."""
     random, told = np.random.default_rng(61), 0
     for fixed in (("crank",), ("offset",), ("crank", "offset"), ("crank + offset", "offset"), ("rod", "rod - 3*crank")):
         for _ in range(3):

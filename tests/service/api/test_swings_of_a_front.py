@@ -1,4 +1,4 @@
-"""Designs of a job that swings, and of a cycle of two turns, over the API: curves, numbers, files, other lengths."""
+"""Designs that swing, and of a cycle of two turns, over the API: curves, numbers, files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A swing in motion: what the page looks up is the linkage on its way forth and back, by the law of motion."""
+"""A swing in motion: the page looks up the linkage on its way forth and back."""
 
 from __future__ import annotations
 
