@@ -171,8 +171,8 @@ class RunFolder:
 def write_file(path: Path, content: str | bytes) -> None:
     """Write a file as a whole or not at all.
 
-    A pipe or a device takes it as it comes, a link stays one, and a file that is there keeps its permissions. Raises `RunError` when the disk refuses,
-    `InputError` for a folder.
+    A pipe or a device takes it as it comes, a link stays one, and a file that is there keeps its permissions. Raises
+    `RunError` when the disk refuses, `InputError` for a folder.
     """
     if path.is_dir():
         raise InputError(f"what is written needs the name of a file; got the folder {path}; name a file in it")
