@@ -116,7 +116,7 @@ def parse_job(
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
     load_job(path)  # tells what is wrong with the file, if anything is
-    data = read(Path(path))
+    data = read_job(path)
     part = job_with(declared(data, allowed=True)).model_validate(data).sections
     if part is None:
         raise JobError(f"{path}: sizing sections needs the table [sections]; got none; add its material and its pins")

@@ -78,8 +78,7 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     buckling_safety: PositiveRatio = optional("against Euler's load", 3.0, default=3.0)
     criterion: Criterion = optional("how mean stresses count in fatigue", "goodman", default="goodman")
     eye_concentration: Annotated[PositiveRatio, AfterValidator(_raised)] = optional(
-        "greatest over mean stress in the net section of an eye, for the stresses as quantities; a chart such as "
-        "Shigley's fig. A-15-12 has it",
+        "greatest over mean stress in the net section of an eye; a chart such as Shigley's fig. A-15-12 has it",
         2.5,
         default=1.0,
     )
@@ -92,9 +91,9 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     def build(self) -> tuple[Material, SectionLimits]:
         """Return material and limits as the sizing has them."""
         own = dict(self)
-        for name in ("material", "pins", *_OF_STRENGTH):
+        for name in ("material", "pins", "wear_coefficient"):
             own.pop(name)
-        return self.material.build(), SectionLimits(**dict(self.pins), criterion=self.criterion, **own)
+        return self.material.build(), SectionLimits(**dict(self.pins), **own)
 
     def strength(self) -> Strength:
         """Return material and pins as quantities have them."""

@@ -26,7 +26,8 @@ of that bar, K = 2). Each of these is at most one:
     buckling        n C / P in the plane, and the same with w and d exchanged out of it: Shigley eq. 4-43 with the end
                     condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
                     crank, a cantilever
-    net section     n F / (S_y (w - D) d), written as n F / (S_y w d) + D / w, at each pin of diameter D
+    net section     n K F / (S_y (w - D) d), written as n K F / (S_y w d) + D / w, at each pin of diameter D, with the
+                    stress concentration K of the eye
     bearing         F / (D d p), the pressure on the projected area of each pin
 
 Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
@@ -113,8 +114,9 @@ def limit_states(
         "buckling in the plane": limits.buckling_safety * euler / (d * w**3),
         "buckling out of the plane": limits.buckling_safety * euler / (w * d**3),
     }
+    raised = static * limits.eye_concentration
     for name, (force, diameter) in loads.pins.items():
-        found[f"net section at the {name}"] = static * force / (w * d) + diameter / w
+        found[f"net section at the {name}"] = raised * force / (w * d) + diameter / w
         found[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
     found["least width"], found["greatest width"] = limits.width[0] / w, w / limits.width[1]
     found["least depth"], found["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]

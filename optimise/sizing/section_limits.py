@@ -18,6 +18,7 @@ class SectionLimits:
     """Safety factors, pins, and the sections that can be made, SI.
 
     crank_pivot, crank_pin, slider_pin: pin diameters, m. width, depth: least and greatest, m. criterion: of fatigue.
+    eye_concentration: greatest over mean stress in the net section of an eye.
     The factors' defaults are customary for known loads and materials; set your own.
     """
 
@@ -30,6 +31,7 @@ class SectionLimits:
     fatigue_safety: float = 1.5
     buckling_safety: float = 3.0
     criterion: str = "goodman"
+    eye_concentration: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("crank_pivot", "crank_pin", "slider_pin"):
@@ -41,5 +43,7 @@ class SectionLimits:
             low, high = getattr(self, name)
             if not 0.0 < low < high < math.inf:
                 raise InputError(f"the {name} needs 0 < least < greatest, finite; got {low:g} to {high:g} m")
+        if not 1.0 <= self.eye_concentration < math.inf:
+            raise InputError(f"eye_concentration must be at least 1 and finite; got {self.eye_concentration:g}")
         if self.criterion not in ("goodman", "soderberg"):
             raise InputError(f"the fatigue criterion must be 'goodman' or 'soderberg'; got {self.criterion!r}")

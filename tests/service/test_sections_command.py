@@ -62,6 +62,17 @@ def test_json_is_what_the_function_gives(command: Command, tmp_path: Path) -> No
     assert shown["crank_mass_kg"] + shown["rod_mass_kg"] == pytest.approx(shown["mass_kg"], rel=1e-12)
 
 
+def test_a_job_that_names_a_catalogue_is_sized_with_the_concentration_of_its_eyes(
+    command: Command, tmp_path: Path
+) -> None:
+    choice = '[[choice]]\nname = "drive"\nfile = "drives.csv"\n'
+    (tmp_path / "drives.csv").write_text("name,mechanism.speed (rpm)\nslow,100\nfast,120\n", encoding="utf-8")
+    job = written(tmp_path, JOB + choice + SECTIONS.replace("[sections]\n", "[sections]\neye_concentration = 2.5\n", 1))
+    assert load_sections(job)[1].eye_concentration == 2.5
+    done = command("sections", job, "--rod", "200 mm")
+    assert done.exit_code == 0, done.output
+
+
 def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -> None:
     done = command("sections", written(tmp_path, JOB + SECTIONS), "--rod", "200 mm")
     assert done.exit_code == 0, done.output
