@@ -11,7 +11,10 @@ from .constant import is_constant
 
 
 def slack_of(constraint: Constraint, values: Array) -> Array:
-    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, below 0 where it is missed."""
+    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, below 0 where it is missed.
+
+    Infinite where the value is, NaN where there is none.
+    """
     slack = np.full(len(values), np.inf)
     if constraint.equality:
         slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
@@ -24,4 +27,4 @@ def slack_of(constraint: Constraint, values: Array) -> Array:
 def _clear(values: Array, bound: float | None, slack: Array) -> Array:
     """Return distances from a bound; 0 where a value differs from it by rounding."""
     on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
-    return np.where(on_it, 0.0, slack)
+    return np.where(on_it & np.isfinite(values), 0.0, slack)

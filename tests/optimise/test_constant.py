@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 from slidercrank.optimise.front.constant import SAME, is_constant, spread
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling, unheard
 from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.front.slack import slack_of
+from slidercrank.optimise.problem.requirements import Constraint
 from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.assemble import columns_of
 from tests.optimise.problems import problem
@@ -92,3 +95,16 @@ def test_a_slack_of_rounding_is_zero(bits: int) -> None:
     )
     table = columns_of(apart, np.zeros(1, dtype=np.int64), design, unheard)
     assert table["slack_stroke_mm"][0] == pytest.approx(1e-4, rel=1e-6)
+
+
+def test_the_slack_of_what_is_infinite_is_infinite_and_of_what_has_no_value_none() -> None:
+    values = np.array([math.inf, math.nan, 5.0, 3.0])
+    least, most = Constraint(quantity="rod_to_offset", lower=3.0), Constraint(quantity="rod_to_offset", upper=3.0)
+    np.testing.assert_array_equal(slack_of(least, values), [math.inf, math.nan, 2.0, 0.0])
+    np.testing.assert_array_equal(slack_of(most, values), [-math.inf, math.nan, -2.0, 0.0])
+    equal = Constraint(quantity="rod_to_offset", lower=3.0, upper=3.0)
+    np.testing.assert_array_equal(slack_of(equal, values), [-math.inf, math.nan, -2.0, 0.0])
+    asked = problem({"peak_torque": "minimise"}, {"rod_to_offset": (3.0, None)}, crank=0.1, rod=0.3)
+    designs = np.array([[0.1, 0.3, 0.0], [0.1, 0.3, 0.1]])
+    table = columns_of(asked, np.zeros(2, dtype=np.int64), designs, unheard)
+    assert table["slack_rod_to_offset"].tolist() == [math.inf, 0.0]
