@@ -100,5 +100,6 @@ BUCKLING_SAFETY = BucklingSafety(
     picture="rod",
     example=3.0,
     better="high",
+    endless="crank and rod are never compressed",
     needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )

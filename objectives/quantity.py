@@ -137,7 +137,8 @@ class Quantity(ABC):
 
     example: a usual value as job files have it, that of the kind if left out. better: the usual direction. signed:
     whether it may be negative. domain: values that some linkage has. floor: least value that holds where a job sets
-    none, SI. in_line: its value for every design without offset. needs: of the machine. instead: quantities that serve
+    none, SI. in_line: its value for every design without offset. endless: why it may be infinite for every design, as
+    a sentence. needs: of the machine. instead: quantities that serve
     where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances: whether it includes
     tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a design has it.
     plain: whether it follows from others at a glance, so that a short table leaves it out. turning: whether it is of a
@@ -163,6 +164,7 @@ class Quantity(ABC):
     domain: Domain | None = fact(None)
     floor: float | None = fact(None)
     in_line: float | None = fact(None)
+    endless: str = fact("")
     needs: tuple[Need, ...] = fact(())
     instead: str = fact("")
     reach: Reach | None = fact(None)

@@ -16,7 +16,7 @@ from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best import Best, best_of
 from .feasibility.infeasibility import diagnose
-from .feasibility.valueless import valueless_in_all
+from .feasibility.valueless import require_finite, valueless_in_all
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, searched_by
@@ -90,6 +90,8 @@ class _One:
             Evaluator(problem, sheet, self.checkpoints, self.engine) for sheet in once(problem, sheets(problem))
         ]
         require_eliminated(problem, searched(evaluators))
+        if not self.runs:
+            require_finite(problem, searched(evaluators))
         heard = self.fronts is not None or self.told is not None
 
         def with_front(entry: Progress) -> None:

@@ -1,13 +1,18 @@
-"""Quantities that no design has a value of, in words: roots of less than zero, forces where friction locks."""
+"""Quantities that no design has a number of, in words: roots of less than zero, safety of bars that nothing presses."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.errors import InputError
 from ...objectives.formula.quantity import FormulaQuantity
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of
+from ..search.evaluation import Evaluator
+from ..search.sampling import first_samples
+
+_TRIED = 256  # designs of each sheet that are asked whether an objective is infinite
 
 
 def valueless(part: Problem, designs: Array) -> str:
@@ -29,3 +34,25 @@ def valueless_in_all(problem: Problem, designs: Array) -> str:
     """Return the answer of `valueless` if there is one in every variant of a problem."""
     said = [valueless(part, designs) for part in problem.parts()] if len(designs) else []
     return said[0] if said and all(said) else ""
+
+
+def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
+    """Raise `InputError` for an objective that may be infinite, and is for all of some designs of the ranges.
+
+    None of them is then better than another in it. Those without a value do not count.
+    """
+    for name in [item.quantity for item in problem.objectives if problem.quantity(item.quantity).endless]:
+        found = []
+        for index, evaluator in enumerate(evaluators):
+            u = first_samples(_TRIED, evaluator.dimension, problem.settings.seed, 200 + index)
+            designs = evaluator.sheet.dimensions(u[evaluator.valid(u)])
+            found.append(evaluator.problem.quantity(name).evaluate(evaluator.problem.mechanism, designs).values)
+        values = np.concatenate([np.zeros(0), *found])
+        values = values[~np.isnan(values)]
+        if len(values) and np.isposinf(values).all():
+            of = problem.quantity(name)
+            count = f"all {len(values)} designs" if len(values) > 1 else "the only design"
+            raise InputError(
+                f"objectives.{name}: {of.title} is infinite for {count} of the ranges that were tried: {of.endless}; "
+                "leave it out"
+            )
