@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from ...model.errors import InputError
 from ...objectives.kinds import unit_text
 from ..designs.columns import Column, all_columns, key_in
+from ..designs.requirements import requirements_of
 from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
@@ -95,7 +96,7 @@ def _rules(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
-    rows, met = [], True
+    rows, met, asked = [], True, _asked(subject)
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
         active = _active(subject, column)
@@ -104,18 +105,31 @@ def _rules(subject: Subject) -> list[Block]:
         state = "met, active" if active and held else "met" if held else "not met"
         title = column.title.removeprefix("slack of ")
         distance = "0" if active else rounded(slack)
-        rows.append((title, rounded(value), distance, unit_text(column.unit), state))
+        bound = asked.get(column.key, "")
+        rows.append((title, bound, rounded(value), distance, unit_text(column.unit), state))
     verdict = "All requirements are met." if met else "Not all requirements are met: see below."
     return [
         Paragraph(verdict, "good" if met else "bad"),
         Table(
             "Requirements: the slack is the distance to the nearer bound",
-            ("quantity", "value", "slack", "unit", "state"),
+            ("quantity", "asked", "value", "slack", "unit", "state"),
             tuple(rows),
-            (0.42, 0.16, 0.16, 0.11, 0.15),
-            frozenset({1, 2}),
+            (0.32, 0.2, 0.13, 0.13, 0.09, 0.13),
+            frozenset({2, 3}),
         ),
     ]
+
+
+def _asked(subject: Subject) -> dict[str, str]:
+    """Return the bounds of each requirement of the design, those of what was chosen included, by its slack's column."""
+    found = {}
+    for item in requirements_of(subject.design.part):
+        key, factor = key_in(item.slack, subject.system)
+        ends = [("at least", item.lower), ("at most", item.upper)]
+        if item.lower == item.upper:
+            ends = [("equal to", item.lower)]
+        found[key] = " and ".join(f"{word} {rounded(end * factor)}" for word, end in ends if end is not None)
+    return found
 
 
 def _active(subject: Subject, column: Column) -> bool:

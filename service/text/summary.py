@@ -9,6 +9,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism, Tolerance
+from ...model.machine.strength import Strength
 from ...model.machine.varying import Varying
 from ...model.swing.ends import start_column
 from ...objectives.motion_deviation import MotionDeviation
@@ -47,6 +48,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "rules": [
             *([f"slow stroke {problem.slow_stroke}"] if problem.slow_stroke else []),
             *(_rule(constraint, problem) for constraint in constraints_of(problem)),
+            *_limits(problem),
         ],
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
@@ -109,6 +111,7 @@ def _given(mechanism: Mechanism) -> list[str]:
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")
     lines += [f"load: {load.text}" for load in mechanism.loads]
     lines += _friction(mechanism.friction)
+    lines += _strength(mechanism.strength)
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
     return lines
@@ -163,6 +166,29 @@ def _friction(friction: Friction) -> list[str]:
                 f"coefficient {pin.coefficient:.6g}"
             )
     return lines
+
+
+def _strength(strength: Strength | None) -> list[str]:
+    """Return material, pins, and how stresses are judged; nothing for a machine without [sections]."""
+    if strength is None:
+        return []
+    names = ("elasticity", "yield_strength", "ultimate_strength", "endurance", "bearing_pressure")
+    numbers = {name.replace("_", " "): getattr(strength.material, name) for name in names}
+    pins = {name.replace("_", " "): getattr(strength, name) for name in ("crank_pivot", "crank_pin", "slider_pin")}
+    lines = [
+        f"material of crank and rod: {strength.material.density:.6g} kg/m^3",
+        *(f"{name} of the material: {_pressure(value)}" for name, value in numbers.items()),
+        f"pins: {', '.join(f'{name} {1e3 * value:.6g} mm' for name, value in pins.items())}",
+        f"stress concentration of the eyes: {strength.eye_concentration:.6g}",
+        f"mean stresses in fatigue: by {strength.criterion.capitalize()}",
+    ]
+    if strength.wear_coefficient is not None:
+        lines.append(f"wear coefficient: {1e6 * strength.wear_coefficient:.6g} mm^2/N")
+    return lines
+
+
+def _pressure(value: float) -> str:
+    return f"{1e-9 * value:.6g} GPa" if value >= 1e10 else f"{1e-6 * value:.6g} MPa"
 
 
 def _tolerances(mechanism: Mechanism) -> list[str]:
@@ -221,15 +247,31 @@ def _choices(problem: Problem) -> list[str]:
     return lines
 
 
+_MOST_TOLD = 12  # combinations whose limits are told one by one
+
+
+def _limits(problem: Problem) -> list[str]:
+    """Return the limits that come with each combination of choices, such as what a gearmotor can take."""
+    limited = [variant for variant in problem.variants if variant.limits]
+    if len(limited) > _MOST_TOLD:
+        return [f"limits that come with {len(limited)} combinations of choices"]
+    return [
+        f"with {' and '.join(variant.labels)}: {_rule(limit, problem, own=True)}"
+        for variant in limited
+        for limit in variant.limits
+    ]
+
+
 def _range(bounds: Range) -> str:
     if bounds.fixed:
         return f"{1e3 * bounds.lower:.6g} mm, fixed"
     return f"{1e3 * bounds.lower:.6g} to {1e3 * bounds.upper:.6g} mm"
 
 
-def _rule(constraint: Constraint, problem: Problem) -> str:
+def _rule(constraint: Constraint, problem: Problem, *, own: bool = False) -> str:
+    """Return a constraint in words. own: whether it is the job's for certain."""
     of = problem.quantity(constraint.quantity)
-    own = constraint in problem.constraints
+    own = own or constraint in problem.constraints
 
     def shown(value: float) -> str:
         return f"{value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
