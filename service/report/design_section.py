@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from typing import get_args
 
 from matplotlib.figure import Figure
 
 from ...model.errors import InputError
 from ...objectives.kinds import unit_text
+from ...objectives.needs import Without
+from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns, key_in
 from ..designs.requirements import requirements_of
 from ..designs.toleranced import toleranced, tolerances_of
@@ -42,8 +45,8 @@ def design_section(subject: Subject) -> Section:
 
 
 def numbers_section(subject: Subject) -> Section:
-    """Return every column of the design, rounded and as it is stored."""
-    columns = all_columns(subject.row)
+    """Return every column of the design that its machine has, rounded and as it is stored."""
+    columns, absent = _of_machine(subject)
     lengths = _toleranced(subject)
     rows = tuple(
         (
@@ -73,8 +76,32 @@ def numbers_section(subject: Subject) -> Section:
                 frozenset(place for place, column in enumerate(columns) if column.key in objectives),
                 small=True,
             ),
+            *([Paragraph(f"Not of this machine: {', '.join(absent)}.", "note")] if absent else []),
         ),
     )
+
+
+def _of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
+    """Return the columns that a design's machine has, and titles of the others: a loss where nothing rubs, say.
+
+    What the job asks for is never left out.
+    """
+    part, mechanism = subject.design.part, subject.design.mechanism
+    known = {key_in(of.field, subject.system)[0]: of for of in (*QUANTITIES.values(), *part.own)}
+    asked = {item.column for item in subject.result.objectives} | {
+        slack.removeprefix("slack_") for slack in _asked(subject)
+    }
+    columns, absent = [], []
+    for column in all_columns(subject.row):
+        value, of = subject.row[column.key], known.get(column.key)
+        without = value is None or (isinstance(value, float) and math.isnan(value))
+        if of is not None and column.key not in asked:
+            without = without or any(of.lacks(mechanism, word) for word in get_args(Without))
+        if without and column.key not in asked:
+            absent.append(column.title)
+        else:
+            columns.append(column)
+    return columns, absent
 
 
 def _toleranced(subject: Subject) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
+from ...objectives.kinds import SHOWN, unit_text
 from ..figures.style import INK, MUTED, new_figure, write
 from .document import Facts, Paragraph, Picture, Report, Section, Table, Tone
 
@@ -26,6 +28,13 @@ _MARKS: dict[Tone, str] = {"plain": "", "note": "", "good": "✓ ", "bad": "✗ 
 _TALLEST = 6.6  # of a figure
 _SHRUNK = 0.7  # of its size, rather than leaving the foot of a page empty
 _BETWEEN = 0.09  # columns
+_HEADED = 0.2 + _HEAD * _LEADING + 0.09  # height of a heading
+_TITLED = 0.4  # height of the title of a figure, and of what is left around it
+_UNITS = sorted({unit_text(face.symbol) for of in SHOWN for face in (of.metric, of.inch) if face}, key=len)[::-1]
+_UNIT = "|".join(map(re.escape, [*_UNITS, "%"]))
+_OF_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/])|(?<=,) (?:{_UNIT})$|^(?:{_UNIT})$")
+"""A unit behind its number, at the end of a head, or alone."""
+_KEPT = "\u00a0"  # a space at which no line is broken
 
 
 @dataclass(frozen=True)
@@ -98,11 +107,15 @@ class _Layout:
         # A heading is not left alone at the foot of a page.
         first, *others = section.blocks
         told = isinstance(first, Paragraph) and bool(others) and isinstance(others[0], Table)
-        self.room(4.5 if isinstance(first, Picture) else 2.6 if told else 1.3)
+        headed = first if isinstance(first, Picture) else None
+        figure = headed.draw() if headed is not None else None
+        self.room(2.6 if told else 1.3 if figure is None else self._tall(figure, above=_HEADED) + _HEADED)
         self.y -= 0.2
         self.lines([section.title], _HEAD, bold=True)
         self.rule("#c8c8c8", 0.8)
         self.y -= 0.04
+        if headed is not None and figure is not None:
+            self.picture(headed.title, figure, raster=headed.raster)
         for block, after in zip(section.blocks, (*section.blocks[1:], None), strict=True):
             if isinstance(block, Paragraph) and isinstance(after, Table):
                 self.room(1.3)  # what is said of a table stays with it
@@ -112,8 +125,8 @@ class _Layout:
                 self.paragraph(block)
             elif isinstance(block, Table):
                 self.table(block)
-            else:
-                self.picture(block)
+            elif block is not headed:
+                self.picture(block.title, block.draw(), raster=block.raster)
 
     def paragraph(self, paragraph: Paragraph) -> None:
         """Write text in the size and ink of its tone."""
@@ -169,20 +182,24 @@ class _Layout:
             left += width
         self.y = top - max(map(len, cells)) * size * _LEADING
 
-    def picture(self, picture: Picture) -> None:
+    def picture(self, title: str, figure: Figure, *, raster: bool) -> None:
         """Put a figure where it fits, its title above it."""
-        figure = picture.draw()
+        height = self._tall(figure)
+        self.room(height)
+        self.y -= 0.06
+        self.lines([title], _TEXT, bold=True)
+        self.y -= height - _TITLED + 0.06
+        self.pages[-1].insets.append(Inset(figure, _LEFT, self.y, (height - _TITLED) / figure.get_figheight(), raster))
+        self.y -= 0.08
+
+    def _tall(self, figure: Figure, *, above: float = 0.0) -> float:
+        """Return the height of a figure and its title, a little smaller if it fits so below what stands above it."""
         width, height = figure.get_size_inches()
         scale = min(_ACROSS / width, _TALLEST / height, 1.0)
-        left = self.y - _BOTTOM - 0.42
+        left = self.y - _BOTTOM - _TITLED - 0.02 - above
         if _SHRUNK * scale * height <= left < scale * height:
             scale = left / height
-        self.room(scale * height + 0.4)
-        self.y -= 0.06
-        self.lines([picture.title], _TEXT, bold=True)
-        self.y -= scale * height + 0.06
-        self.pages[-1].insets.append(Inset(figure, _LEFT, self.y, scale, picture.raster))
-        self.y -= 0.08
+        return float(scale * height) + _TITLED
 
     def signatures(self, names: Sequence[str]) -> None:
         """Leave room for names, dates and signatures."""
@@ -221,10 +238,10 @@ def _widths(table: Table, size: float) -> list[float]:
 
 
 def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
-    """Return a text in lines of at most `width` inches at `size` points; a word too long is broken."""
+    """Return a text in lines of at most `width` inches at `size` points; a word too long is broken, a unit never."""
     lines: list[str] = []
     line = ""
-    for word in text.split():
+    for word in _words(text):
         joined = f"{line} {word}".lstrip()
         if _width(joined, size, bold) <= width:
             line = joined
@@ -241,9 +258,15 @@ def wrapped(text: str, size: float, width: float, *, bold: bool = False) -> list
     return [*lines, line] if line or not lines else lines
 
 
+def _words(text: str) -> list[str]:
+    """Return what lines may be broken between: words, a unit with its number."""
+    kept = _OF_NUMBER.sub(lambda found: found[0].replace(" ", _KEPT), " ".join(text.split()))
+    return [word for word in kept.split(" ") if word]
+
+
 def _longest_word(text: str, size: float, *, bold: bool = False) -> float:
     """Return the width of the longest word of a text, inches, in letters of `size` points."""
-    return max((_width(word, size, bold) for word in text.split()), default=0.0)
+    return max((_width(word, size, bold) for word in _words(text)), default=0.0)
 
 
 def _width(text: str, size: float, bold: bool) -> float:

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import random
 
-from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
-from slidercrank.service.report.pages import Page, pages
+import pytest
+from matplotlib.figure import Figure
+
+from slidercrank.service.report.document import Facts, Paragraph, Picture, Report, Section, Table
+from slidercrank.service.report.pages import Page, pages, wrapped
+
+UNITS = ["mm", "N m", "MPa m/s", "kg m²", "m/s²", "%", "deg", "rpm", "lbf in"]
 
 WORDS = [
     "crank",
@@ -56,3 +61,32 @@ def test_a_note_after_facts_is_not_alone_on_its_page() -> None:
                 assert f"fact {count - 1}" in texts(page)
         apart += bool(others)
     assert 0 < apart < 30
+
+
+def test_no_line_ends_between_a_number_and_its_unit() -> None:
+    drawn = random.Random(6)
+    broken = 0
+    for _ in range(200):
+        numbers = [f"{drawn.uniform(0.0, 900.0):.3g} {drawn.choice(UNITS)}" for _ in range(12)]
+        text = ", ".join(f"{drawn.choice(WORDS)} {number}" for number in numbers)
+        lines = wrapped(text, 9.0, drawn.uniform(1.6, 4.0))
+        assert " ".join(lines).replace("\u00a0", " ") == text
+        assert sum(line.replace("\u00a0", " ").count(number) for line in lines for number in set(numbers)) >= 12
+        broken += len(lines) > 1
+    assert broken == 200
+    for unit in UNITS:
+        assert wrapped(unit, 9.0, 0.1)[0][:1] == unit[:1]
+        assert wrapped(f"peak torque, {unit}", 9.0, 1.4)[-1].endswith(f"torque, {unit}".replace(" ", "\u00a0"))
+
+
+@pytest.mark.parametrize("height", [3.0, 5.0, 6.0, 8.0, 12.0])
+def test_a_heading_is_on_the_page_of_its_figure(height: float) -> None:
+    drawn = random.Random(7)
+    for _ in range(12):
+        facts = Facts({f"fact {number}": ["a line"] for number in range(drawn.randint(1, 60))})
+        picture = Picture("A figure", lambda: Figure((6.0, height)))
+        sections = (Section("Before", (facts,)), Section("Sensitivity", (picture,)))
+        for page in pages(Report("Title", "subtitle", "2026-11-22", sections)):
+            assert ("Sensitivity" in texts(page)) == bool(page.insets) == ("A figure" in texts(page))
+            for inset in page.insets:
+                assert inset.bottom > 0.8
