@@ -77,6 +77,8 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     assert page.evaluate("scrollY") == 0
     page.go_back()
     page.wait_for_function(f"() => Math.abs(scrollY - {before}) <= 2", timeout=30_000)
+    page.get_by_label("Next design").press("Enter")
+    expect(page).to_have_url(re.compile(r"designs/3\?tab=motor"))
 
 
 def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> None:

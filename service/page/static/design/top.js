@@ -1,10 +1,16 @@
 /** The head of the view: where it is, the designs before and after it, and what stands beside it. */
 
 import { beside as besideIn } from "../front/listed.js";
-import { left, link } from "../lib/address.js";
+import { left, link, read } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 
 /** @typedef {{ job: string, number: number, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
+
+/** Return what the reader looks at, whichever design it is. */
+function shown() {
+  const { query } = read();
+  return { over: query.get("over"), tab: query.get("tab") };
+}
 
 /** Return the head. @param {Place} place */
 export function top({ job, number, front, others }) {
@@ -13,7 +19,7 @@ export function top({ job, number, front, others }) {
   /** @param {number | null} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
     to !== null
-      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside: beside || null }), "aria-label": words, title: words }, sign)
+      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside }), "aria-label": words, title: words, onclick: ({ currentTarget }) => (currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() })) }, sign)
       : h("span", { class: "button off", "aria-hidden": "true" }, sign);
   return h(
     "header",
