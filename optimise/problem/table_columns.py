@@ -30,16 +30,16 @@ def slack_field(of: Quantity) -> str:
 
 def require_own_columns(own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[str]) -> None:
     """Raise `InputError` for a quantity of a problem's own whose column is that of another number."""
-    taken = dict.fromkeys(_EVERY, "one of every table") | {of.field: f"that of {name}" for name, of in FACTS.items()}
-    taken |= {column: f"that of {name}" for name, (column, _) in columns_of_numbers(varying).items()}
-    taken |= {choice_field(name): f"that of the choice {name}" for name in choices}
+    owner = dict.fromkeys(_EVERY, "every table") | {of.field: name for name, of in FACTS.items()}
+    owner |= {column: name for name, (column, _) in columns_of_numbers(varying).items()}
+    owner |= {choice_field(name): f"the choice {name}" for name in choices}
     for of in own:
-        if of.name in FACTS:
+        if of.name in FACTS or owner.get(of.field) == of.name:  # a dimension may be a formula
             continue
-        what = "how columns of slacks begin" if of.field.startswith(_SLACK) else taken.get(of.field)
-        if what is not None:
+        other = "slacks" if of.field.startswith(_SLACK) else owner.get(of.field)
+        if other is not None:
             raise InputError(
                 "the column of a quantity of the job must be that of no other number; got "
-                f"{of.name} with the column {of.field}, which is {what}; choose another name"
+                f"{of.name} with the column {of.field}, which is that of {other}; choose another name"
             )
-        taken[of.field] = f"that of {of.name}"
+        owner[of.field] = of.name
