@@ -2,6 +2,7 @@
 
 const SETTLED = 150; // ms after the last movement
 const PATIENCE = 20_000; // ms that a view has to become as long as it was
+const QUIET = 2_000; // ms without a change of its length, after which it is taken as whole: what still comes above moves the place
 
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
@@ -34,17 +35,22 @@ export function lookForPlace(signal) {
   const top = Number(history.state?.top ?? 0);
   const until = performance.now() + PATIENCE;
   const ended = new AbortController();
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let whole;
   const end = () => {
+    clearTimeout(whole);
     looking = false;
     ended.abort();
     longer.disconnect();
   };
   const reach = () => {
     window.scrollTo(0, top);
-    if (Math.abs(scrollY - top) <= 1 || performance.now() > until) end();
+    clearTimeout(whole);
+    if (top === 0 || performance.now() > until) end();
+    else if (Math.abs(scrollY - top) <= 1) whole = setTimeout(end, QUIET);
   };
   const longer = new ResizeObserver(reach);
-  signal.addEventListener("abort", () => longer.disconnect(), { once: true });
+  signal.addEventListener("abort", () => [longer.disconnect(), clearTimeout(whole)], { once: true });
   return () => {
     if (signal.aborted) return;
     for (const name of ["wheel", "touchstart", "pointerdown", "keydown"]) window.addEventListener(name, end, { signal: ended.signal, passive: true });
