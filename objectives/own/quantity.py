@@ -30,7 +30,8 @@ _BATCH = 256
 _STEP = 2e-5  # of the nearest of locking and a crank of zero: truncation 4e-10 next to rounding 5e-12
 _WITNESSES = 3  # designs on which a complex step is compared with differences
 _AGREE = 1e-4  # of the gradient's size
-_NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
+LONGEST_NAME = 60
+_NAME = re.compile(rf"[a-z][a-z0-9_]{{0,{LONGEST_NAME - 1}}}")
 FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*", re.ASCII)
 
 Call = Callable[[Mechanism, Array, int | None], Answer]
@@ -260,7 +261,8 @@ def require_name(name: str) -> None:
     """Raise `InputError` for a name that no table could have as a column."""
     if not _NAME.fullmatch(name):
         raise InputError(
-            f"the name of a quantity has small letters, digits and underscores, a letter first; got {name!r}"
+            f"the name of a quantity has 1 to {LONGEST_NAME} small letters, digits and underscores, a letter first; "
+            f"got {name!r}" + (f" of {len(name)} characters" if len(name) > LONGEST_NAME else "")
         )
 
 

@@ -6,6 +6,7 @@ ten in the unit that `min` is written in.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -30,6 +31,7 @@ _R40 = (
 SERIES = {f"R{count}": tuple(map(Decimal, _R40[:: 40 // count])) for count in (5, 10, 20, 40)}
 """Preferred numbers of a decade, by series."""
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*?)\s*")
+_FRACTION = re.compile(r"\s*([+-]?\d{1,9})\s*/\s*(\d{1,9})\s*([A-Za-z].*)", re.ASCII)
 _ROOM = 1e-9  # relative: a multiple at the very end of a range counts
 
 
@@ -97,7 +99,7 @@ def _multiples(
     given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
     try:
-        step = read(given["step"])
+        step = step_of(given["step"], read)
     except InputError as error:
         raise InputError(f"step {error}") from None
     if not step > 0.0:
@@ -110,6 +112,15 @@ def _multiples(
     exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
     every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
     return [value for value in every if lower <= value <= upper], f"multiples of {_text(given['step'])}"
+
+
+def step_of(given: object, read: Callable[[object], float]) -> float:
+    """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in". Raises `InputError`."""
+    fraction = _FRACTION.fullmatch(given) if isinstance(given, str) else None
+    if fraction is not None and int(fraction[2]):
+        with contextlib.suppress(InputError):  # told below, with the text as it is
+            return read(f"{fraction[1]} {fraction[3]}") / int(fraction[2])
+    return read(given)
 
 
 def _preferred(
@@ -145,7 +156,8 @@ def grid_schema(one: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the JSON Schemas of the tables that say values. one: those of a value."""
     value = {"anyOf": one}
     ends = {"min": value, "max": value}
-    kinds: list[dict[str, Any]] = [{"step": value}, {"series": {"enum": list(SERIES)}}]
+    fraction = {"type": "string", "pattern": f"^{_FRACTION.pattern}$", "examples": ["1/32 in"]}
+    kinds: list[dict[str, Any]] = [{"step": {"anyOf": [*one, fraction]}}, {"series": {"enum": list(SERIES)}}]
     tables = [ends | kind for kind in kinds] + [{"values": {"type": "array", "items": value, "minItems": 2}}]
     return [
         {"type": "object", "properties": table, "required": list(table), "additionalProperties": False}

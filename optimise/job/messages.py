@@ -11,6 +11,8 @@ from pydantic_core import ErrorDetails
 
 from .units import closest, shown
 
+_MOST_KEYS = 20  # that are told where none is near
+
 MOST = 8
 """Number of problems of one job that are listed."""
 
@@ -94,7 +96,8 @@ def key_of(path: Sequence[object]) -> str:
 
 
 def _unknown(path: Sequence[Any], value: object, allowed: list[str], near: str | None) -> str:
-    choice = f"did you mean {near}?" if near else f"possible here: {', '.join(allowed)}"
+    more = f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
+    choice = f"did you mean {near}?" if near else f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
     return f"{key_of(path)}: unknown key; got {shown(value)}; {choice}"
 
 
@@ -120,7 +123,7 @@ def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str
     if kind in ("too_short", "too_long"):
         most = kind == "too_long"
         count = context["max_length" if most else "min_length"]
-        return f"must have at {'most' if most else 'least'} {count} entries; got {context['actual_length']}{write}"
+        return f"must have at {'most' if most else 'least'} {count} entries; got {len(value)}{write}"
     return f"{rule_of(details)}; {got}{write}"
 
 

@@ -242,11 +242,21 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     try:
         if not sets:
             raise InputError("nothing that a design is judged by follows from it; leave it out")
-        for place, _ in sets:
-            unit_of(place)
+        _require_smooth(path, [place for place, _ in sets])
         return Varying(name=path, sets=tuple(sets), lower=lower, upper=upper)
     except InputError as error:
         raise JobError(f"{key}: {error}") from None
+
+
+def _require_smooth(path: str, places: list[str]) -> None:
+    """Refuse a path of a job that sets a number of the machine by which nothing has derivatives."""
+    try:
+        for place in places:
+            unit_of(place)
+    except InputError:
+        raise InputError(
+            f"no quantity of a design follows smoothly from {path}, so it cannot vary; let it be a choice instead"
+        ) from None
 
 
 def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:

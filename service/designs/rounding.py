@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
     from ...optimise.front.rounded import Rounded
     from ...optimise.problem.problem import Problem
 
-_FRACTION = re.compile(r"\s*([+-]?\d+)\s*/\s*(\d+)\s*([A-Za-z].*)")
 _EXAMPLE = '"0.5 mm" or "rod=1 mm"'
 
 
@@ -51,12 +48,10 @@ def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
 
 
 def _step(text: str, kind: Kind, key: str) -> float:
-    """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in"."""
-    fraction = _FRACTION.fullmatch(text)
-    if fraction is not None and int(fraction[2]):
-        with contextlib.suppress(InputError):  # told below, with the text as it is
-            return value_of(key, f"{fraction[1]} {fraction[3]}", kind, sign="positive") / int(fraction[2])
-    return value_of(key, text, kind, sign="positive")
+    """Return a step, SI, read as in a job."""
+    from ...optimise.job.grids import step_of
+
+    return step_of(text, lambda given: value_of(key, str(given), kind, sign="positive"))
 
 
 def rounded_record(found: Rounded) -> dict[str, Any]:

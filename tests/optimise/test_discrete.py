@@ -271,3 +271,18 @@ def test_offsets_from_zero_have_no_series_and_options_set_no_values() -> None:
         parse_job(job(choice=[{"name": "crank size", "option": option}]))
     with pytest.raises(InputError, match="ascending"):
         Discrete(name="crank", values=(0.2, 0.1), rule="")
+
+
+def test_a_step_may_be_a_fraction_of_a_unit_in_lengths_and_in_other_numbers() -> None:
+    wheel = {"min": "20 mm", "max": "60 mm"}
+    for text, same in (("1/32 in", "0.03125 in"), (" 3 / 16in", "0.1875 in"), ("1/2 mm", "0.5 mm")):
+        one, other = (parse_job(job({"crank": {**wheel, "step": step}})).discrete[0] for step in (text, same))
+        assert one.values == other.values
+        assert one.rule == f"multiples of {text.strip()}"
+    masses = {"mechanism": {"slider": {"mass": {"min": "1 kg", "max": "3 kg", "step": "1/4 kg"}}}}
+    slider = next(item for item in parse_job(job(masses)).discrete if "mass" in item.name)
+    assert slider.values == tuple(0.25 * k for k in range(4, 13))
+    for wrong in ("1/0 in", "1/32", "1/32 kg", "1/x in", "-1/32 in", "0/4 in"):
+        with pytest.raises(JobError, match=r"^variables.crank: step ") as error:
+            parse_job(job({"crank": {**wheel, "step": wrong}}))
+        assert wrong in str(error.value)

@@ -3,6 +3,7 @@
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -285,3 +286,34 @@ def test_data_that_is_no_job_is_refused(data: object, words: str) -> None:
     with pytest.raises(JobError) as caught:
         parse_job(data)  # type: ignore[arg-type]
     assert words in str(caught.value)
+
+
+def test_small_messages_tell_the_value_in_the_words_of_the_job() -> None:
+    base: dict[str, Any] = {
+        "name": "small",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "1 kg"}},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["150 mm", "300 mm"], "offset": "0 mm"},
+        "objectives": {"stroke": "maximise"},
+    }
+
+    def said(**tables: Any) -> str:
+        with pytest.raises(JobError) as error:
+            parse_job(base | tables)
+        return str(error.value)
+
+    formula = {"formula": "rod / crank"}
+    assert "must have at most 20 entries; got 31;" in said(quantity={f"q{n}": formula for n in range(31)})
+    assert "has 1 to 60 small letters" in (told := said(quantity={"x" * 100: formula}))
+    assert "of 100 characters" in told
+    for table, value in (("objectives", "minimise"), ("constraints", {"min": 1.0})):
+        told = said(**{table: {"zzz": value}})
+        assert len(told) < 600
+        assert " more, all in `slidercrank schema`" in told
+    press = tomllib.loads((Path(__file__).parents[2] / "runs" / "press.toml").read_text(encoding="utf-8"))
+    del press["choice"]
+    for path in ("eye_concentration", "material.yield_strength"):
+        variables: dict[str, Any] = dict(base["variables"])
+        variables[f"sections.{path}"] = [2.0, 3.0] if path == "eye_concentration" else ["400 MPa", "500 MPa"]
+        with pytest.raises(JobError, match=f"follows smoothly from sections.{path}, so it cannot vary") as error:
+            parse_job({**press, "variables": variables, "constraints": {}})
+        assert "strength.material" not in str(error.value).replace("sections.material", "")
