@@ -211,7 +211,7 @@ def _peaks(field: Field, part: int, criteria: Array, bending: bool, gradients: b
     return found
 
 
-def require_one_sided(criteria: Array) -> None:
+def _require_one_sided(criteria: Array) -> None:
     """Raise `InputError` for criteria that compare two crank angles, which may be of different turns."""
     if (criteria > 0.0).all(axis=1).any():
         raise InputError(
@@ -254,7 +254,7 @@ def stress_peaks(
     designs = turning(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
     if cycle_turns(mechanism) > 1:
-        require_one_sided(criteria)
+        _require_one_sided(criteria)
         first, second = (
             stress_peaks(half, part, designs, criteria, bending=bending, gradients=gradients, kept=kept)
             for half in halves(mechanism)

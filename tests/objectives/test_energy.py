@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import Energies, energies
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -43,6 +43,16 @@ def values(name: str, machine: Mechanism, designs: Array = DESIGNS) -> Array:
     return QUANTITIES[name].evaluate(machine, designs).values
 
 
+def balances(found: Energies, efficiency: float, energy: float, loss: float) -> bool:
+    """Check an efficiency and the balance of a turn by the analysis of one design; return whether it has one."""
+    assert energy == pytest.approx(found.useful + loss, abs=1e-11 * found.throughput)
+    assert math.isnan(efficiency) == (found.efficiency is None)
+    if found.efficiency is None:
+        return False
+    assert efficiency == pytest.approx(found.efficiency, rel=1e-10)
+    return True
+
+
 def test_they_are_those_of_the_analysis_of_one_design_and_balance() -> None:
     driven = 0
     for machine in rubbing_machines(6, seed=82):
@@ -51,11 +61,7 @@ def test_they_are_those_of_the_analysis_of_one_design_and_balance() -> None:
             found = energies(machine, linkage_of(design, machine.branch))
             assert energy[n] == pytest.approx(found.input, abs=1e-11 * found.throughput)
             assert loss[n] == pytest.approx(found.heat, rel=1e-11)
-            assert energy[n] == pytest.approx(found.useful + loss[n], abs=1e-11 * found.throughput)
-            assert math.isnan(efficiency[n]) == (found.efficiency is None)
-            if found.efficiency is not None:
-                driven += 1
-                assert efficiency[n] == pytest.approx(found.efficiency, rel=1e-10)
+            driven += balances(found, efficiency[n], energy[n], loss[n])
     assert 0 < driven < 36
 
 
@@ -68,11 +74,7 @@ def test_what_torques_on_the_crank_take_is_useful_too() -> None:
             efficiency, energy, loss = (values(name, own) for name in NAMES)
             for n, design in enumerate(DESIGNS):
                 found = energies(own, linkage_of(design, machine.branch))
-                assert energy[n] == pytest.approx(found.useful + loss[n], abs=1e-11 * found.throughput)
-                assert math.isnan(efficiency[n]) == (found.efficiency is None)
-                if found.efficiency is not None:
-                    defined += 1
-                    assert efficiency[n] == pytest.approx(found.efficiency, rel=1e-10)
+                defined += balances(found, efficiency[n], energy[n], loss[n])
     assert 0 < defined < 48
 
 
