@@ -41,7 +41,7 @@ def allocate(
         )
     linkage = size.linkage(problem)
     most = value_of("--limit", limit, LENGTH, sign="positive")
-    mechanism = problem.mechanism
+    mechanism = problem.mechanism.nominal
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
     numbers = analysis.numbers(found, linkage, problem.costs, mechanism)

@@ -40,7 +40,7 @@ def balance(
     from ..topics.counterweight import analysis
 
     problem = turning_problem(job, "balance")
-    linkage, mechanism = size.linkage(problem), problem.mechanism
+    linkage, mechanism = size.linkage(problem), problem.mechanism.nominal
     given = partial(given_value, sign="positive")
     at = given("--radius", radius, LENGTH) or mechanism.counterweight.radius or float(linkage.crank)
     heaviest = given("--mass", mass, MASS)

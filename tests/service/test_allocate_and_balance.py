@@ -68,6 +68,30 @@ def test_help_names_both(command: Command) -> None:
         assert command(name, "--help").exit_code == 0
 
 
+@pytest.mark.parametrize("arguments", [("allocate", *ALLOCATE), ("balance", "--offset", "60 mm", *ROD)])
+def test_what_may_vary_has_the_value_that_the_job_gives(
+    job: Path, command: Command, arguments: tuple[str, ...]
+) -> None:
+    name, *options = arguments
+    held = command(name, job, *options, "--json")
+    more = """mechanism.rod.width = ["10 mm", "80 mm"]
+mechanism.slider.mass = ["0.5 kg", "5 kg"]
+tolerances.offset = ["0.01 mm", "0.3 mm"]
+mechanism.speed = { choices = ["200 rpm", "250 rpm"] }
+"""
+    text = job.read_text()
+    job.write_text(text.replace("[objectives]", f"{more}[objectives]"))
+    assert len(load_job(job).mechanism.varying) == 3
+    done = command(name, job, *options, "--json")
+    assert done.exit_code == held.exit_code == 0, done.stderr
+    assert done.stdout == held.stdout
+    text = job.read_text()
+    job.write_text(text.replace('offset = "0.1 mm"', 'offset = "0.2 mm"').replace("1.95 kg", "3 kg"))
+    other = command(name, job, *options, "--json")
+    assert other.exit_code == 0, other.stderr
+    assert other.stdout != held.stdout
+
+
 def test_allocation_is_that_of_the_model(job: Path, command: Command) -> None:
     done = command("allocate", job, *ALLOCATE, "--kind", "rss", "--json")
     assert done.exit_code == 0, done.stderr
