@@ -2,7 +2,7 @@
 
 import { isAbort, sentenceOf } from "./lib/api.js";
 import { read } from "./lib/address.js";
-import { byId, fill, h } from "./lib/dom.js";
+import { byId, fill, first, focused, h } from "./lib/dom.js";
 import { watchDownloads } from "./lib/download.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
@@ -34,7 +34,7 @@ async function showView() {
   const main = byId("main");
   markNavigation();
   const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
-  const changed = main.childElementCount > 0;
+  const changed = first(main, ".view") !== null;
   fill(main, place);
   try {
     const view = VIEWS.find(({ match }) => match(parts));
@@ -45,7 +45,8 @@ async function showView() {
     document.title = `${module.title} · slidercrank`;
     await module.show(place, { parts, query, signal });
     found();
-    if (changed && !signal.aborted) main.focus({ preventScroll: true });
+    // Who began to use the view before it was whole stays where they are: an open menu closes as the focus leaves it.
+    if (changed && !signal.aborted && !focused(main)) main.focus({ preventScroll: true });
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
     document.title = "slidercrank";

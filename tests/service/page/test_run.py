@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import Any
 from urllib.parse import urlsplit
 
-from playwright.sync_api import Browser, expect
+import pytest
+from playwright.sync_api import Browser, Route, expect
 from sqlalchemy import delete
 
 from slidercrank.service.jobs.submission import submit
@@ -251,3 +252,18 @@ def test_everything_of_a_run_can_be_taken_away(open_page: Open, solved: Solved) 
         assert download.value.failure() is None
     expect(page.get_by_role("link", name=re.compile("as SVG")).first).to_be_visible(timeout=30_000)
     require_accessible(page)
+
+
+@pytest.mark.parametrize("before", ["", "#/help"])
+def test_a_menu_that_is_opened_before_the_front_came_stays_open(open_page: Open, solved: Solved, before: str) -> None:
+    page = open_page(solved.store, before)
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+    held: list[Route] = []
+    page.route("**/front*", lambda route: held.append(route))
+    page.goto(f"{page.url.split('#')[0]}#/jobs/{solved.number}")
+    page.get_by_text("Download", exact=True).click()
+    link = page.get_by_role("link", name="Designs as CSV")
+    expect(link).to_be_visible()
+    held.pop().continue_()
+    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(link).to_be_visible()
