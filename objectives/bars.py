@@ -17,6 +17,7 @@ from ..model.machine.remembered import remembered_batch
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal
+from ..model.strength.places import Eye, Place
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
 from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
@@ -138,21 +139,17 @@ def strength_of(mechanism: Mechanism) -> Strength:
 
 
 @remembered_batch
-def stress(
+def stresses(
     mechanism: Mechanism,
     designs: Array,
-    name: str,
+    places: tuple[Place, ...],
     criteria: tuple[tuple[float, float], ...],
     kept: int,
     gradients: bool,
-    *,
-    bending: bool = True,
-) -> Part:
-    """Return the greatest p sigma - q sigma of a link, for (p, q) of the criteria; see `stress_peaks`."""
-    found = stress_peaks(
-        mechanism, LINKS[name].part, designs, np.array(criteria), bending=bending, gradients=gradients, kept=kept
-    )
-    return Part(found.values, found.gradients, found.labels)
+) -> list[Part]:
+    """Return the greatest p sigma - q sigma of each place, for (p, q) of the criteria; see `stress_peaks`."""
+    found = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, kept=kept)
+    return [Part(each.values, each.gradients, each.labels) for each in found]
 
 
 @remembered_batch
@@ -160,6 +157,22 @@ def pin_force(mechanism: Mechanism, designs: Array, pin: str, kept: int, gradien
     """Return the greatest force of a pin over the cycle, N."""
     found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)
     return Part(found.values, found.gradients, np.nan_to_num(found.angles))
+
+
+def eyes_of(link: str, pin: str) -> list[Eye]:
+    """Return the edges of a link's eye at a pin that count: the bore, and both edges where the torque bends it.
+
+    That is the crank's pivot. What the friction of a pin bends its eye is left out.
+    """
+    own = LINKS[link]
+    bent = own.part == CRANK and pin == own.far
+    edges = (False, True) if bent else (False,)
+    return [Eye(own.part, pin != NEAR, own.width, PINS[pin], bent, outer) for outer in edges]
+
+
+def beside_pin(eye: Eye) -> Formula:
+    """Return the formula of the width that a pin leaves of an eye, w - D, m."""
+    return lambda number: number(eye.width) - number(eye.pin)
 
 
 def net_section(link: str, pin: str) -> Formula:

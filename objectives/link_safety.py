@@ -11,7 +11,8 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from .bars import LINKS, Formula, OfBars, Part, constant, strength_of, stress
+from ..model.strength.places import Along, Eye, Place
+from .bars import LINKS, NEAR, Formula, OfBars, Part, beside_pin, constant, eyes_of, strength_of, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
 from .quantity import Array
@@ -21,16 +22,24 @@ _COMPRESSION = ((0.0, 1.0),)
 
 @dataclass(frozen=True, kw_only=True)
 class FatigueSafety(OfBars):
-    """1 / (amplitude / S_e + mean / S_m), least of all points of a bar."""
+    """1 / (amplitude / S_e + mean / S_m), least of all points of the bars and their eyes."""
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
-        """Return the safety of each bar; see `OfBars`."""
+        """Return the safety of each bar and of each eye; see `OfBars`."""
         strength = strength_of(mechanism)
         worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
         # Of amplitude and mean in terms of greatest and least stress; and of the amplitude alone.
         criteria = ((worn + steady, worn - steady), (worn, worn))
-        one = constant(1.0, designs, gradients)
-        return [stress(mechanism, designs, name, criteria, kept, gradients).into(one) for name in self.bars(mechanism)]
+        bars = self.bars(mechanism)
+        eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
+        places: tuple[Place, ...] = (*(Along(LINKS[name].part) for name in bars), *eyes)
+        found = []
+        for place, part in zip(places, stresses(mechanism, designs, places, criteria, kept, gradients), strict=True):
+            rest = constant(1.0, designs, gradients)
+            if isinstance(place, Eye):
+                rest = of_numbers(mechanism, designs, beside_pin(place), gradients=gradients)
+            found.append(part.into(rest))
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,9 +50,10 @@ class BucklingSafety(OfBars):
         """Return the safety of each bar in the plane of motion and out of it; see `OfBars`."""
         material = strength_of(mechanism).material
         found = []
-        for name in self.bars(mechanism):
-            own = LINKS[name]
-            pressed = stress(mechanism, designs, name, _COMPRESSION, kept, gradients, bending=False)
+        bars = [LINKS[name] for name in self.bars(mechanism)]
+        places = tuple(Along(own.part, bent=False) for own in bars)
+        squeezed = stresses(mechanism, designs, places, _COMPRESSION, kept, gradients)
+        for own, pressed in zip(bars, squeezed, strict=True):
             for side in (own.width, own.depth):
                 critical = critical_stress(own.length, side, own.held, material.elasticity, material.yield_strength)
                 found.append(pressed.into(of_numbers(mechanism, designs, critical, gradients=gradients)))
@@ -75,9 +85,12 @@ FATIGUE_SAFETY = FatigueSafety(
     place=446,
     sentence=(
         "By how much all stresses could grow until the worst point of crank and rod tires: amplitude and mean are of "
-        "the same point's stress over a turn."
+        "the same point's stress over a turn, with the stress concentration in the eyes."
     ),
-    advice="1.3 to 2 are usual. The endurance strength has the stress raisers of the eyes in it.",
+    advice=(
+        "1.3 to 2 are usual. The endurance strength is that of the finished bar: what eye_concentration counts must "
+        "not be in it a second time."
+    ),
     formula="1 / max(sigma_a / S_e + max(sigma_m, 0) / S_u) over place; S_y in place of S_u with Soderberg's criterion",
     source="Shigley, Mechanical Engineering Design, 9th ed., eq. 6-46 (Goodman) and 6-45 (Soderberg)",
     picture="rod",

@@ -8,13 +8,28 @@ from functools import partial
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from .bars import LINKS, NEAR, OfBars, Part, constant, net_section, over, pin_force, strength_of, stress
+from ..model.strength.places import Along, Eye, Place
+from .bars import (
+    LINKS,
+    NEAR,
+    OfBars,
+    Part,
+    beside_pin,
+    constant,
+    eyes_of,
+    net_section,
+    over,
+    pin_force,
+    strength_of,
+    stresses,
+)
 from .kinds import PRESSURE, RATIO
 from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array
 
 STATIC = ((1.0, 0.0), (0.0, 1.0))
 """Greatest tension and greatest compression."""
+CRANK = "crank"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,21 +40,32 @@ class LinkStress(OfBars):
         """Return the stresses along the bars and in their eyes; see `OfBars`."""
         strength = strength_of(mechanism)
         own = strength.material.yield_strength
-        found = []
-        bars = self.bars(mechanism)
+        bars, found = self.bars(mechanism), []
+        places = _places(mechanism)  # of both links at once, whichever is asked for
+        for place, part in zip(places, stresses(mechanism, designs, places, STATIC, kept, gradients), strict=True):
+            if place.part not in [LINKS[name].part for name in bars]:
+                continue
+            rest = constant(1.0, designs, gradients)
+            if isinstance(place, Eye):
+                rest = of_numbers(mechanism, designs, beside_pin(place), gradients=gradients)
+            found.append(part.into(_scaled(rest, own)) if self.least else over(part, rest))
         pins = dict.fromkeys(pin for name in bars for pin in (NEAR, LINKS[name].far))
         forces = {pin: pin_force(mechanism, designs, pin, kept, gradients) for pin in pins}
         for name in bars:
-            along = stress(mechanism, designs, name, STATIC, kept, gradients)
-            found.append(along.into(constant(own, designs, gradients)) if self.least else along)
             for pin in (NEAR, LINKS[name].far):
-                force = forces[pin]
                 area = of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
                 if self.least:
-                    found.append(force.into(_scaled(area, own / strength.eye_concentration)))
+                    found.append(forces[pin].into(_scaled(area, own / strength.eye_concentration)))
                 else:
-                    found.append(over(force, area, strength.eye_concentration))
+                    found.append(over(forces[pin], area, strength.eye_concentration))
         return found
+
+
+def _places(mechanism: Mechanism) -> tuple[Place, ...]:
+    """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
+    bars = STATIC_SAFETY.bars(mechanism)
+    pivot = eyes_of(CRANK, LINKS[CRANK].far) if CRANK in bars else []
+    return (*(Along(LINKS[name].part) for name in bars), *pivot)
 
 
 def _scaled(factor: tuple[Array, Array | None], by: float) -> tuple[Array, Array | None]:
@@ -75,11 +101,13 @@ CRANK_STRESS = replace(
     place=442,
     sentence=(
         "The greatest stress of the crank over a turn, of either sign: axial force and bending by the crank pin's "
-        "force at every place, and the net section of both eyes."
+        "force at every place, and the net section of both eyes, that of the pivot with the torque, which a key or a "
+        "tight fit brings in there."
     ),
-    advice=(
-        "It is that at the crank pivot where the torque is large. In the pivot's eye the force alone counts: a torque "
-        "T that a key brings in there adds up to 6 w T / (d (w^3 - D^3))."
+    advice="It is that of the pivot's eye where the torque is large: widen the crank, or take a thinner shaft.",
+    formula=(
+        "max of |N / (w d) +- 6 M / (d w^2)|, K F / ((w - D) d), and at the pivot |N / ((w - D) d) +- 6 w M / "
+        "(d (w^3 - D^3))| and |K N / ((w - D) d) +- min(K, 2) 6 D M / (d (w^3 - D^3))| over place and crank angle"
     ),
     picture="crank",
     needs=(STRENGTH, EVEN_SPEED, CRANK_BAR, LOADED),

@@ -17,8 +17,8 @@ Criterion = Literal["goodman", "soderberg"]
 class Material:
     """Material of crank and rod, SI.
 
-    endurance: fully reversed strength of the finished part, all corrections and the stress raisers of the eyes in it
-    (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
+    endurance: fully reversed strength of the finished bar, all corrections in it but the concentration of stress in the
+    eyes (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
     """
 
     density: float

@@ -21,6 +21,7 @@ stationary, or at an end that moves with the design, so the gradient is the part
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,8 +32,9 @@ from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
 from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
-from .section_forces import CRANK, ROD, Stress, at_share
-from .stress_points import WIDE, Field, field_of
+from .places import Place, Places, places_of
+from .section_forces import Stress, at_share
+from .stress_points import Field, field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_of, propose, room_for
 
 KEPT = 8
@@ -67,7 +69,7 @@ class StressPeaks:
 
 @dataclass
 class _Maxima:
-    """Maxima of a field, c of them: design, number of face and criterion (c,); share of the length, value (c,).
+    """Maxima of places, c of them: bar, number of face and criterion (c,); share of the length, value (c,).
 
     angle: (c, 2). segment: (c, 2). used: (c, 2), whether the angle counts. spacing: (c, 2), of samples there, rad.
     """
@@ -91,19 +93,19 @@ class _Maxima:
         return _Maxima(**{name: each[rows] for name, each in vars(self).items()})
 
 
-def _of_samples(field: Field, base: int, faces: Array, criteria: Array, near: float, kept: int) -> _Maxima:
+def _of_samples(bars: Places, faces: Array, criteria: Array, near: float, kept: int) -> _Maxima:
     """Return the highest maxima of the cubics between the samples of the cycle."""
-    start, theta, first, segment, stress = field.samples
+    start, theta, first, segment, stress = bars.samples
     n = len(start) - 1
     # Every second station, face and criterion may be one, with all pairs of angles.
     room = n * len(faces) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
     best = np.empty((len(faces), len(criteria), STATIONS))
     found = room_for(room)
-    count = propose(start, first, stress, base, faces, criteria, near, *space, best, found)
+    count = propose(start, first, stress, 0, faces, criteria, near, *space, best, found)
     found = first_of(found, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, kept), np.int64)
-    climb(theta, first, stress, base, faces, criteria, found, values, angles)
+    climb(theta, first, stress, 0, faces, criteria, found, values, angles)
     choose(found, criteria, values, angles, chosen)
     rows = chosen[chosen >= 0]
     at = found.at[rows]
@@ -123,9 +125,9 @@ def _of_samples(field: Field, base: int, faces: Array, criteria: Array, near: fl
     )
 
 
-def _close_in(field: Field, base: int, faces: Array, criteria: Array, maxima: _Maxima) -> None:
+def _close_in(bars: Places, faces: Array, criteria: Array, maxima: _Maxima) -> None:
     """Follow maxima between samples of their own, until these are so close that the cubics are exact."""
-    begin, end = field.ends(np.repeat(maxima.which, 2), maxima.segment.ravel())
+    begin, end = bars.ends(np.repeat(maxima.which, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
     width, near = _CLOSE * maxima.spacing, _FORETOLD * maxima.spacing
     waiting = np.arange(len(maxima.which))
@@ -137,12 +139,12 @@ def _close_in(field: Field, base: int, faces: Array, criteria: Array, maxima: _M
         high = np.minimum(end[waiting], maxima.angle[waiting] + width[waiting])
         theta = np.stack([low[used], high[used]], axis=1).ravel()
         which = np.repeat(np.broadcast_to(maxima.which[waiting, None], (c, 2))[used], 2)
-        stress = field.at(which, np.repeat(maxima.segment[waiting][used], 2), theta)
+        stress = bars.at(which, np.repeat(maxima.segment[waiting][used], 2), theta)
         at = np.zeros((c, 2), np.int64)
         at[used] = 2 * np.arange(len(theta) // 2)
         own = Candidates(maxima.which[waiting], maxima.face[waiting], maxima.pull[waiting], at, maxima.share[waiting])
         values, angles = np.empty(c), np.full((c, 2), np.nan)
-        climb(theta, np.arange(len(theta)) % 2 == 0, stress, base, faces, criteria, own, values, angles)
+        climb(theta, np.arange(len(theta)) % 2 == 0, stress, 0, faces, criteria, own, values, angles)
         angles = np.where(used, angles, angles[:, ::-1])
         moved = np.abs(angles - maxima.angle[waiting])
         maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, own.share, angles
@@ -155,11 +157,11 @@ def _close_in(field: Field, base: int, faces: Array, criteria: Array, maxima: _M
         waiting = waiting[~settled]
 
 
-def _gradients(field: Field, base: int, faces: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
+def _gradients(bars: Places, faces: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
     """Return the derivatives (c, 3 + k) of maxima on breakpoints `pins` (c, 2), or on none (-1)."""
     used = maxima.used
     which = np.broadcast_to(maxima.which[:, None], used.shape)[used]
-    slopes = field.slopes(which, maxima.segment[used], maxima.angle[used], pins[used])[:, :, base + 7 : base + WIDE]
+    slopes = bars.slopes(which, maxima.segment[used], maxima.angle[used], pins[used])
     shares, sides = (np.repeat(each, used.sum(axis=1))[:, None] for each in (maxima.share, faces[maxima.face]))
     weights = (criteria[maxima.pull] * np.array([1.0, -1.0]))[used]
     own = weights[:, None] * at_share(Stress(*np.moveaxis(slopes, 2, 0)), sides, shares)
@@ -173,9 +175,11 @@ def _kept_field(mechanism: Mechanism, designs: Array) -> Field:
     return field_of(mechanism, designs)
 
 
-def _peaks(field: Field, part: int, criteria: Array, bending: bool, gradients: bool, kept: int) -> StressPeaks:
-    base, faces = WIDE * (part == CRANK), np.array([1.0, -1.0] if bending else [0.0])
-    n, width = len(field.blocks), len(field.numbers.columns)
+_FACES = np.array([1.0, -1.0])
+
+
+def _peaks(bars: Places, criteria: Array, gradients: bool, kept: int) -> StressPeaks:
+    n, width = bars.rows, bars.rates.shape[1]
     found = StressPeaks(
         np.full((n, kept), -np.inf),
         np.zeros((n, kept)),
@@ -183,31 +187,31 @@ def _peaks(field: Field, part: int, criteria: Array, bending: bool, gradients: b
         np.zeros((n, kept, width)) if gradients else None,
     )
     # Of several that are equal to the samples' accuracy each may be the highest.
-    maxima = _of_samples(field, base, faces, criteria, _NEAR if kept == 1 else _WIDE, max(kept, 3))
+    maxima = _of_samples(bars, _FACES, criteria, _NEAR if kept == 1 else _WIDE, max(kept, 3))
     if kept == 1:
         top = np.full(n, -np.inf)
         np.maximum.at(top, maxima.which, maxima.value)
         maxima = maxima.at(np.flatnonzero(maxima.value >= (top - _EQUAL * np.abs(top))[maxima.which]))
-    _close_in(field, base, faces, criteria, maxima)
+    _close_in(bars, _FACES, criteria, maxima)
     own = Candidates(maxima.which, maxima.face, maxima.pull, np.zeros((len(maxima.which), 2), np.int64), maxima.share)
     chosen = np.empty((n, kept), np.int64)
     choose(own, criteria, maxima.value, maxima.angle, chosen)
     there = chosen >= 0
     maxima = maxima.at(chosen[there])
-    begin, end = (each.reshape(-1, 2) for each in field.ends(np.repeat(maxima.which, 2), maxima.segment.ravel()))
+    begin, end = (each.reshape(-1, 2) for each in bars.ends(np.repeat(maxima.which, 2), maxima.segment.ravel()))
     early, late = maxima.angle - begin < _EDGE, end - maxima.angle < _EDGE
     maxima.angle = np.where(early, begin, np.where(late, end, maxima.angle))
-    after = (maxima.segment + 1) % field.cuts.many[maxima.which][:, None]
+    after = (maxima.segment + 1) % bars.many(maxima.which)[:, None]
     pins = np.where(early, maxima.segment, np.where(late, after, -1))
     ended = np.where(maxima.share == 0.0, 1, np.where(maxima.share == 1.0, 2, 0))
     turned = np.where(maxima.used, maxima.angle - _TURN * np.floor(maxima.angle / _TURN), 0.0)
     number = (maxima.face * len(criteria) + maxima.pull) * 3 + ended
     found.values[there] = maxima.value
     found.labels[there] = APART * number + turned[:, 0] + _OTHER * turned[:, 1]
-    found.places[there] = np.column_stack([maxima.share, faces[maxima.face], maxima.angle])
+    found.places[there] = np.column_stack([maxima.share, _FACES[maxima.face], maxima.angle])
     if found.gradients is not None:
-        found.gradients[there] = _gradients(field, base, faces, criteria, maxima, pins)
-    found.values[field.locked, 0] = np.inf
+        found.gradients[there] = _gradients(bars, _FACES, criteria, maxima, pins)
+    found.values[bars.locked, 0] = np.inf
     return found
 
 
@@ -237,43 +241,37 @@ def _of_both(first: StressPeaks, second: StressPeaks, kept: int) -> StressPeaks:
 
 def stress_peaks(
     mechanism: Mechanism,
-    part: int,
+    places: Sequence[Place],
     designs: Array,
     criteria: Array,
     *,
-    bending: bool = True,
     gradients: bool = False,
     kept: int = KEPT,
-) -> StressPeaks:
-    """Return the greatest p sigma - q sigma of rod or crank of designs (n, 3 + k).
+) -> list[StressPeaks]:
+    """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; see `Place` for what sigma is.
 
-    criteria: (m, 2), p and q of each, none negative. bending: whether moments count, else the axial stress alone.
-    kept: maxima returned a design; with one only the highest ones are followed. The link must be a `Bar`.
+    criteria: (m, 2), p and q of each, none negative. kept: maxima returned a design; with one only the highest ones are
+    followed. The links of the places must be `Bar`.
     """
-    assert part in (ROD, CRANK)
     designs = turning(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
     if cycle_turns(mechanism) > 1:
         _require_one_sided(criteria)
-        first, second = (
-            stress_peaks(half, part, designs, criteria, bending=bending, gradients=gradients, kept=kept)
-            for half in halves(mechanism)
+        turns = (
+            stress_peaks(half, places, designs, criteria, gradients=gradients, kept=kept) for half in halves(mechanism)
         )
-        return _of_both(first, second, kept)
-    n = len(designs)
-    found = StressPeaks(
-        np.empty((n, kept)),
-        np.empty((n, kept)),
-        np.empty((n, kept, 4)),
-        np.empty((n, kept, designs.shape[1])) if gradients else None,
-    )
+        return [_of_both(first, second, kept) for first, second in zip(*turns, strict=True)]
+    many, n = len(places), len(designs)
+    values, labels, where = np.empty((many, n, kept)), np.empty((many, n, kept)), np.empty((many, n, kept, 4))
+    slopes = np.empty((many, n, kept, designs.shape[1])) if gradients else None
 
     def work(begin: int, end: int) -> None:
-        field = _kept_field(mechanism, designs[begin:end])
-        own = _peaks(field, part, criteria, bending, gradients, kept)
-        found.values[begin:end], found.labels[begin:end], found.places[begin:end] = own.values, own.labels, own.places
-        if found.gradients is not None and own.gradients is not None:
-            found.gradients[begin:end] = field.numbers.chain(own.gradients)
+        own = designs[begin:end]
+        found = _peaks(places_of(_kept_field(mechanism, own), mechanism, own, places), criteria, gradients, kept)
+        for target, part in ((values, found.values), (labels, found.labels), (where, found.places)):
+            target[:, begin:end] = part.reshape(many, end - begin, *part.shape[1:])
+        if slopes is not None and found.gradients is not None:
+            slopes[:, begin:end] = found.gradients.reshape(many, end - begin, kept, -1)
 
     in_chunks(n, work)
-    return found
+    return [StressPeaks(values[p], labels[p], where[p], None if slopes is None else slopes[p]) for p in range(many)]

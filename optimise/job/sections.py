@@ -54,7 +54,7 @@ class MaterialPart(Checked[Material]):
     elasticity: Pressure = required("Young's modulus", "207 GPa")
     yield_strength: Pressure = required("in tension and compression", "350 MPa")
     ultimate_strength: Pressure = required("in tension", "520 MPa")
-    endurance: Pressure = required("fully reversed strength of the finished part, stress raisers included", "150 MPa")
+    endurance: Pressure = required("fully reversed strength of the finished bar, without eye_concentration", "150 MPa")
     bearing_pressure: Pressure = required("permissible at the pins, on their projected area", "20 MPa")
 
 

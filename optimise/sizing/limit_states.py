@@ -27,13 +27,17 @@ of that bar, K = 2). Each of these is at most one:
                     condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
                     crank, a cantilever
     net section     n K F / (S_y (w - D) d), written as n K F / (S_y w d) + D / w, at each pin of diameter D, with the
-                    stress concentration K of the eye
+                    stress concentration K of the eye; in fatigue K (F_a / S_e + F_m / S_m) of the axial load, own mass
+                    as amplitude
+    bent eye        at the crank's pivot, at the bore and at the outer edge, with B = min(K, 2) and 1, C = K and 1 and
+                    y = D and w: n (C N / ((w - D) d) + 6 B M y / (d (w^3 - D^3))) / S_y, written as
+                    n (C N (w^2 + w D + D^2) + 6 B M y) / (S_y d w^3) + (D / w)^3; in fatigue likewise
     bearing         F / (D d p), the pressure on the projected area of each pin
 
 Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
-most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. Stress raisers
-belong in S_e (Shigley eq. 6-18 and 6-32). Not considered: shear, the shape of the eyes beyond their net section, pin
-bending, friction, bending out of the plane.
+most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. What else
+weakens the finished bar belongs in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the eyes beyond their
+net section, pin bending, friction, bending out of the plane.
 """
 
 from __future__ import annotations
@@ -69,7 +73,7 @@ class BarLoads:
     """Loads on one bar; numbers, or posynomials of the sections. N, N m, and Pa^-1 N for fatigue.
 
     axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass included.
-    pins: force and diameter by name.
+    pins: force and diameter by name. bent_eye: the name of the pin whose eye has the moment, "" for none.
     """
 
     axial: Any
@@ -78,10 +82,13 @@ class BarLoads:
     fatigue_axial: Any
     fatigue_moment: Any
     pins: dict[str, tuple[Any, float]]
+    bent_eye: str = ""
 
     def each(self, above: Above) -> BarLoads:
         """Return the same with `above` applied to each that own mass adds to."""
-        return replace(self, **{name: above(load) for name, load in vars(self).items() if name != "pins"})
+        return replace(
+            self, **{name: above(load) for name, load in vars(self).items() if name not in ("pins", "bent_eye")}
+        )
 
 
 def limit_states(
@@ -114,10 +121,23 @@ def limit_states(
         "buckling in the plane": limits.buckling_safety * euler / (d * w**3),
         "buckling out of the plane": limits.buckling_safety * euler / (w * d**3),
     }
-    raised = static * limits.eye_concentration
+    raised = limits.eye_concentration
     for name, (force, diameter) in loads.pins.items():
-        found[f"net section at the {name}"] = raised * force / (w * d) + diameter / w
+        found[f"net section at the {name}"] = static * raised * force / (w * d) + diameter / w
+        tired = limits.fatigue_safety * raised * loads.fatigue_axial
+        found[f"fatigue of the eye at the {name}"] = tired / (w * d) + diameter / w
         found[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
+    if loads.bent_eye:
+        diameter = loads.pins[loads.bent_eye][1]
+        rest = above(w**2 + diameter * w + diameter**2)
+        moment, tiring = loads.moment + swell, loads.fatigue_moment + swell / material.endurance
+        for edge, pulled, bent, lever in (("bore", raised, min(raised, 2.0), diameter), ("edge", 1.0, 1.0, w)):
+            for kind, n, axial, turned in (
+                ("", static, loads.axial, moment),
+                ("fatigue of the ", limits.fatigue_safety, loads.fatigue_axial, tiring),
+            ):
+                stress = n * (pulled * axial * rest + 6.0 * bent * turned * lever) / (d * w**3)
+                found[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = stress + (diameter / w) ** 3
     found["least width"], found["greatest width"] = limits.width[0] / w, w / limits.width[1]
     found["least depth"], found["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
     return found
@@ -172,6 +192,7 @@ def crank_loads(
             "pivot": (joints["crank pivot"], limits.crank_pivot),
             "crank pin": (joints["crank pin"], limits.crank_pin),
         },
+        bent_eye="pivot",
     )
 
 

@@ -25,7 +25,7 @@ DESIGNS = random_designs(1000, seed=1)
 # The rule is 1e-7 of the gradient's size. Measured: 99 % of the designs below 1e-9, the rest up to 5e-8 where the
 # extrapolation takes an entry that agrees with its parents by chance.
 CLOSE = 1e-7
-_TWINS = 1e-3  # rad
+_TWINS = 5e-3  # rad
 
 
 def designs_for(quantity: Quantity, count: int) -> int:

@@ -17,7 +17,7 @@ from slidercrank.model.machine.strength import Criterion
 from slidercrank.objectives.link_safety import critical_stress
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import STRENGTH, Array, random_designs
-from tests.model.strength.sections import linkage_with, random_bars, stress_rows
+from tests.model.strength.sections import eye_rows, linkage_with, random_bars, stress_rows
 
 STEEL = STRENGTH.material
 
@@ -55,7 +55,7 @@ def test_fatigue_is_that_of_the_worst_cycle_that_rainflow_counts(criterion: Crit
         used = 0.0
         for part in ("rod", "crank"):
             axial, bending = stress_rows(machine, part, linkage, theta, shares)
-            for history in (*(axial + bending).T, *(axial - bending).T):
+            for history in (*(axial + bending).T, *(axial - bending).T, *eye_rows(machine, part, linkage, theta).T):
                 used = max(
                     used, *(swing / STEEL.endurance + max(mean, 0.0) / steady for swing, mean in rainflow(history))
                 )

@@ -14,6 +14,7 @@ from ....model.machine.links import Bar
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.strength.bar_stress import bar_stress
+from ....model.strength.places import Along
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS
 from ....objectives.link_stress import STATIC, STATIC_SAFETY
@@ -57,7 +58,8 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
     found: dict[str, float | None] = {}
     cycle = 360.0 * cycle_turns(mechanism)
     for sign, criterion in zip(_SIGNS, STATIC, strict=True):
-        peak = stress_peaks(mechanism, LINKS[name].part, row_of(linkage), np.array([criterion]), kept=1)
+        along = (Along(LINKS[name].part),)
+        (peak,) = stress_peaks(mechanism, along, row_of(linkage), np.array([criterion]), kept=1)
         share, _, *angles = peak.places[0, 0]
         found |= {
             f"greatest_{sign}_MPa": plain(1e-6 * peak.values[0, 0]),

@@ -104,6 +104,28 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     return axial, at_share(column, 1.0, shares) - axial
 
 
+def eye_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array) -> Array:
+    """Return the stress (n, m) at m edges of both eyes of a link: area and second moment without the hole."""
+    bar: Any = getattr(mechanism, part)
+    strength = mechanism.strength
+    assert strength is not None
+    w, d, raised = bar.width, bar.depth, strength.eye_concentration
+    axial, bending = stress_rows(mechanism, part, linkage, theta, np.array([0.0, 1.0]))
+    force, moment = axial * w * d, bending * d * w**2 / 6.0
+    found = []
+    for end, hole in enumerate((strength.crank_pin, strength.slider_pin if part == "rod" else strength.crank_pivot)):
+        area, second = (w - hole) * d, d * (w**3 - hole**3) / 12.0
+        pivot = part == "crank" and end == 1  # elsewhere moments, which are by friction and round ends, are left out
+        edges = [(raised, min(raised, 2.0) if pivot else 0.0, 0.5 * hole)]
+        if pivot:
+            edges.append((1.0, 1.0, 0.5 * w))
+        for pulled, bent, lever in edges:
+            for face in (1.0, -1.0):
+                stress = pulled * force[:, end] / area + face * bent * moment[:, end] * lever / second
+                found.append(stress)
+    return np.stack(found, axis=1)
+
+
 def linkage_with(mechanism: Mechanism, design: Array) -> Linkage:
     """Return the linkage of a design on the machine's branch."""
     return linkage_of(design, mechanism.branch)

@@ -11,13 +11,14 @@ from slidercrank.model.cycle.cycle import breakpoints
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.strength.places import Along
 from slidercrank.model.strength.section_forces import CRANK, ROD
 from slidercrank.model.strength.stress_cycle import stress_peaks
 from tests.model.cases import Array, random_designs
 from tests.model.strength.sections import linkage_with, random_bars, section_stress, stress_rows
 
 STATIC = np.array([[1.0, 0.0], [0.0, 1.0]])
-PARTS = {"rod": ROD, "crank": CRANK}
+PARTS = {"rod": (Along(ROD),), "crank": (Along(CRANK),)}
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -27,7 +28,7 @@ def test_stress_is_that_of_what_lies_beyond_the_section(part: str) -> None:
     for design in random_designs(40, seed=62, least_margin=3e-2):
         machine = replace(random_bars(random), counterweight=Counterweight(mass=0.0, radius=0.0))
         linkage = linkage_with(machine, design)
-        found = stress_peaks(machine, PARTS[part], design[None], STATIC)
+        found = stress_peaks(machine, PARTS[part], design[None], STATIC)[0]
         cuts = breakpoints(machine, linkage)
         for value, (share, face, angle, _) in zip(found.values[0], found.places[0], strict=True):
             if not np.isfinite(value) or np.abs(np.angle(np.exp(1j * (angle - cuts)))).min() < 1e-6:
@@ -54,7 +55,7 @@ def test_no_place_or_crank_angle_is_worse_than_the_peak(part: str, pulls: Array)
             for stress in (axial + bending, axial - bending)
             for p, q in pulls
         )
-        peak = stress_peaks(machine, PARTS[part], design[None], pulls).values[0, 0]
+        peak = stress_peaks(machine, PARTS[part], design[None], pulls)[0].values[0, 0]
         assert worst * (1.0 - 1e-7) <= peak <= worst * (1.0 + 1e-3)
 
 
@@ -72,7 +73,7 @@ def test_a_cycle_of_two_turns_has_the_greatest_stress_of_both(part: str) -> None
         theta = np.concatenate([np.arange(4320) * (np.pi / 1080.0), angles])
         axial, bending = stress_rows(machine, part, linkage, theta, shares)
         faces = np.abs([axial + bending, axial - bending]).max(axis=0)
-        found = stress_peaks(machine, PARTS[part], design[None], STATIC, gradients=True)
+        found = stress_peaks(machine, PARTS[part], design[None], STATIC, gradients=True)[0]
         worst, top = faces.max(), found.values[0, 0]
         assert worst * (1.0 - 1e-7) <= top <= worst * (1.0 + 1e-3)
         assert (np.diff(found.values[0][np.isfinite(found.values[0])]) <= 0.0).all()

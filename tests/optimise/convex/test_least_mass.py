@@ -12,7 +12,7 @@ from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.sections import size_sections
 from slidercrank.optimise.solve import solve
 
-SIZES: dict[str, Any] = {"crank_pivot": 0.03, "crank_pin": 0.025, "slider_pin": 0.022}
+SIZES: dict[str, Any] = {"crank_pivot": 0.012, "crank_pin": 0.025, "slider_pin": 0.022}
 BAR = {"width": "60 mm", "depth": "20 mm", "density": 7850.0}
 JOB: dict[str, Any] = {
     "name": "Least mass",
@@ -30,7 +30,7 @@ JOB: dict[str, Any] = {
         },
     },
     "variables": {
-        "crank": "5 mm",
+        "crank": "2 mm",
         "rod": "90 mm",
         "offset": "2 mm",
         "mechanism": {name: {"width": ["10 mm", "200 mm"], "depth": ["3 mm", "100 mm"]} for name in ("crank", "rod")},
@@ -47,19 +47,19 @@ JOB: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize(("concentration", "decisive"), [(1.0, 4), (2.5, 3)])
-def test_least_mass_of_the_search_is_that_of_the_geometric_programme(concentration: float, decisive: int) -> None:
-    """A short stroke, so that net sections and bearing pressure decide: of these both have the same formulas."""
+@pytest.mark.parametrize("concentration", [1.0, 2.5])
+def test_least_mass_of_the_search_is_that_of_the_geometric_programme(concentration: float) -> None:
+    """A short stroke and a thin shaft: net sections and bearing pressure decide, and of these both formulas are one."""
     problem = parse_job({**JOB, "sections": {**JOB["sections"], "eye_concentration": concentration}})
     strength = problem.mechanism.strength
     assert strength is not None
     limits = SectionLimits(
         **SIZES, width=(0.01, 0.2), depth=(0.003, 0.1), fatigue_safety=1.0, eye_concentration=concentration
     )
-    linkage = Linkage(0.005, 0.09, 0.002)
+    linkage = Linkage(0.002, 0.09, 0.002)
     convex = size_sections(problem.mechanism.nominal, linkage, strength.material, limits)
     active = {name for name, used in convex.utilisation.items() if used > 1.0 - 1e-6}
-    assert len(active) == decisive
+    assert len(active) == 4
     assert all(name.partition(": ")[2].startswith(("net section", "bearing")) for name in active)
     front = solve(problem)
     assert front.status == "done", front.message
