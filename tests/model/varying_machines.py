@@ -59,6 +59,8 @@ BARS = replace(
         vary("tolerances.clearances.crank_pin", 1e-5, 1e-4),
         vary("tolerances.clearances.guide", 1e-5, 1e-4),
         vary("strength.crank_pin", 0.01, 0.016),
+        vary("strength.crank_pivot", 0.01, 0.016),
+        vary("strength.slider_pin", 0.008, 0.014),
     ),
 )
 """Bars, loads of several kinds, tolerances and clearances."""
