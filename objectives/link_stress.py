@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -38,34 +38,49 @@ class LinkStress(OfBars):
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return the stresses along the bars and in their eyes; see `OfBars`."""
+        return [part for _, _, part in self.told_parts(mechanism, designs, kept, gradients)]
+
+    def told_parts(
+        self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool
+    ) -> Iterator[tuple[str, str, Part]]:
+        """Give link, pin ("" for what is along the link) and part, in the order of `parts`; an eye may have several."""
         strength = strength_of(mechanism)
         own = strength.material.yield_strength
-        bars, found = self.bars(mechanism), []
+        bars = self.bars(mechanism)
         places = _places(mechanism)  # of both links at once, whichever is asked for
-        for place, part in zip(places, stresses(mechanism, designs, places, STATIC, kept, gradients), strict=True):
-            if place.part not in [LINKS[name].part for name in bars]:
+        found = stresses(mechanism, designs, tuple(place for *_, place in places), STATIC, kept, gradients)
+        for (name, pin, place), part in zip(places, found, strict=True):
+            if name not in bars:
                 continue
             rest = constant(1.0, designs, gradients)
             if isinstance(place, Eye):
                 rest = of_numbers(mechanism, designs, beside_pin(place), gradients=gradients)
-            found.append(part.into(_scaled(rest, own)) if self.least else over(part, rest))
-        pins = dict.fromkeys(pin for name in bars for pin in (NEAR, LINKS[name].far))
-        forces = {pin: pin_force(mechanism, designs, pin, kept, gradients) for pin in pins}
+            yield name, pin, part.into(_scaled(rest, own)) if self.least else over(part, rest)
         for name in bars:
             for pin in (NEAR, LINKS[name].far):
+                force = pin_force(mechanism, designs, pin, kept, gradients)
                 area = of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
                 if self.least:
-                    found.append(forces[pin].into(_scaled(area, own / strength.eye_concentration)))
+                    yield name, pin, force.into(_scaled(area, own / strength.eye_concentration))
                 else:
-                    found.append(over(forces[pin], area, strength.eye_concentration))
-        return found
+                    yield name, pin, over(force, area, strength.eye_concentration)
 
 
-def _places(mechanism: Mechanism) -> tuple[Place, ...]:
+def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, float]]:
+    """Return the greatest stress in the eyes of each bar of one design (1, 3 + k), Pa, by bar and pin."""
+    found: dict[str, dict[str, float]] = {}
+    for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).told_parts(mechanism, design, 1, False):
+        if pin:
+            eyes = found.setdefault(name, {})
+            eyes[pin] = max(eyes.get(pin, 0.0), float(part.values[0, 0]))
+    return found
+
+
+def _places(mechanism: Mechanism) -> list[tuple[str, str, Place]]:
     """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
-    bars = STATIC_SAFETY.bars(mechanism)
-    pivot = eyes_of(CRANK, LINKS[CRANK].far) if CRANK in bars else []
-    return (*(Along(LINKS[name].part) for name in bars), *pivot)
+    bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
+    found: list[tuple[str, str, Place]] = [(name, "", Along(LINKS[name].part)) for name in bars]
+    return found + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 
 def _scaled(factor: tuple[Array, Array | None], by: float) -> tuple[Array, Array | None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,8 +20,8 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.service.runs.result import finite
 from slidercrank.service.topics.strength.analysis import figure, numbers, show
-from tests.model.cases import random_designs
-from tests.model.strength.sections import linkage_with, random_bars, section_stress
+from tests.model.cases import STRENGTH, random_designs
+from tests.model.strength.sections import eye_rows, linkage_with, random_bars, section_stress
 from tests.service import fronts
 
 
@@ -45,6 +46,17 @@ def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_st
             if key != "bars":
                 assert value == (pytest.approx(row[key], rel=1e-9) if np.isfinite(row[key]) else None), key
         for name, bar in found["bars"].items():
+            own_link: Any = getattr(machine, name)
+            edges = eye_rows(machine, name, linkage, np.linspace(0.0, 2.0 * np.pi, 4001))
+            pivot = bar["eyes_MPa"].get("crank_pivot")
+            assert pivot is None or 1e6 * pivot >= abs(edges[:, 2:]).max() * (1.0 - 1e-9)
+            along = [bar[f"greatest_{word}_MPa"] for word in ("tension", "compression")]
+            assert max(*along, *bar["eyes_MPa"].values()) == pytest.approx(row[f"{name}_stress_MPa"], rel=1e-9)
+            for pin, stress in bar["eyes_MPa"].items():
+                force = row[{"crank_pivot": "peak_pivot_force_N"}.get(pin, f"peak_{pin}_force_N")]
+                net = (own_link.width - getattr(STRENGTH, pin)) * own_link.depth
+                assert 1e6 * stress >= 2.5 * force / net * (1.0 - 1e-9)
+                assert pin == "crank_pivot" or 1e6 * stress == pytest.approx(2.5 * force / net, rel=1e-9)
             for sign, word in ((1.0, "tension"), (-1.0, "compression")):
                 at = np.radians(bar[f"greatest_{word}_at_crank_angle_deg"])
                 share = 1e-3 * bar[f"greatest_{word}_from_crank_pin_mm"] / float(getattr(linkage, name))

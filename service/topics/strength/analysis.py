@@ -17,7 +17,7 @@ from ....model.strength.bar_stress import bar_stress
 from ....model.strength.places import Along
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS
-from ....objectives.link_stress import STATIC, STATIC_SAFETY
+from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ...figures.numerals import shown
@@ -32,8 +32,9 @@ _SIGNS = ("tension", "compression")
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
 
-    With the crank angle, the place along the bar from the crank pin and the side. None: a quantity without a finite
-    value, as the safety of what is not compressed. Raises `InputError` for a machine without material and pins.
+    With the crank angle, the place along the bar from the crank pin and the side; and of each eye the greatest. None: a
+    quantity without a finite value, as the safety of what is not compressed. Raises `InputError` for a machine without
+    material and pins.
     """
     _require(mechanism)
     design = row_of(linkage)
@@ -41,7 +42,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     for of in QUANTITIES.values():
         if of.group is Group.STRENGTH and not (of.lacks(mechanism, "undefined") or of.lacks(mechanism, "zero")):
             found[of.field] = plain(of.unit.factor * of.evaluate(mechanism, design).values[0])
-    return found | {"bars": {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}}
+    eyes = eye_stresses(mechanism, design)
+    bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
+    for name, bar in bars.items():
+        bar["eyes_MPa"] = {pin: plain(1e-6 * stress) for pin, stress in eyes[name].items()}
+    return found | {"bars": bars}
 
 
 def _require(mechanism: Mechanism) -> None:
@@ -76,13 +81,20 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         (by_field[key].title, value, by_field[key].unit.symbol, "") for key, value in numbers.items() if key in by_field
     ]
     text.show_lines(console, "Strength of crank and rod", lines)
-    heads = ("along it,\neyes apart", ">greatest,\nMPa", ">at crank\nangle, deg", ">from crank\npin, mm")
+    heads = ("where", ">greatest,\nMPa", ">at crank\nangle, deg", ">from crank\npin, mm")
     rows = text.table(*heads, ruled=True)
     for name, bar in numbers["bars"].items():
         for sign in _SIGNS:
             places = (bar[f"greatest_{sign}_{key}"] for key in ("MPa", "at_crank_angle_deg", "from_crank_pin_mm"))
-            rows.add_row(f"{name}, {sign}", *("undefined" if one is None else f"{one:.6g}" for one in places))
+            rows.add_row(f"along the {name}, {sign}", *(_told(one) for one in places))
+    for name, bar in numbers["bars"].items():
+        for pin, stress in bar["eyes_MPa"].items():
+            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", _told(stress))
     text.print_table(console, rows)
+
+
+def _told(number: float | None) -> str:
+    return "undefined" if number is None else f"{number:.6g}"
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
