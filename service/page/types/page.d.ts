@@ -61,6 +61,11 @@ declare namespace Page {
     /** Whether its values are written at the axes. */
     read?: boolean;
   }
+  /** Least and greatest value of a curve, and where in the cycle. */
+  interface Ends {
+    low: { angle: number; value: number };
+    high: { angle: number; value: number };
+  }
   /** A design as its view shows it. */
   interface Machine {
     number?: number;
@@ -73,6 +78,8 @@ declare namespace Page {
     centres: Point;
     /** Of the crank in a cycle; 0 of a swing forth and back. */
     turns: number;
+    /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points. */
+    exact?: Record<string, Ends>;
     /** Of the cycle; null where it has no speed. */
     seconds?: number | null;
   }

@@ -172,6 +172,36 @@ def test_every_chart_says_its_least_and_greatest_value(opened: Opened) -> None:
     assert all("least" in label and "greatest" in label and "°" in label for label in labels)
 
 
+def test_least_and_greatest_values_in_the_charts_are_those_of_the_extremes(
+    opened: Opened, solved: Solved, service: str
+) -> None:
+    """Found between the points of the curves too, to the digits shown; of a change they are about those of points."""
+    for design in (3, 6):
+        page = opened(design)
+        found = httpx.get(f"{service}{solved.path}/designs/{design}/analysis", params={"show": "extremes"}).json()
+        expect(page.locator(".curves .peak text").first).not_to_contain_text("≈", timeout=20_000)
+        told = page.eval_on_selector_all(
+            ".curves figure",
+            "nodes => nodes.map(n => [n.dataset.key, [...n.querySelectorAll('.peak text')].map(t => t.textContent)])",
+        )
+        compared = 0
+        for key, texts in told:
+            name, _, suffix = key.rpartition("_")
+            if key.endswith("_m_s"):
+                name, suffix = key.removesuffix("_m_s"), "m_s"
+            curve = found["analysis"]["extremes"]["curves"].get(name)
+            if curve is None or not texts:
+                continue
+            exact = [curve[f"{end}_{suffix}"] for end in ("least", "greatest")]
+            shown = [float(text.replace("\u2212", "-").replace(",", "").replace("\u202f", "")) for text in texts]
+            size = max(map(abs, exact))
+            assert shown == pytest.approx(exact, rel=6e-4, abs=1e-6 * size), key
+            compared += 1
+        assert compared >= 3
+        page.get_by_role("slider", name="Crank, slider").press("ArrowRight")
+        expect(page.locator(".curves .peak text").first).to_contain_text("≈")
+
+
 def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
     page = opened()
     arrows = page.locator(".mechanism .force")

@@ -58,10 +58,13 @@ export function line(one, { x, y, across }) {
   return svg("path", { class: "curve", "data-series": series, d: path });
 }
 
-/** @param {Drawn} one @param {Pen} pen */
+/**
+ * Return the marks of least and greatest value of a curve. Those of its points alone are said to be about that.
+ * @param {Drawn} one @param {Pen} pen
+ */
 export function peaks(one, { x, y, across }) {
-  const { values, series } = one;
-  const found = extremes(values);
+  const { values, ends, series } = one;
+  const found = ends ?? extremes(values);
   if (!found || found.low.value === found.high.value) return null;
   return /** @type {const} */ (["low", "high"]).map((end) => {
     const { angle, value } = found[end];
@@ -70,7 +73,7 @@ export function peaks(one, { x, y, across }) {
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
     return svg("g", { class: "peak" },
       svg("circle", { cx: at, cy: y.at(value), r: 2.5, "data-series": series }),
-      svg("text", { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor }, text(value, "", 4)));
+      svg("text", { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor }, `${ends ? "" : "≈ "}${text(value, "", 4)}`));
   });
 }
 
@@ -80,11 +83,11 @@ export function peaks(one, { x, y, across }) {
  */
 export function summary(words, unit, series, key, across) {
   const each = series.map((one) => {
-    const { name, curves } = one;
-    const found = extremes(curves[key]);
+    const { name, curves, exact } = one;
+    const found = exact?.[key] ?? extremes(curves[key]);
     if (!found) return `${name}: not defined`;
     /** @param {{ value: number, angle: number }} given */
-    const at = ({ value, angle }) => `${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
+    const at = ({ value, angle }) => `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
   });
   return `${words} over the ${across.title}. ${each.join(". ")}.`;

@@ -11,9 +11,9 @@ import { range, scale } from "./scale.js";
  * @import { Across } from "./across.js"
  *
  * What a chart shows of a design: its curves under a name; series: which colour it has.
- * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "centres" | "turns">} Shown
+ * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "turns">} Shown
  * @typedef {{ key: string } & Page.Heading} Panel
- * @typedef {Shown & { values: (number | null)[] }} Drawn
+ * @typedef {Shown & { values: (number | null)[], ends: Page.Ends | null }} Drawn as it is shown: in the reader's units
  */
 
 const HEIGHTS = { large: 250, small: 140 };
@@ -199,7 +199,7 @@ function chart(panel, turned, resize) {
     draw({ key, title: words, unit }, all, over) {
       const width = Math.max(80, Math.round(plot.clientWidth));
       across = over;
-      series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)) }));
+      series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)), ends: endsOf(one.exact?.[key], unit) }));
       title.textContent = `${words} (${unitOf(unit)})`;
       const { low, high } = range(series.flatMap(({ values }) => values), 0.14);
       const span = across.span(series);
@@ -223,4 +223,11 @@ function chart(panel, turned, resize) {
       if (read) readout.textContent = values.map((value) => (value === null ? "–" : text(value, "", 4))).join("  ·  ");
     },
   };
+}
+
+/** Return exact ends of a curve in the reader's units. @param {Page.Ends | undefined} exact @param {string} unit @returns {Page.Ends | null} */
+function endsOf(exact, unit) {
+  if (!exact) return null;
+  const { low, high } = exact;
+  return { low: { ...low, value: inShown(low.value, unit) }, high: { ...high, value: inShown(high.value, unit) } };
 }

@@ -1,5 +1,6 @@
 /** Least and greatest value of every curve of a design over the turn, and how its strokes differ. */
 
+import { innerPosition } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";
 import { text, unitOf, valueOf } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
@@ -24,6 +25,32 @@ export function extremes(place, found, { signal }) {
     h("p", { class: "quiet hint" }, "Found between the crank angles of the curves above as well. Difference and ratio are those of the outward stroke against the inward one."));
   draw();
   window.addEventListener("units", draw, { signal });
+}
+
+/**
+ * Return the extremes of the curves of a design by their columns, at places in the cycle; `way_mm` is the position from the inner dead
+ * centre.
+ * @param {Api.Extremes} found @param {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "turns">} design
+ * @returns {Record<string, Page.Ends>}
+ */
+export function endsOf(found, { curves: sampled, curveColumns, centres, turns }) {
+  /** @type {Record<string, Page.Ends>} */
+  const ends = {};
+  for (const [name, curve] of Object.entries(found.curves)) {
+    const { unit } = valueOf(curve, "least");
+    const column = curveColumns.find(({ key }) => key.startsWith(`${name}_`) && valueOf({ [key]: 0 }, name).value === 0);
+    const [low, high] = ENDS.map((end) => ({ value: valueOf(curve, end).value, angle: valueOf(curve, `${end}_at_crank_angle`).value }));
+    if (!column || column.unit !== unit || low.value === null || low.angle === null || high.value === null || high.angle === null) continue;
+    ends[column.key] = { low: { value: low.value, angle: low.angle / turns }, high: { value: high.value, angle: high.angle / turns } };
+  }
+  const { slider_position_mm: position } = ends;
+  const inner = innerPosition(sampled, centres);
+  if (position && inner !== null) {
+    const start = inner - position.low.value < position.high.value - inner ? position.low.value : position.high.value;
+    const [low, high] = [position.low, position.high].map(({ value, angle }) => ({ value: value - start, angle }));
+    ends.way_mm = { low, high };
+  }
+  return ends;
 }
 
 /** @param {Api.Extremes} found */

@@ -1,6 +1,6 @@
 /** Slow topics: extremes, sensitivity and tolerances of a design, computed when the reader comes to it. */
 
-import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
+import { isAbort, sentenceOf, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { beforePrinting } from "../lib/printing.js";
 import { readySystem } from "../lib/numbers.js";
@@ -25,9 +25,10 @@ export const DRAWN = TOPICS.map(({ name }) => name);
 /**
  * Put the topics into `place`; each shows once it comes near, and says so where the design has none.
  * @param {HTMLElement} place
- * @param {{ job: string, number: number, objectives: Api.Objective[], requirements: Api.Requirements, signal: AbortSignal }} given
+ * @param {{ analysis: (name: string) => Promise<Record<string, unknown>>, objectives: Api.Objective[], requirements: Api.Requirements, signal: AbortSignal }} given
+ * analysis(name): what the API gives for a topic.
  */
-export function topics(place, { job, number, objectives, requirements, signal }) {
+export function topics(place, { analysis, objectives, requirements, signal }) {
   const sections = TOPICS.map(({ name, title, show }) => {
     const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     const section = h("section", { class: name }, h("h2", {}, title), body);
@@ -40,8 +41,8 @@ export function topics(place, { job, number, objectives, requirements, signal })
     const ask = async () => {
       watcher.disconnect();
       try {
-        const [{ analysis }] = await Promise.all([get(`jobs/${job}/designs/${number}/analysis`, { show: name }, signal), readySystem()]);
-        show(body, analysis[name], { objectives, signal });
+        const [found] = await Promise.all([analysis(name), readySystem()]);
+        show(body, found[name], { objectives, signal });
       } catch (error) {
         if (isAbort(error)) return;
         fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}.`));

@@ -1,6 +1,7 @@
 /** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
 
 import { analyses } from "../design/analyses.js";
+import { endsOf } from "../design/extremes.js";
 import { besideOf, cycleOf, lengthsOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
@@ -72,12 +73,14 @@ export async function show(place, { parts, query, signal }) {
   let kept = startOf(query); // of the changed design
   const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept });
   const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
+  /** @type {Page.Machine[]} */
+  let series = []; // of the curves
   const draw = () => {
     const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
     machines.show(moving);
     machines.fade(false);
-    const series = asked ? [asked, main, ...others] : moving;
+    series = asked ? [asked, main, ...others] : moving;
     charts.show(series);
     legend(places.curves, series);
     return () => {
@@ -107,8 +110,16 @@ export async function show(place, { parts, query, signal }) {
   drawAll();
   tradeOffs(places["trade-offs"], shared);
   wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(placeOf(main, at, angle.angle), true), signal });
-  if (turns) topics(places.topics, shared);
-  else swinging(places.topics, shared);
+  /** @type {Record<string, Promise<Record<string, unknown>>>} */
+  const asked = {};
+  const analysis = (/** @type {string} */ name) => (asked[name] ??= get(`${path}/analysis`, { show: name }, signal).then((found) => found.analysis));
+  if (turns) {
+    topics(places.topics, { ...shared, analysis });
+    analysis("extremes").then(({ extremes }) => {
+      main.exact = endsOf(/** @type {Api.Extremes} */ (extremes), main);
+      charts.show(series);
+    }).catch(() => {}); // the topic says so
+  } else swinging(places.topics, shared);
   window.addEventListener("units", () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()), { signal });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
