@@ -24,6 +24,7 @@ from ..machine.derived import derived
 from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.compressor import Compressor
 from ..machine.loads.cylinder import Cylinder
+from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.members import cylinder_count
 from ..machine.numbers import numbers_of
@@ -134,6 +135,10 @@ def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCyc
             gained, spent, share = low * stroke, high * stroke, 1.0 + 0.0 * stroke
         else:
             gained, spent, share = _strokes(stroke, h, low, high, compression, expansion)
+        if load.enters is Enters.BURNING_CYLINDER:
+            burnt = blocks[:, q + 7]
+            widens = np.log((h + stroke) / (h + burnt))
+            gained = high * (burnt + (h + burnt) * widens * _mean_factor((expansion - 1.0) * widens))
         swept, clearance, work = swept + area * stroke, clearance + area * h, work + area * (gained - spent)
         cycles = cycles + area * (gained - spent) * (0.5 if four and not four[k] else 1.0)
         if isinstance(load, Compressor):

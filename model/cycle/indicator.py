@@ -15,8 +15,9 @@ from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.loads.cylinder import Cylinder
+from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import half_at
+from ..machine.two_turns import half_at, in_cycle
 
 _BEFORE = 5e-10  # rad, that a crank angle is taken earlier: less than what figures mark jumps by
 
@@ -57,19 +58,36 @@ def _pressure(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
 def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:
     """Return the crank angles, rad in [0, 2 pi), at which expansion and compression end; None for no such event."""
     linkage = single(mechanism, linkage)
-    stroke, sign, top = _top(linkage, load)
-    if load.compression_exponent == 0.0:
+    stroke = _top(linkage, load)[0]
+    if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
         return None, None
     h, ratio = load.clearance * stroke + load.clearance_volume / load.area, load.high / load.low
     events = expanded_at(h, ratio, load.expansion_exponent), compressed_at(stroke, h, ratio, load.compression_exponent)
-    found: list[float | None] = []
-    for z, away in zip(events, (True, False), strict=True):
-        outward = away == (sign > 0.0)
-        second = outward == (mechanism.direction < 0.0)
-        x = linkage.sign * (top + sign * float(z))
-        angle = crank_angle_at(x, float(linkage.crank), float(linkage.rod), float(linkage.offset), second)
-        found.append(angle % (2.0 * math.pi) if 0.0 < z < stroke else None)
-    return found[0], found[1]
+    ends = [
+        _angle_at(mechanism, linkage, load, float(z), away=away) for z, away in zip(events, (True, False), strict=True)
+    ]
+    return ends[0], ends[1]
+
+
+def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> float | None:
+    """Return the crank angle, rad in [0, 4 pi), at which burning at peak pressure ends; None without such a phase."""
+    if not isinstance(load, LimitedPressure):
+        return None
+    linkage = single(mechanism, linkage)
+    angle = _angle_at(mechanism, linkage, load, load.burning_share * _top(linkage, load)[0], away=True)
+    if angle is None or load.cycle_turns == 1:
+        return angle
+    return float(in_cycle(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
+
+
+def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:
+    """Return the crank angle, rad in [0, 2 pi), with the piston z from its top on one of its ways; None beyond both."""
+    stroke, sign, top = _top(linkage, load)
+    outward = away == (sign > 0.0)
+    second = outward == (mechanism.direction < 0.0)
+    x = linkage.sign * (top + sign * z)
+    angle = crank_angle_at(x, float(linkage.crank), float(linkage.rod), float(linkage.offset), second)
+    return angle % (2.0 * math.pi) if 0.0 < z < stroke else None
 
 
 def _top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:

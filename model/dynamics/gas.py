@@ -9,6 +9,9 @@ area), p_l and p_h the low and the high pressure, the gas follows p V^n = const 
 
 The pressure is continuous and turns sharply at z_e and z_c, the valve events. A liquid, whose exponents are given as
 zero, has z_e = 0 and z_c = S: the pressure jumps at the dead centres.
+
+Gas that burns at limited pressure keeps p_h from the top to z_b, where burning ends, and expands from there:
+p_h ((h + z_b) / (h + z))^n_e. It has no valve events.
 """
 
 from __future__ import annotations
@@ -17,6 +20,9 @@ from typing import Any
 
 from ..kernel.arithmetic import analytic, inverse, power
 from ..machine.design import AREA, DESIGN, LOAD_ROWS
+from ..machine.loads.load import Enters
+
+_BURNING_CYLINDER = int(Enters.BURNING_CYLINDER)
 
 _NEAR = 1e-12
 """Share of the stroke: nearer to a valve event than this is beyond it."""
@@ -35,9 +41,11 @@ def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
 
 
 @analytic
-def events_of(d: Any, block: Any, j: int, k: int) -> Any:
-    """Return z_e and z_c of the cylinder that is load k of a derived block."""
+def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
+    """Return z_e and z_c of the cylinder that is load k of a derived block; where gas burns, z_b and none."""
     q = DESIGN + LOAD_ROWS * k + AREA
+    if kind == _BURNING_CYLINDER:
+        return block[q + 7, j], -block[q + 1, j]  # at z = -h, which the piston never comes to
     stroke, h, ratio = d.outer - d.inner, block[q + 1, j], block[q + 3, j] * inverse(block[q + 2, j])
     if block[q + 4, j].real == 0.0:
         return 0.0 * h, stroke + 0.0 * h
@@ -45,10 +53,10 @@ def events_of(d: Any, block: Any, j: int, k: int) -> Any:
 
 
 @analytic
-def piece_at(d: Any, block: Any, j: int, k: int, x: float) -> int:
-    """Return 1 beyond z_e, plus 2 beyond z_c, for a slider distance x from the crank pivot."""
+def piece_at(d: Any, block: Any, j: int, k: int, kind: int, x: float) -> int:
+    """Return 1 beyond z_e or z_b, plus 2 beyond z_c, for a slider distance x from the crank pivot."""
     q = DESIGN + LOAD_ROWS * k
-    expanded, compressed = events_of(d, block, j, k)
+    expanded, compressed = events_of(d, block, j, k, kind)
     z, near = block[q, j] * (x - block[q + 1, j]), _NEAR * (d.outer - d.inner)
     return (1 if z >= expanded - near else 0) + (2 if z > compressed + near else 0)
 
@@ -68,5 +76,21 @@ def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: 
         return sign * area * (high * power(h * inverse(h + z), block[q + 7, j]) - back)
     if piece < 2:
         return sign * area * (high - back)
+    full = h + (d.outer - d.inner)
+    return sign * area * (low * power(full * inverse(h + z), block[q + 6, j]) - back)
+
+
+@analytic
+def burning_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
+    """Return the force of gas that burns at limited pressure, as `gas_force` does."""
+    q = DESIGN + LOAD_ROWS * k
+    position = m.x if d.branch.real > 0.0 else -m.x
+    sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])
+    area, h, low, high = block[q + 2, j], block[q + 3, j], block[q + 4, j], block[q + 5, j]
+    back = block[q + 8, j]
+    if outward == (sign.real > 0.0):  # away from the top
+        if piece == 0 or piece == 2:
+            return sign * area * (high - back)
+        return sign * area * (high * power((h + block[q + 9, j]) * inverse(h + z), block[q + 7, j]) - back)
     full = h + (d.outer - d.inner)
     return sign * area * (low * power(full * inverse(h + z), block[q + 6, j]) - back)

@@ -15,16 +15,17 @@ from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Integers, Row
 from ..kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ..kinematics.position import motion
-from ..machine.design import DESIGN, LOAD_ROWS, Design
+from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.load import Enters
 from ..machine.loads.registry import force_of
 from ..machine.raw import Loads
-from .gas import events_of, gas_force, piece_at
+from .gas import burning_force, events_of, gas_force, piece_at
 from .torque import smooth_load
 
-_ANGLE_TABLE, _CYLINDER, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER), int(Enters.FORMULA)
+_ANGLE_TABLE, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.FORMULA)
+_CYLINDER, _BURNING_CYLINDER = int(Enters.CYLINDER), int(Enters.BURNING_CYLINDER)
 _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
-_EXPANDED, _COMPRESSED, _TURNED = 6, 7, 8  # 5: `contact.CONTACT`
+_EXPANDED, _COMPRESSED, _TURNED, _BURNT = 6, 7, 8, 9  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
 """|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
@@ -91,10 +92,11 @@ def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: in
 
 
 @analytic
-def _cut_valves(d: Design, block: Any, j: int, k: int, margin: float, cuts: Cuts, n: int) -> int:
-    """Add the valve events of a cylinder to the first `n` cuts, each in its stroke; at rest in both."""
+def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float, cuts: Cuts, n: int) -> int:
+    """Add valve events or end of burning of a cylinder to the first `n` cuts, each in its stroke; at rest in both."""
     sign, origin = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
-    expanded, compressed = events_of(d, block, j, k)
+    expanded, compressed = events_of(d, block, j, k, kind)
+    first = _BURNT if kind == _BURNING_CYLINDER else _EXPANDED
     for event in range(2):
         x = origin + sign * (compressed if event else expanded)
         if d.inner + margin < x < d.outer - margin:
@@ -102,7 +104,7 @@ def _cut_valves(d: Design, block: Any, j: int, k: int, margin: float, cuts: Cuts
                 outward = second == (d.speed < 0.0)
                 if d.speed == 0.0 or outward == ((event == 0) == (sign > 0.0)):
                     angle = crank_angle_at(d.branch * x, d.r, d.l, d.e, second)
-                    n = add_cut(cuts, n, angle, _COMPRESSED if event else _EXPANDED, 0.0, k)
+                    n = add_cut(cuts, n, angle, _COMPRESSED if event else first, 0.0, k)
     return n
 
 
@@ -128,8 +130,8 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: C
     margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
-        if loads.kind[k] == _CYLINDER:
-            n = _cut_valves(d, block, j, k, margin, cuts, n)
+        if loads.kind[k] == _CYLINDER or loads.kind[k] == _BURNING_CYLINDER:
+            n = _cut_valves(d, block, j, k, loads.kind[k], margin, cuts, n)
             continue
         if loads.kind[k] == _ANGLE_TABLE:
             for i in range(first, last - 1):
@@ -165,9 +167,12 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
         return float(sign * inner_crank_angle(d.r, d.l, d.e).imag)
     if code == _FRACTION:
         target = (d.inner + cuts.number[i] * (d.outer - d.inner)).imag
+    elif code == _BURNT:
+        row = DESIGN + LOAD_ROWS * cuts.load[i]
+        target = (block[row + 1, j] + block[row, j] * block[row + AREA + 7, j]).imag
     elif code in (_EXPANDED, _COMPRESSED):
         row = DESIGN + LOAD_ROWS * cuts.load[i]
-        expanded, compressed = events_of(d, block, j, cuts.load[i])
+        expanded, compressed = events_of(d, block, j, cuts.load[i], _CYLINDER)
         target = (block[row + 1, j] + block[row, j] * (compressed if code == _COMPRESSED else expanded)).imag
     else:
         row = DESIGN + LOAD_ROWS * cuts.load[i]
@@ -192,8 +197,8 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
     """Fix the piece of every table and cylinder at a crank angle and a slider distance x from the pivot."""
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
-        if loads.kind[k] == _CYLINDER:
-            piece[k] = piece_at(d, block, j, k, x)
+        if loads.kind[k] == _CYLINDER or loads.kind[k] == _BURNING_CYLINDER:
+            piece[k] = piece_at(d, block, j, k, loads.kind[k], x)
         if first == last:
             continue
         if loads.kind[k] == _ANGLE_TABLE:
@@ -266,6 +271,8 @@ def load_on_slider(
         first, last = loads.start[k], loads.start[k + 1]
         if loads.kind[k] == _CYLINDER:
             force = force + gas_force(m, d, block, j, k, outward, piece[k])
+        elif loads.kind[k] == _BURNING_CYLINDER:
+            force = force + burning_force(m, d, block, j, k, outward, piece[k])
         if first == last:
             continue
         factor = loads.factor[k, 0] if outward else loads.factor[k, 1]

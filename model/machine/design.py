@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, inverse, magnitude, root
 from ..kinematics.geometry import inner_crank_angle, inner_dead_centre, outer_crank_angle, outer_dead_centre
+from .loads.engine import burning_share
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
 
@@ -19,7 +20,8 @@ _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
 _END = int(Raw.END)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
-_ANGLE_TABLE, _CYLINDER = int(Enters.ANGLE_TABLE), int(Enters.CYLINDER)
+_ANGLE_TABLE = int(Enters.ANGLE_TABLE)
+_CYLINDER, _BURNING_CYLINDER = int(Enters.CYLINDER), int(Enters.BURNING_CYLINDER)
 _CRANK_TORQUE, _FORMULA = int(Enters.CRANK_TORQUE), int(Enters.FORMULA)
 
 
@@ -73,10 +75,10 @@ class Design(NamedTuple):
 
 DESIGN = len(Design._fields)
 """Rows of a derived block before those of the loads."""
-LOAD_ROWS, AREA = 9, 2
+LOAD_ROWS, AREA = 10, 2
 """Rows of each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers of a formula; then
 of a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
-expansion, back pressure; of a torque on the crank the numbers of its slots."""
+expansion, back pressure, where burning ends, from the top; of a torque on the crank the numbers of its slots."""
 _OUTWARD = Design._fields.index("outward_force")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
@@ -234,13 +236,17 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
                 out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
             elif kind[k] == _VISCOUS:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
-            elif kind[k] == _CYLINDER:
+            elif kind[k] == _CYLINDER or kind[k] == _BURNING_CYLINDER:
                 bore, rod = raw[p + 2, j], raw[p + 3, j]
                 area = (math.pi / 4.0) * (bore * bore - rod * rod)
                 out[q + AREA, j] = area
                 out[q + AREA + 1, j] = raw[p + 4, j] * (out[22, j] - out[21, j]) + raw[p + 5, j] * inverse(area)
                 for i in range(5):
                     out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
+                if kind[k] == _BURNING_CYLINDER:
+                    clearance, low, high, exponent = raw[p + 4, j], raw[p + 6, j], raw[p + 7, j], raw[p + 8, j]
+                    share = burning_share(clearance, low, high, exponent, raw[p + 11, j], raw[p + 12, j])
+                    out[q + AREA + 7, j] = share * (out[22, j] - out[21, j])
             elif kind[k] == _CRANK_TORQUE:
                 for i in range(4):
                     out[q + AREA + i, j] = raw[p + 2 + i, j]

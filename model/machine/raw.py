@@ -37,7 +37,7 @@ Raw = IntEnum(
     "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
     start=0,
 )
-LOAD_SLOTS = 11
+LOAD_SLOTS = 13
 """Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and those of its own."""
 
 _DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "outer dead centre": 2}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -86,8 +87,23 @@ def require_possible(mechanism: Any) -> None:
                 "the sign of the speed says which way the crank turns, so a speed that varies keeps it and is not 0; "
                 f"got {item.lower:g} to {item.upper:g} rad/s; keep the range on one side of 0"
             )
+    for index, load in enumerate(mechanism.loads):
+        if load.every_corner:
+            _require_corners(load, f"loads.{index}.", varying)
     for ends in ([item.lower for item in varying], [item.upper for item in varying]):
         mechanism.at(ends)
+
+
+def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:
+    """Raise `InputError` unless a load is possible at every combination of the ends of its numbers that vary."""
+    own = [
+        [(path.removeprefix(prefix), factor * end) for path, factor in item.sets if path.startswith(prefix)]
+        for item in varying
+        for end in (item.lower, item.upper)
+    ]
+    pairs = [(own[i], own[i + 1]) for i in range(0, len(own), 2) if own[i]]
+    for corner in itertools.product(*pairs):
+        replace(load, **dict(itertools.chain(*corner)))
 
 
 def _member(part: Any, key: str, path: str) -> Any:

@@ -64,7 +64,7 @@ def require_loads(mechanism: Mechanism) -> None:
         if given is not None:
             raise InputError(f"mechanism.{key}: it is of a crank that turns through; got it with a swing; leave it out")
     for load in mechanism.loads:
-        if load.enters is Enters.CYLINDER:
+        if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
             raise InputError(
                 "the cycle of a cylinder runs between the dead centres of a full turn; got one with a swing; leave it "
                 "out, or give its pressures over the slider position"

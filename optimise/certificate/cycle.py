@@ -103,7 +103,7 @@ class Curve:
                     first, second = block[DESIGN + LOAD_ROWS * k : DESIGN + LOAD_ROWS * k + 2, 0]
                     velocity = m.x_1 * d.branch * d.speed
                     load = load + force_of(code, m.x * d.branch, velocity, way, first, second)
-                elif code == Enters.CYLINDER:
+                elif code in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
                     stroke = d.outer - d.inner
                     z = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
                     cylinder = cast(Cylinder, self.mechanism.loads[k])

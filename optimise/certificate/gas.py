@@ -8,6 +8,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.machine.loads.cylinder import Cylinder
+from ...model.machine.loads.engine import LimitedPressure
 from .enclosure import UNIT, Enclosure, between, chosen
 
 
@@ -45,6 +46,9 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         bent = np.minimum(first, event) if expanding else np.maximum(first, event)
         curved = first < event if expanding else last > event
         scale = load.high * c**n if expanding else load.low * (1.0 + c) ** n
+        if expanding and isinstance(load, LimitedPressure):
+            event = load.burning_share
+            bent, curved, scale = np.maximum(first, event), last > event, load.high * (c + event) ** n
         with np.errstate(divide="ignore"):
             bend = np.where(curved, scale * n * (n + 1.0) / (c + bent) ** (n + 2.0), 0.0)
         # Chords of the two pieces meet on the event; each curve hangs below its own by bend width^2 / 8 at most.
@@ -61,6 +65,8 @@ def _at(load: Cylinder, share: Any, clearance: Any, expanding: bool) -> Array:
     """Return the pressure at a share of the stroke, for a clearance ratio."""
     if load.compression_exponent == 0.0:
         return np.asarray((load.low if expanding else load.high) + 0.0 * share)
+    if expanding and isinstance(load, LimitedPressure):
+        return np.asarray(load.pressure(share, 1.0, expanding=True))
     with np.errstate(divide="ignore", invalid="ignore"):
         if expanding:
             return np.asarray(

@@ -1,14 +1,30 @@
-"""Ideal engine cycles of two and of four strokes."""
+"""Ideal engine cycles of two and of four strokes, burning at constant volume or at limited pressure."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ...checks import require_numbers
 from ...errors import InputError
+from ...kernel.arithmetic import analytic, inverse, power
 from .cylinder import BACK_PRESSURE, BORE, EXPONENTS, HEAD, PISTON_ROD, Cylinder
-from .load import CYCLE, CycleAngle, Entry, Load, Passage, Table
+from .load import CYCLE, CycleAngle, Enters, Entry, Load, Passage, Table
+
+_TYPED = 5e-6  # of a pressure that is written with six digits
+
+
+@analytic
+def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
+    """Return the share of the stroke over which gas burns at its peak pressure, high.
+
+    Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is taken at constant volume, from the pressure p_2 at
+    the end of compression. The rest widens the gas by its (kappa - 1) / (kappa p_h).
+    """
+    compressed = low * power((1.0 + clearance) * inverse(clearance), exponent)
+    return (heat * (kappa - 1.0) - (high - compressed) * clearance) * inverse(kappa * high)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,19 +41,33 @@ class Engine(Cylinder):
                 "an engine has its clearance as a share of the swept volume; got "
                 f"{self.clearance:g} and {1e6 * self.clearance_volume:g} cm^3; give its compression ratio"
             )
-        volumes = 1.0 + 1.0 / self.clearance
-        compressed = self.low * volumes**self.compression_exponent
-        if not self.high > compressed:
-            raise InputError(
-                f"the peak pressure must exceed that of compression alone, {1e-5 * compressed:.6g} bar; got "
-                f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
-            )
-        if not self.high / volumes**self.expansion_exponent >= self.low:
+        self._require_burning()
+        if not self.final_pressure >= self.low:
             raise InputError(
                 f"the gas must not expand below its intake pressure, {1e-5 * self.low:.6g} bar; got "
-                f"{1e-5 * self.high / volumes**self.expansion_exponent:.6g} bar at the end of the stroke; raise the "
-                "peak pressure, or lower the exponent of expansion"
+                f"{1e-5 * self.final_pressure:.6g} bar at the end of the stroke; raise the "
+                f"{self._raised}, or lower the exponent of expansion"
             )
+
+    every_corner: ClassVar = True
+    _raised: ClassVar = "peak pressure"
+
+    def _require_burning(self) -> None:
+        if not self.high > self.compressed:
+            raise InputError(
+                f"the peak pressure must exceed that of compression alone, {1e-5 * self.compressed:.6g} bar; got "
+                f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
+            )
+
+    @property
+    def compressed(self) -> float:
+        """Pressure at the end of compression, Pa."""
+        return float(self.low * (1.0 + 1.0 / self.clearance) ** self.compression_exponent)
+
+    @property
+    def final_pressure(self) -> float:
+        """Pressure at the end of expansion, Pa."""
+        return float(self.high / (1.0 + 1.0 / self.clearance) ** self.expansion_exponent)
 
     @property
     def text(self) -> str:
@@ -48,6 +78,76 @@ class Engine(Cylinder):
     def _gas_text(self) -> str:
         exponents = f"exponents {self.compression_exponent:.6g} and {self.expansion_exponent:.6g}"
         return f"from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar, {exponents}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LimitedPressure(Engine):
+    """An engine that burns at its top at once to `high` pressure, and from there at that pressure: the dual cycle.
+
+    heat: set free per swept volume, J/m^3. heat_capacity_ratio: of the burning gas. Without a rise of pressure at the
+    top it is the Diesel cycle.
+    """
+
+    heat: float
+    heat_capacity_ratio: float = 1.4
+
+    enters: ClassVar = Enters.BURNING_CYLINDER
+    slots: ClassVar = {**Cylinder.slots, "heat": (11, "Pa"), "heat_capacity_ratio": (12, "")}
+    tables: ClassVar = ()
+    _raised: ClassVar = "heat"
+
+    def _require_burning(self) -> None:
+        require_numbers(self, "heat", what="the {}", above=0.0, unit="J/m^3")
+        require_numbers(self, "heat_capacity_ratio", what="the heat capacity ratio", above=1.0)
+        if not self.high >= self.compressed:
+            raise InputError(
+                f"the peak pressure must not be below that of compression alone, {1e-5 * self.compressed:.6g} bar; got "
+                f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
+            )
+        k, share = self.heat_capacity_ratio, self.burning_share
+        at_once = (self.high - self.compressed) * self.clearance / (k - 1.0)
+        if share < 0.0:
+            reached = self.compressed + self.heat * (k - 1.0) / self.clearance
+            raise InputError(
+                f"the heat must reach the peak pressure of {1e-5 * self.high:.6g} bar, which takes "
+                f"{1e-6 * at_once:.6g} MJ/m^3; got {1e-6 * self.heat:.6g} MJ/m^3, which reaches {1e-5 * reached:.6g} "
+                "bar; raise the heat, lower the peak pressure, or leave it out"
+            )
+        if share > 1.0:
+            most = at_once + self.high * k / (k - 1.0)
+            raise InputError(
+                f"burning must end within the stroke, with at most {1e-6 * most:.6g} MJ/m^3 of heat; got "
+                f"{1e-6 * self.heat:.6g} MJ/m^3; lower the heat, or raise the peak pressure"
+            )
+
+    @property
+    def burning_share(self) -> float:
+        """Share of the stroke over which it burns at peak pressure."""
+        numbers = self.clearance, self.low, self.high, self.compression_exponent, self.heat, self.heat_capacity_ratio
+        return float(burning_share(*numbers))
+
+    @property
+    def final_pressure(self) -> float:
+        """Pressure at the end of expansion, Pa."""
+        burnt = self.clearance + self.burning_share
+        return float(self.high * (burnt / (1.0 + self.clearance)) ** self.expansion_exponent)
+
+    def numbers(self) -> tuple[float, ...]:
+        """Return the numbers of a cylinder, heat and heat capacity ratio."""
+        return (*super().numbers(), self.heat, self.heat_capacity_ratio)
+
+    def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
+        """Return the pressure, Pa, with the piston z from its top, m; broadcasts."""
+        h = self.clearance * stroke
+        if not expanding:
+            return self.low * ((h + stroke) / (h + z)) ** self.compression_exponent
+        burnt = h + self.burning_share * stroke
+        return self.high * (burnt / np.fmax(burnt, h + z)) ** self.expansion_exponent
+
+    @property
+    def _gas_text(self) -> str:
+        where = f"at peak pressure over {100.0 * self.burning_share:.4g} % of the stroke"
+        return f"{super()._gas_text}, heat {1e-6 * self.heat:.6g} MJ/m^3, {where}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +162,8 @@ class FourStroke(Engine):
 
     slots: ClassVar = {**Cylinder.slots, "exhaust": Cylinder.slots["high"]}
     tables: ClassVar = ()
+    working: ClassVar[type[Engine]] = Engine
+    """The cycle of two strokes of turn 1."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -79,16 +181,16 @@ class FourStroke(Engine):
 
     def on_turn(self, turn: int) -> Load:
         """Return the two-stroke cycle of turn 1, or the change of gas of turn 2, each stroke at constant pressure."""
-        own = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
         if turn == 1:
-            return Engine(**own)
+            return self.working(**{field.name: getattr(self, field.name) for field in fields(self.working)})
+        own = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
         return Cylinder(**own | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
         """Return its name; the exhaust pressure is the high one of turn 2, which has neither peak nor exponents."""
         if turn == 1:
             return None if name == "exhaust" else name
-        if name in ("high", "compression_exponent", "expansion_exponent"):
+        if name in ("high", "compression_exponent", "expansion_exponent", "heat", "heat_capacity_ratio"):
             return None
         return "high" if name == "exhaust" else name
 
@@ -100,6 +202,14 @@ class FourStroke(Engine):
     def text(self) -> str:
         """Pressures, exponents and size."""
         return f"four-stroke engine cycle {self._gas_text}, exhaust at {1e-5 * self.exhaust:.6g} bar, {self.size_text}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FourStrokeLimitedPressure(FourStroke, LimitedPressure):
+    """A cylinder of four strokes that burns as `LimitedPressure`."""
+
+    slots: ClassVar = {**FourStroke.slots, **LimitedPressure.slots}
+    working: ClassVar = LimitedPressure
 
 
 def _built(
@@ -117,11 +227,8 @@ def _built(
 ) -> Engine:
     if not compression_ratio > 1.0:
         raise InputError(f"the compression ratio must exceed 1; got {compression_ratio:g}; 6 to 20 are usual")
-    if (peak_pressure > 0.0) == (heat > 0.0):
-        raise InputError(
-            "an engine cycle has either a peak pressure or heat; got "
-            f"{'both' if heat > 0.0 else 'neither'}; give one of peak_pressure and heat"
-        )
+    if not (peak_pressure > 0.0 or heat > 0.0):
+        raise InputError("an engine cycle has a peak pressure, heat or both; got neither; give peak_pressure or heat")
     compressed = intake * compression_ratio**compression_exponent
     # An ideal gas at constant volume takes the heat (p_h - p_end) V_c / (k - 1); V_c is V_s / (ratio - 1).
     added = heat * (heat_capacity_ratio - 1.0) * (compression_ratio - 1.0)
@@ -133,14 +240,19 @@ def _built(
         "expansion_exponent": expansion_exponent,
         "back_pressure": back_pressure,
     }
+    limited = peak_pressure > 0.0 and heat > 0.0
+    if limited:
+        if abs(peak_pressure - compressed) < _TYPED * compressed:
+            size["high"] = compressed
+        size |= {"heat": heat, "heat_capacity_ratio": heat_capacity_ratio}
     if cycle == "720 deg":
-        return FourStroke(exhaust=exhaust or back_pressure, **size)
+        return (FourStrokeLimitedPressure if limited else FourStroke)(exhaust=exhaust or back_pressure, **size)
     if exhaust:
         raise InputError(
             "an exhaust pressure is of a cycle of four strokes; got one with a cycle of 360 deg; add "
             'cycle = "720 deg", or leave the exhaust pressure out'
         )
-    return Engine(**size)
+    return (LimitedPressure if limited else Engine)(**size)
 
 
 Engine.tables = (
@@ -148,7 +260,8 @@ Engine.tables = (
         "compression_ratio",
         "EngineLoad",
         "ideal engine cycle",
-        "The ideal cycle of an engine of two or four strokes, burning at constant volume; pressures are absolute.",
+        "The ideal cycle of an engine of two or four strokes; pressures are absolute. It burns at constant volume, "
+        "with both peak_pressure and heat at limited pressure.",
         (
             BORE,
             Entry("compression_ratio", "PositiveRatio", "greatest volume over the least one", 8.0),
@@ -156,14 +269,14 @@ Engine.tables = (
             Entry(
                 "peak_pressure",
                 "LeastPressure",
-                "absolute pressure after burning, at the start of expansion; this or heat",
+                "greatest absolute pressure, of burning; with heat, the rest burns at this pressure",
                 "40 bar",
                 default=0.0,
             ),
             Entry(
                 "heat",
                 "EnergyDensity",
-                "heat set free at the top per swept volume, J/m^3; this or peak_pressure",
+                "heat set free per swept volume, J/m^3; at the top, or up to peak_pressure and then at it",
                 "1.2 MJ/m^3",
                 default=0.0,
             ),

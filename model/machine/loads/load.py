@@ -39,8 +39,9 @@ class Enters(IntEnum):
     POSITION_TABLE = 3
     ANGLE_TABLE = 4
     CYLINDER = 5
-    CRANK_TORQUE = 6
-    FORMULA = 7
+    BURNING_CYLINDER = 6
+    CRANK_TORQUE = 7
+    FORMULA = 8
 
 
 class Passage(NamedTuple):
@@ -99,19 +100,21 @@ class Load:
     enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
     while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
     `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
-    proportional to. on_crank: whether it is a torque on the crank. slots: place in the numbers of a load and SI unit of
-    each field that designs can vary. tables: of job files.
+    proportional to. on_crank: whether it is a torque on the crank. every_corner: whether its numbers that vary must
+    be possible at every combination of their ends, not only all at the lower and all at the upper. slots: place in the
+    numbers of a load and SI unit of each field that designs can vary. tables: of job files.
     """
 
     enters: ClassVar[Enters]
     formula: ClassVar[Formula | None] = None
     speed_power: ClassVar[Literal[0, 1, 2]] = 0
     on_crank: ClassVar[bool] = False
+    every_corner: ClassVar[bool] = False
     slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
     tables: ClassVar[tuple[Table, ...]]
 
     def numbers(self) -> tuple[float, ...]:
-        """Return factors in the outward and the inward stroke, and two numbers of the load's own; a cylinder's nine."""
+        """Return factors in the outward and the inward stroke, and two of the load's own; more of a cylinder."""
         raise NotImplementedError
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:

@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Console
 
 from ....model.cycle.gas_cycle import cylinders
-from ....model.cycle.indicator import indicator, valve_events
+from ....model.cycle.indicator import burning_ends, indicator, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
@@ -32,15 +32,16 @@ def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
-    """Return volumes, pressures, valve events and work of each cylinder, in the order of the loads.
+    """Return volumes, pressures and events of each cylinder, in the order of the loads.
 
-    The end of expansion or compression is None where no valve event comes. Raises `InputError` without a cylinder.
+    The end of expansion, compression or burning at peak pressure is None where no such event comes. Raises `InputError`
+    without a cylinder.
     """
     found = []
     for place, load in _of(mechanism):
         curve = indicator(mechanism, linkage, load, turn(np.array(linkage.dead_centre_angles)))
-        ends = valve_events(mechanism, linkage, load)
-        expansion, compression = (None if angle is None else math.degrees(angle) for angle in ends)
+        ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
+        expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
         least, most = float(curve.volume.min()), float(curve.volume.max())
         found.append(
             {
@@ -51,6 +52,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
                 "greatest_pressure_bar": _BAR * load.high,
                 "expansion_ends_deg": expansion,
                 "compression_ends_deg": compression,
+                "burning_ends_deg": burning,
             }
         )
     return {"cylinders": found}
@@ -65,10 +67,11 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
             ("least pressure", one["least_pressure_bar"], "bar", ""),
             ("greatest pressure", one["greatest_pressure_bar"], "bar", ""),
         ]
-        for name, words in (("expansion", "expansion ends"), ("compression", "compression ends")):
+        valve, falls = "a valve opens", "the pressure falls from its peak"
+        for name, note in (("expansion", valve), ("compression", valve), ("burning", falls)):
             angle = one[f"{name}_ends_deg"]
             if angle is not None:
-                lines.append((words, angle, "deg", "a valve opens"))
+                lines.append((f"{name} ends", angle, "deg", note))
         text.show_lines(console, f"Indicator diagram of load {one['load']} (pressures are absolute)", lines)
 
 
@@ -76,7 +79,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return pressure over volume and over the crank angle, a line for each cylinder."""
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_of(mechanism)):
-        events = [angle for angle in valve_events(mechanism, linkage, load) if angle is not None]
+        ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
+        events = [angle for angle in ends if angle is not None]
         theta = turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)
         # Closed: the diagram ends where it began.

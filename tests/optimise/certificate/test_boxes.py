@@ -13,6 +13,7 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
+from slidercrank.model.machine.loads.engine import LimitedPressure
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
@@ -47,6 +48,15 @@ LOADED = replace(
         AngleTable(angles=(0.3, 2.0, 4.0), forces=(0.0, 200.0, -100.0), during="inward stroke"),
     ),
 )
+BURNING = LimitedPressure(
+    bore=0.08,
+    low=1e5,
+    high=6e6,
+    clearance=0.08,
+    compression_exponent=1.3,
+    expansion_exponent=1.25,
+    heat=2.5e6,
+)
 AIR = Compressor(bore=0.1, low=1e5, high=5e5, clearance=0.08, compression_exponent=1.3, expansion_exponent=1.2)
 MACHINES: dict[str, Mechanism] = {
     "bars": MACHINE,
@@ -59,6 +69,7 @@ MACHINES: dict[str, Mechanism] = {
             replace(AIR, head="inner dead centre", piston_rod=0.03, clearance=0.0, clearance_volume=4e-5),
         ),
     ),
+    "engine": replace(MACHINE, loads=(BURNING,)),
     "crossed, clockwise": replace(LOADED, branch="crossed", speed=-20.0),
     "window": replace(
         MACHINE,
