@@ -6,6 +6,7 @@ import { byId, fill, first, focused, h } from "./lib/dom.js";
 import { watchDownloads } from "./lib/download.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
+import { readyKinds } from "./lib/units.js";
 import { keepPlaces, lookForPlace } from "./lib/place.js";
 
 /**
@@ -88,6 +89,6 @@ window.addEventListener("hashchange", showView);
 watchDownloads();
 keepPlaces();
 showPreferences();
-const units = readySystem().catch(() => {}); // what is wrong with the service, the view says
+const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // what is wrong with the service, the view says
 if (system() === "inch") units.then(showView);
 else showView();

@@ -259,6 +259,48 @@ def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened:
     expect(page.locator(".mechanism.faded")).to_have_count(0)
 
 
+def test_a_length_of_what_if_is_typed_as_in_any_other_field(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    release(page)
+    crank = page.get_by_label("Crank", exact=True)
+    at = float(solved.result.designs[2]["crank_mm"] or 0.0)
+    kept: set[str] = set()
+    for typed in (f"{0.99 * at:.4f}".replace(".", ","), f"2*{0.99 * at / 2:.4f}", f"{0.99 * at / 25.4:.8f} in"):
+        crank.fill(typed)
+        crank.press("Tab")
+        expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+        kept.add(crank.input_value()[:6])
+        expect(page.locator(".what-if").get_by_text(f'"{typed}" = ')).to_be_visible()
+        page.get_by_role("button", name="Reset").click()
+    assert kept == {f"{0.99 * at:.6g}"[:6]}
+
+
+def test_what_is_no_length_of_what_if_has_no_answer_and_says_why(opened: Opened, solved: Solved) -> None:
+    page = opened()
+    release(page)
+    crank, rod = (page.get_by_label(name, exact=True) for name in ("Crank", "Rod"))
+    verdict = page.locator(".verdict")
+    table = page.get_by_role("table", name="Objectives before and after the change")
+    at = float(solved.result.designs[2]["crank_mm"] or 0.0)
+    for typed, sentence in (
+        ("0", "above 0; got 0"),
+        ("-5", "above 0; got -5"),
+        ("", "above 0."),
+        ("wide", "no length"),
+    ):
+        crank.fill(f"{0.99 * at:.4f}")
+        expect(table).to_be_visible()
+        crank.fill(typed)
+        expect(verdict.get_by_role("alert")).to_contain_text(sentence)
+        expect(table).to_have_count(0)
+        expect(crank).to_have_attribute("aria-invalid", "true")
+    rod.fill(str(1.01 * float(rod.input_value())))
+    expect(verdict.get_by_role("alert")).to_contain_text("no length")  # the other field is still wrong
+    page.get_by_role("button", name="Reset").click()
+    expect(crank).to_have_value(f"{at:.6g}")
+    expect(verdict.get_by_role("alert")).to_have_count(0)
+
+
 def test_a_link_shows_the_change_to_somebody_else(opened: Opened, solved: Solved) -> None:
     row = solved.result.designs[2]
     query = f"?crank_mm={float(row['crank_mm'] or 0) * 0.98}&rod_mm={row['rod_mm']}&offset_mm={row['offset_mm']}"

@@ -125,11 +125,24 @@ def test_the_way_back_in_inches_is_the_same(page: Page) -> None:
         assert row[1:] == pytest.approx(other[1:], rel=1e-6)
 
 
+def test_the_way_back_takes_sums_commas_and_units(page: Page) -> None:
+    position, found = field(page, "Slider position"), table(page, "Crank angles found")
+    middle = float(position.input_value())
+    answers = []
+    for typed in (f"{middle:.4f}", f"2*{middle / 2:.4f}", f"{middle:.4f}".replace(".", ","), f"{middle / 25.4:.9f} in"):
+        position.fill(typed)
+        with page.expect_response("**/inverse?*"):
+            position.press("Enter")
+        answers.append([row[1:] for row in found.evaluate(CELLS)])
+    for other in answers[1:]:
+        assert other == [pytest.approx(row, rel=1e-4) for row in answers[0]]
+
+
 def test_what_cannot_be_is_said_in_a_sentence(page: Page) -> None:
     for name, typed, sentence in (
         ("Slider position", "", "A slider position is needed; it is between"),
-        ("Slider position", "abc", "Slider position is a number; correct it, or leave it empty."),
-        ("Slider velocity", "Infinity", "Slider velocity is a number; correct it, or leave it empty."),
+        ("Slider position", "abc", "“abc” is no length; write a number, in mm or with its unit."),
+        ("Slider velocity", "Infinity", "“Infinity” is no speed; write a number, in m/s or with its unit."),
         ("Slider position", "100000", "The slider position must be in reach of the open branch"),
         ("Slider position", "1e99", "slider_position_mm"),
         ("Slider acceleration", "4", "got acceleration 4 m/s^2 alone"),

@@ -285,7 +285,7 @@ def test_every_unit_that_a_field_offers_is_one_of_job_files_and_means_the_same(f
     page = form(store, "#/help")
     offered = page.evaluate(
         """async () => {
-          const { kinds, readyKinds, unitsOf, convert } = await import(new URL("page/form/units.js", document.baseURI));
+          const { kinds, readyKinds, unitsOf, convert } = await import(new URL("page/lib/units.js", document.baseURI));
           await readyKinds();
           const one = (kind, unit) => [unit, convert("1", unit, unitsOf(kind)[0], kind)];
           return kinds().flatMap((kind) => unitsOf(kind).map((unit) => one(kind, unit)));

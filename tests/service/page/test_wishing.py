@@ -130,6 +130,26 @@ def test_what_cannot_be_wished_is_said_at_its_field(page: Page) -> None:
     expect(panel(page).locator("#wish-transmission_angle-wrong")).to_contain_text("better; write the value alone")
 
 
+def test_a_wish_is_solved_at_once_after_one_that_was_refused_or_is_on_its_way(page: Page) -> None:
+    value = panel(page).get_by_label("Value for time ratio")
+    reached = panel(page).locator("td[data-key=time_ratio]").locator("xpath=preceding-sibling::td")
+    wish(page, "time ratio", "is wished", "1e300")
+    panel(page).get_by_role("button", name="Solve").click()
+    expect(value).to_have_attribute("aria-invalid", "true")
+    value.press("ControlOrMeta+a")
+    page.keyboard.type("2*0,65")
+    place = panel(page).get_by_role("button", name="Solve").bounding_box()
+    assert place
+    page.mouse.click(
+        place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
+    )  # where it was when it was aimed at
+    expect(reached).to_have_text("1.3", timeout=30_000)
+    for typed in ("1.25", "1.35"):
+        value.fill(typed)
+        value.press("Enter")
+    expect(reached).to_have_text("1.35", timeout=30_000)
+
+
 def test_wishing_bars_the_way_of_nobody(page: Page) -> None:
     panel(page).get_by_label("time ratio", exact=True).focus()
     page.keyboard.press("ArrowDown")

@@ -2,7 +2,8 @@
 
 import { get, isAbort, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { measured } from "../lib/measured.js";
+import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
 
 /** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
@@ -26,12 +27,15 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   const asked = { slider_position_mm: Number(((ends[0] + ends[1]) / 2).toPrecision(4)) };
   /** @type {Api.Inverse | null} */
   let found = null;
+  /** @type {Map<Key, string>} */
+  const wrong = new Map(); // why what was typed is no value
   const fields = h("div", { class: "row" });
   const answer = h("div", { "aria-live": "polite" });
   const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, fields);
   fill(place, h("h2", {}, "From the slider back to the crank"), h("div", { class: "panel" }, form, answer));
 
   function drawFields() {
+    wrong.clear();
     fill(fields, FIELDS.map(([key, title, unit]) => {
       const id = `way-back-${key}`;
       const value = asked[key];
@@ -42,16 +46,17 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
 
   /** Keep what was typed, in the unit of the API. @param {HTMLInputElement} input @param {Key} key @param {string} unit */
   function take(input, key, unit) {
-    const typed = input.value.trim().replaceAll("−", "-");
-    const value = Number(typed);
-    input.setAttribute("aria-invalid", String(!Number.isFinite(value)));
-    if (typed === "") delete asked[key];
-    else asked[key] = fromShown(value, unit);
+    const typed = measured(input.value, unit);
+    input.setAttribute("aria-invalid", String(typed.wrong !== undefined));
+    if (typed.wrong === undefined) wrong.delete(key);
+    else wrong.set(key, typed.wrong);
+    if (typed.value === undefined) delete asked[key];
+    else asked[key] = typed.value;
   }
 
   async function ask() {
-    const wrong = FIELDS.find(([key]) => Number.isNaN(asked[key] ?? 0) || !Number.isFinite(asked[key] ?? 0));
-    if (wrong) return refuse(`${wrong[1].replace(", if known", "")} is a number; correct it, or leave it empty.`);
+    const [sentence] = wrong.values();
+    if (sentence) return refuse(sentence);
     if (asked.slider_position_mm === undefined) return refuse(`A slider position is needed; it is ${reach()}.`);
     try {
       const { inverse } = await get(`${path}/inverse`, { ...asked }, signal);

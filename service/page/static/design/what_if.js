@@ -2,7 +2,8 @@
 
 import { isAbort, post, sentenceOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { measured } from "../lib/measured.js";
+import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { difference } from "./numbers.js";
@@ -51,6 +52,8 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   let busy = false;
   let again = false;
 
+  /** Return what is wrong with a length that was typed; nothing with "". */
+  const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
   const moved = () => LENGTHS.some(([key]) => Math.abs(lengths[key] - own[key]) > SAME * Math.abs(own[key] || 1));
 
   function back() {
@@ -61,11 +64,12 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
 
   /** One question at a time, the latest lengths next: questions that overtake each other would leave the slider without answer. */
   async function ask() {
-    reset.disabled = !moved();
+    reset.disabled = !moved() && !wrong();
     if (busy) {
       again = true;
       return;
     }
+    if (wrong()) return refuse(wrong());
     if (!moved()) {
       answer = null;
       changed(null);
@@ -76,7 +80,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     try {
       const found = await post(`${path}/what-if`, { ...lengths, angles: 180, hold: holding.checked && !given ? last : null }, { signal });
       given = false;
-      if (moved()) {
+      if (moved() && !wrong()) {
         answer = found;
         if (holding.checked && !again) follow(found.design);
         changed(found, lengthsOf(found.design));
@@ -84,13 +88,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
       }
     } catch (error) {
       if (isAbort(error)) return;
-      if (moved()) {
-        answer = null;
-        refused(sentenceOf(error));
-        fill(verdict, h("p", { class: "bad", role: "alert" }, sentenceOf(error)));
-        fill(results);
-        map.show(base, null);
-      }
+      if (moved()) refuse(wrong() || sentenceOf(error));
     } finally {
       busy = false;
       if (again && !signal.aborted) {
@@ -98,6 +96,15 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
         ask();
       }
     }
+  }
+
+  /** Say why there is no answer, in its place. @param {string} sentence */
+  function refuse(sentence) {
+    answer = null;
+    refused(sentence);
+    fill(verdict, h("p", { class: "bad", role: "alert" }, sentence));
+    fill(results);
+    map.show(base, null);
   }
 
   /** Let the other lengths stand where they followed to. @param {Api.Row} design */
@@ -123,7 +130,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
 
   function drawControls() {
     rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
-      lengths[key] = value;
+      if (value !== null) lengths[key] = value;
       last = key.replace("_mm", "");
       ask();
     }));
@@ -147,30 +154,65 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   };
 }
 
-/** @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number) => void} set */
+/**
+ * set(value): a length was chosen, null where what was typed is none.
+ * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
+ */
 function lengthRow(key, title, [low, high], set) {
   const fixed = low === high;
   /** @param {number} value */
   const digits = (value) => Number(inShown(value, "mm").toPrecision(6));
   const id = `what-if-${key}`;
   const outside = h("span", { class: "at-limit", role: "status", hidden: true }, " · outside the job");
-  const number = h("input", { type: "number", id, step: "any", disabled: fixed, oninput: ({ currentTarget }) => take(currentTarget, Number.parseFloat(currentTarget.value)) });
-  const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: ({ currentTarget }) => {
-    const value = low + (Number(currentTarget.value) / STEPS) * (high - low);
-    number.value = String(digits(value));
-    take(currentTarget, inShown(value, "mm"));
+  let refused = ""; // why what was typed is no length
+  const number = h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "number", id, disabled: fixed, oninput: type, onchange: order });
+  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
+  const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, disabled: fixed, "aria-label": `${title}, slider`, oninput: () => {
+    const value = low + (Number(slider.value) / STEPS) * (high - low);
+    const at = slider.value;
+    show(value);
+    slider.value = at;
+    set(value);
   } });
 
-  /** @param {Element} from @param {number} shown */
-  function take(from, shown) {
-    const value = fromShown(shown, "mm");
-    const fine = Number.isFinite(value) && (value > 0 || key === "offset_mm");
-    number.setAttribute("aria-invalid", String(!fine));
-    mark(fine ? value : low);
-    if (!fine) return;
-    if (from === number) slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
+  /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
+  function typed() {
+    const found = measured(number.value, "mm");
+    if (found.value !== undefined && (found.value > 0 || key === "offset_mm")) return found;
+    return { wrong: found.wrong ?? `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${found.empty ? "" : `; got ${number.value.trim()}`}.` };
+  }
+
+  function type() {
+    const { value, said, wrong } = typed();
+    refused = wrong ?? "";
+    understood.textContent = said ?? "";
+    number.setAttribute("aria-invalid", String(value === undefined));
+    mark(value ?? low);
+    if (value !== undefined) slide(value);
+    set(value ?? null);
+  }
+
+  /** Put the length that was understood in place of what was typed, and leave in sight how. */
+  function order() {
+    const { value, said } = typed();
+    if (value === undefined) return;
+    show(value);
+    understood.textContent = said ?? "";
+  }
+
+  /** @param {number} value */
+  function slide(value) {
+    slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
     slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
-    set(value);
+  }
+
+  /** @param {number} value */
+  function show(value) {
+    refused = understood.textContent = "";
+    number.value = String(digits(value));
+    number.setAttribute("aria-invalid", "false");
+    mark(value);
+    slide(value);
   }
 
   /** Say whether a length is outside of the ranges of the job. @param {number} value */
@@ -181,15 +223,9 @@ function lengthRow(key, title, [low, high], set) {
   return {
     key,
     node: h("div", { class: "length" }, h("label", { for: id }, title), slider, number, h("span", { class: "quiet" }, unitOf("mm")),
-      h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`, outside)),
-    /** @param {number} value */
-    show(value) {
-      number.value = String(digits(value));
-      number.setAttribute("aria-invalid", "false");
-      mark(value);
-      slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
-      slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
-    },
+      h("span", { class: "quiet ends" }, fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`, outside), understood),
+    show,
+    wrong: () => refused,
   };
 }
 

@@ -5,7 +5,7 @@ import { completing } from "./completion.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { at, idOf, isTable } from "./path.js";
 import { drawnFrom, taken } from "./typed_field.js";
-import { convert, split } from "./units.js";
+import { convert, split } from "../lib/units.js";
 
 const ANY = ["any", "any"];
 const MODES = [["equals", "exactly"], ["min", "at least"], ["max", "at most"], ["between", "between"]];

@@ -5,7 +5,7 @@ import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
 import { drawnFrom, ordered, taken } from "./typed_field.js";
-import { convert, split, unitsOf, usual } from "./units.js";
+import { convert, split, unitsOf, usual } from "../lib/units.js";
 
 /** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
 const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list };

@@ -3,7 +3,7 @@
 import { extremes } from "../charts/cycle.js";
 import { range, scale } from "../charts/scale.js";
 import { fill, h, svg } from "../lib/dom.js";
-import { convert } from "./units.js";
+import { convert } from "../lib/units.js";
 
 /** @import { Column } from "./points.js" */
 /** @typedef {{ at: number, name: string }} Centre */

@@ -8,7 +8,7 @@ import { field } from "./field.js";
 import { wanted } from "./objective.js";
 import { at, idOf, isTable, put, renamed, written } from "./path.js";
 import { say } from "./typed_field.js";
-import { join, kinds, usual } from "./units.js";
+import { join, kinds, usual } from "../lib/units.js";
 
 const WHY = "A formula of names, such as offset - 2 * crank or max(peak_torque, 3 N m): quantities, crank, rod, offset, numbers that vary; with + - * / **, brackets and functions. Names are offered while you type.";
 const NAME = /^[a-z][a-z0-9_]*$/;

@@ -5,7 +5,7 @@ import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { explanation, field } from "./field.js";
 import { at, idOf } from "./path.js";
 import { drawnFrom, taken } from "./typed_field.js";
-import { kindOf, split } from "./units.js";
+import { kindOf, split } from "../lib/units.js";
 
 const SENSES = [["minimise", "minimise"], ["maximise", "maximise"], ["target", "bring to"]];
 

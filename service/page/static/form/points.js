@@ -5,7 +5,7 @@ import { unitSelect } from "./controls.js";
 import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
 import { idOf, written } from "./path.js";
-import { convert, factorsOf, join, split } from "./units.js";
+import { convert, factorsOf, join, split } from "../lib/units.js";
 
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 

@@ -5,7 +5,7 @@ import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
 import { drawnFrom, taken } from "./typed_field.js";
-import { convert, join, split } from "./units.js";
+import { convert, join, split } from "../lib/units.js";
 
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
 

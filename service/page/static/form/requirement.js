@@ -2,7 +2,7 @@
 
 import { bounds } from "./bounds.js";
 import { field } from "./field.js";
-import { kindOf } from "./units.js";
+import { kindOf } from "../lib/units.js";
 
 /**
  * Return the field of the requirement on a quantity {name, title, unit, sentence}.

@@ -1,6 +1,6 @@
 /** The schema of jobs: what belongs at each place, as a form needs to know it. */
 
-import { kindOf } from "./units.js";
+import { kindOf } from "../lib/units.js";
 
 /** Return a reader of a JSON Schema: property(path) and resolve(node). @param {Form.Schema} schema */
 export function reader(schema) {

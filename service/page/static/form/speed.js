@@ -5,7 +5,7 @@ import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { taken } from "./typed_field.js";
-import { split } from "./units.js";
+import { split } from "../lib/units.js";
 
 const PATH = ["mechanism", "speed"];
 

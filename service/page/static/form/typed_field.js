@@ -1,7 +1,7 @@
 /** Fields of numbers: what was typed is read, said beside the field, and put in order when the field is left. */
 
 import { read } from "../lib/typed.js";
-import { factorsOf, join } from "./units.js";
+import { factorsOf, join } from "../lib/units.js";
 
 /** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null }} Measure */
 

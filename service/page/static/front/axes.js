@@ -1,8 +1,8 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
 import { fill, first, focused, h } from "../lib/dom.js";
-import { ends, fromShown, text } from "../lib/numbers.js";
-import { read } from "../lib/typed.js";
+import { ends, text } from "../lib/numbers.js";
+import { measured } from "../lib/measured.js";
 import { headed, helpLink } from "./columns.js";
 import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 
@@ -124,10 +124,9 @@ export function axisFields(explorer) {
  * @param {HTMLInputElement} node @param {string} unit @returns {number | null | undefined}
  */
 function number(node, unit) {
-  const found = read(node.value, { unit: "", factors: {} });
-  const value = found.empty ? null : fromShown(Number(found.number), unit);
-  const fine = value === null || Number.isFinite(value);
-  if (fine) node.removeAttribute("aria-invalid");
+  const { value, wrong } = measured(node.value, unit);
+  if (wrong === undefined) node.removeAttribute("aria-invalid");
   else node.setAttribute("aria-invalid", "true");
-  return fine ? value : undefined;
+  node.title = wrong ?? "";
+  return wrong === undefined ? (value ?? null) : undefined;
 }

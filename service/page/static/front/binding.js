@@ -3,8 +3,8 @@
 import { get, isAbort, post, sentenceOf } from "../lib/api.js";
 import { go } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
-import { fromShown, inShown, unitOf, withUnit } from "../lib/numbers.js";
-import { read } from "../lib/typed.js";
+import { inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { measured } from "../lib/measured.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -69,11 +69,10 @@ export function bindingPanel(explorer) {
   /** @param {Api.Limit} limit @param {HTMLInputElement} input @param {HTMLButtonElement} button */
   async function widen(limit, input, button) {
     const unit = unitOf(limit.unit);
-    const typed = read(input.value, { unit, factors: limit.unit === "mm" ? { mm: 1, in: 25.4 } : {} });
-    const value = typed.number !== undefined && typed.unit === unit ? fromShown(Number(typed.number), limit.unit) : NaN;
-    if (!Number.isFinite(value)) {
+    const { value, wrong } = measured(input.value, limit.unit);
+    if (value === undefined) {
       input.setAttribute("aria-invalid", "true");
-      refuse(typed.wrong?.replace(/\.$/, "") ?? `${limit.title} ${WORDS[limit.side]} needs a number${unit && ` in ${unit}`}`);
+      refuse(`${limit.title} ${WORDS[limit.side]}: ${wrong?.replace(/\.$/, "") ?? `a number${unit && ` in ${unit}`} is needed`}`);
       input.focus();
       return;
     }

@@ -4,8 +4,8 @@ import { link } from "../lib/address.js";
 import { get, isAbort, post, sentenceOf } from "../lib/api.js";
 import { fill, first, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { fromShown, inShown, text, unitOf, withUnit } from "../lib/numbers.js";
-import { read } from "../lib/typed.js";
+import { measured } from "../lib/measured.js";
+import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { keeping } from "../design/keeping.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
@@ -23,7 +23,7 @@ export function wishingPanel(explorer) {
   const { data, chosen, job } = explorer;
   const { objectives } = data;
   const rows = objectives.map(row);
-  const design = h("input", { type: "text", inputmode: "numeric", id: "wish-design", class: "number", "aria-describedby": "wish-design-wrong", onchange: clean });
+  const design = h("input", { type: "text", inputmode: "numeric", id: "wish-design", class: "number", "aria-describedby": "wish-design-wrong", oninput: clean });
   const wrongDesign = h("p", { class: "error", id: "wish-design-wrong" });
   const from = h("div", { class: "wish-from" }, h("label", { for: "wish-design" }, "“Improves” and “keeps” speak of design "), design, wrongDesign);
   const solve = h("button", { class: "primary" }, "Solve");
@@ -50,7 +50,7 @@ export function wishingPanel(explorer) {
   function row({ quantity, title, unit }) {
     const id = `wish-${quantity}`;
     const kind = h("select", { id, onchange: () => { shape(); clean(); } }, KINDS.map(([value, words]) => h("option", { value }, words)));
-    const value = h("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": `Value for ${title}`, "aria-describedby": `${id}-wrong`, onchange: clean });
+    const value = h("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": `Value for ${title}`, "aria-describedby": `${id}-wrong`, oninput: clean });
     const units = h("span", { class: "quiet" });
     const refused = h("p", { class: "error", id: `${id}-wrong` });
     function shape() {
@@ -64,8 +64,8 @@ export function wishingPanel(explorer) {
       /** @returns {Wish | null} */
       get() {
         if (kind.value === "free") return null;
-        const typed = read(value.value, { unit: "", factors: {} });
-        return value.hidden ? { kind: /** @type {Kind} */ (kind.value) } : { kind: /** @type {Kind} */ (kind.value), value: fromShown(Number(typed.number), unit) };
+        const wanted = /** @type {Kind} */ (kind.value);
+        return value.hidden ? { kind: wanted } : { kind: wanted, value: measured(value.value, unit).value ?? NaN };
       },
       /** @param {Wish | undefined} wish */
       set(wish) {
@@ -129,7 +129,7 @@ export function wishingPanel(explorer) {
       found = null;
       return show();
     }
-    solve.disabled = true;
+    solve.setAttribute("aria-busy", "true"); // not disabled: whoever has changed a wish meanwhile asks again
     try {
       const given = await post(`jobs/${job.id}/wish`, asked(wish, objectives), { signal: explorer.signal });
       if (own !== turn) return;
@@ -143,7 +143,7 @@ export function wishingPanel(explorer) {
       show();
       tell([placed(sentenceOf(problem), objectives)]);
     } finally {
-      if (own === turn) solve.disabled = false;
+      if (own === turn) solve.removeAttribute("aria-busy");
     }
   }
 

@@ -19,10 +19,22 @@ export function apiSystem() {
   return system() === "inch" ? "inch" : null;
 }
 
+/** @type {Promise<Api.Answer<"get", "units">> | null} */
+let table = null;
+
+/** Return the table of units of the service, asked for once. */
+export function unitTable() {
+  table ??= get("units").catch((problem) => {
+    table = null; // another time it may answer
+    throw problem;
+  });
+  return table;
+}
+
 /** Make ready to show numbers in any system. Without an answer of the service they are metric. */
 export async function readySystem() {
   if (SYSTEMS.inch) return;
-  const units = await get("units");
+  const units = await unitTable();
   suffixes = Object.entries(units.suffixes).sort(([, one], [, other]) => other.length - one.length);
   SYSTEMS.inch = units.inch;
 }
@@ -47,9 +59,14 @@ export async function chooseSystem(name) {
   window.dispatchEvent(new Event("units"));
 }
 
+/** Return the unit that is shown for one of the API, as job files write it: "in" for "mm". @param {string} unit @returns {string} */
+export function plainUnitOf(unit) {
+  return SYSTEMS[system()]?.[unit]?.unit ?? unit;
+}
+
 /** Return the unit that is shown for one of the API, such as "in" for "mm". @param {string} unit @returns {string} */
 export function unitOf(unit) {
-  const name = SYSTEMS[system()]?.[unit]?.unit ?? unit;
+  const name = plainUnitOf(unit);
   return PRETTY[name] ?? name?.replace("^2", "²").replace("^3", "³");
 }
 

@@ -8,7 +8,7 @@ import { jobFile, presets } from "../form/job_file.js";
 import { at, put, renamed, valueOf, written } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
-import { readyKinds } from "../form/units.js";
+import { readyKinds } from "../lib/units.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob } from "../form/start.js";
 import { go, keep } from "../lib/address.js";
@@ -20,7 +20,7 @@ export const title = "New run";
 
 /** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
-  const [schema, { quantities, functions }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds(signal)]);
+  const [schema, { quantities, functions }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds()]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
   const before = kept();

@@ -5,7 +5,7 @@ import "../browser.mjs";
 
 const { describe, reader, words } = await import("../../../../../service/page/static/form/schema.js");
 
-const { readyKinds } = await import("../../../../../service/page/static/form/units.js");
+const { readyKinds } = await import("../../../../../service/page/static/lib/units.js");
 await readyKinds();
 
 const QUANTITY = { anyOf: [{ type: "string" }, { type: "number" }], examples: ["40 mm"] };

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { choose } from "../browser.mjs";
 import { draws } from "../draws.mjs";
 
-const { convert, join, kindOf, readyKinds, split, unitsOf, usual } = await import("../../../../../service/page/static/form/units.js");
+const { convert, join, kindOf, readyKinds, split, unitsOf, usual } = await import("../../../../../service/page/static/lib/units.js");
 await readyKinds();
 
 // One of the first unit in the second, from handbooks and not by way of SI: what the page computes must agree.

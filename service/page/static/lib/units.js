@@ -1,7 +1,6 @@
 /** The units that a field offers, and values with units as job files have them: "40 mm". */
 
-import { get } from "../lib/api.js";
-import { system } from "../lib/numbers.js";
+import { system, unitTable } from "./numbers.js";
 
 /** @type {Record<string, Record<string, number>>} */
 let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
@@ -9,12 +8,9 @@ let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes
 let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
-/**
- * Make ready to offer units: the service has the table of kinds.
- * @param {AbortSignal} [signal]
- */
-export async function readyKinds(signal) {
-  const { kinds: known } = await get("units", {}, signal);
+/** Make ready to offer units and to read them: the service has the table of kinds. */
+export async function readyKinds() {
+  const { kinds: known } = await unitTable();
   KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
   USUAL = { si: Object.fromEntries(known.map(({ name, si }) => [name, si])), inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])) };
 }
