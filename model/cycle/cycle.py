@@ -27,7 +27,7 @@ from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .pace import pace
-from .self_locking import locking_margin
+from .self_locking import require_driving
 
 _COLUMNS = 16
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
@@ -185,12 +185,7 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
         return np.unique(np.concatenate([found, found + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
-    margin = float(locking_margin(mechanism.friction, raw[None, :3])[0][0])
-    if not margin > 0.0:
-        raise InputError(
-            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
-            "lengthen the rod, or reduce the offset or the friction"
-        )
+    require_driving(mechanism.friction, linkage)
     watch = watch_of(mechanism, Signal.TORQUE)
     cuts = breakpoints_of(derived(raw, loads)[0], loads, watch, rubbing=rubs(mechanism))
     return cuts.angle[0, : cuts.many[0]]

@@ -21,13 +21,16 @@ therefore exactly
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
+from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kinematics.geometry import least_transmission_angle
+from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import number_of, require_width
@@ -41,6 +44,16 @@ def locking_margin(friction: Friction, designs: Array, *, gradients: bool = Fals
     -inf where the friction circles' sum is the rod or more.
     """
     return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
+
+
+def require_driving(friction: Friction, linkage: Linkage) -> None:
+    """Raise `InputError` where friction locks one linkage, or may jam it, at some crank angle."""
+    margin = float(locking_margin(friction, np.array([[linkage.crank, linkage.rod, linkage.offset]], float))[0][0])
+    if not margin > 0.0:
+        raise InputError(
+            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
+            "lengthen the rod, or reduce the offset or the friction"
+        )
 
 
 def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:

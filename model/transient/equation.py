@@ -7,7 +7,8 @@ The drive torque is affine in the crank's acceleration, and quadratic in its spe
 J the moving inertia, C gravity and every load that does not depend on speed, D the viscous loads,
 E loads that grow with the square of the speed. Each term is the
 torque of `dynamics.forces` for a motion and a load that leave only this term: nothing is derived a second time, and
-no term is a difference of great numbers.
+no term is a difference of great numbers. With friction these are the terms of the same machine without it; what the
+motion takes then is `Span.rubbed`.
 
 C depends on which way the slider moves, hence on the direction of rotation, and is smooth between *breakpoints* only:
 dead centres and knots of load tables. A `Stretch` is the crank turning one way between two of them.
@@ -22,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..cycle.self_locking import require_driving
 from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for, with_formulas, within
 from ..dynamics.torque import forces, smooth_load
@@ -32,12 +34,12 @@ from ..linkage.single import single
 from ..machine.arrangement import require_one_cylinder
 from ..machine.derived import derived
 from ..machine.design import design_at
-from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
 from ..signals.signals import Signal, design_motion
 from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
+from .rubbed import Rubbed, Rubbing, Senses, jamming, least_inertia
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12
@@ -119,6 +121,20 @@ class Span:
         """Return the terms at crank angles (n,), rad."""
         raise NotImplementedError
 
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+        """Return torque and heat with friction at crank angles, rad, speeds, rad/s, and accelerations (n,), rad/s^2."""
+        raise NotImplementedError
+
+    def accelerated(
+        self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
+    ) -> tuple[Array, Rubbed]:
+        """Return accelerations (n,), rad/s^2, with friction, and torque and heat of the motion with them.
+
+        torque: of the motor on the crank, N m. inertia: of the drive, kg m^2. guess: where an iteration starts. Raises
+        `InputError` where friction may jam the crank, so that no single acceleration follows.
+        """
+        raise NotImplementedError
+
 
 class Equation:
     """An equation of motion over a cycle of the crank.
@@ -126,6 +142,7 @@ class Equation:
     direction: +1 or -1, the way the motor turns it. period: crank angle of the cycle, rad. dead_centres: (k,), rad.
     breakpoints: (n,), ascending, within a cycle from 0, rad. lead: of the first cylinder's crank over the angle, rad.
     crowds: whether its curves are steep where those of one linkage are (`segments.crowding`).
+    rubs: whether there is friction.
     """
 
     direction: float
@@ -134,6 +151,7 @@ class Equation:
     breakpoints: Array
     lead: float = 0.0
     crowds: bool = True
+    rubs: bool = False
 
     def stretch(self, index: int, way: float) -> Span:
         """Return the stretch from breakpoint `index` to the next, the last one reaching beyond the cycle."""
@@ -152,8 +170,15 @@ class Equation:
         """Return the moving inertia, kg m^2; shape of the crank angle."""
         raise NotImplementedError
 
+    def least_inertia(self, crank_angle: Array) -> Array:
+        """Return the least inertia that friction leaves, kg m^2 (`rubbed`); shape of the crank angle."""
+        raise NotImplementedError
+
     def require_inertia(self, added: float) -> None:
-        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive."""
+        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive.
+
+        With friction, also if it may give back what resists.
+        """
         angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
         inertia = self.inertia(angles) + added
         if not inertia.min() > 1e-6 * inertia.max():
@@ -161,6 +186,10 @@ class Equation:
                 "forward dynamics needs an inertia at every crank angle, also at the dead centres where the slider "
                 f"stands; got {inertia.min():.3g} kg m^2 at least; give the crank a mass, or the drive a flywheel"
             )
+        if self.rubs:
+            left = self.least_inertia(angles) + added
+            if not left.min() > 1e-6 * inertia.max():
+                raise jamming(angles, left)
 
 
 class Stretch(Span):
@@ -175,6 +204,13 @@ class Stretch(Span):
             self._block, self._loads, equation.watch, within(low, high), self._piece, self._shift
         )
         self._outward = bool(counter_clockwise == (way > 0.0))
+        if equation.rubs:
+            d = design_at(self._block, _STILL)
+            rod = design_motion(math.sin(within(low, high)), math.cos(within(low, high)), d).rod_1
+            slide = d.branch * (1.0 if self._outward else -1.0)
+            senses = Senses(way, float(slide), math.copysign(1.0, rod * way))
+            given = self._block, _PUSH, self._loads, self._outward, senses, self._piece, self._shift
+            self._rubbing = Rubbing(*given)
 
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
@@ -182,18 +218,30 @@ class Stretch(Span):
         _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+        """Return torque and heat with friction, (n,)."""
+        return self._rubbing.at(crank_angle, speed, acceleration)
+
+    def accelerated(
+        self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
+    ) -> tuple[Array, Rubbed]:
+        """Return accelerations with friction, and torque and heat with them, (n,)."""
+        return self._rubbing.under(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
+
 
 class CrankEquation(Equation):
     """The equation of motion of one fully turning linkage.
 
     marks: further crank angles, rad, that shall be breakpoints. breakpoints: (n,), ascending in [0, 2 pi), rad.
     direction: +1 or -1, the way the mechanism's speed says that the motor turns the crank.
-    Raises AssemblyError if the linkage does not turn fully, InputError for a mechanism with friction.
+    Raises AssemblyError if the linkage does not turn fully, InputError where friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
         linkage = single(mechanism, linkage)
-        require_frictionless(mechanism.friction, "motion under a motor")
+        self.rubs = mechanism.friction.acts
+        if self.rubs:
+            require_driving(mechanism.friction, linkage)
         require_one_cylinder(mechanism.arrangement, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
@@ -233,6 +281,14 @@ class CrankEquation(Equation):
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         return np.asarray(moving_inertia(sine, cosine, design_motion(sine, cosine, d), d))
+
+    def least_inertia(self, crank_angle: Array) -> Array:
+        """Return the least inertia that friction leaves, kg m^2; shape of the crank angle."""
+        d = design_at(self.block, _PUSH)
+        sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
+        m, mu = design_motion(sine, cosine, d), d.guide_friction
+        found: Array = np.minimum(*(least_inertia(sine, cosine, m, d, side) for side in (mu, -mu)))
+        return found
 
     def height_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""

@@ -2,9 +2,11 @@
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J with the drive's inertia. Integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett
-and Wanner, Solving Ordinary Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead
-centre at which a load changes, a knot of a table, or a standstill. The work of motor and loads is integrated with it.
+J with the drive's inertia; with friction in the joints, the acceleration of `rubbed`. Integrated over time by an
+explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I,
+2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead centre at which a load changes, a knot of a table, or a
+standstill. The work of motor and loads, and the heat of friction, are integrated with it. Where a guide's force changes
+sides the acceleration has a kink, not a jump: the control of the step finds it, as the energy balance tells.
 
 At standstill the loads of both ways of turning are asked: the crank starts the way in which motor and loads leave a
 torque that pushes it on, or stands still for good (motor and loads depend on nothing but angle and speed).
@@ -159,7 +161,7 @@ class _Run:
         if self.local > first + self.period - 2.0 * NEAREST:
             self.turn, self.local = self.turn + 1, first
         self.time, self.speed, self.at_mark, self.at_cycle = 0.0, start.speed, True, True
-        self.works = np.zeros(2)
+        self.works = np.zeros(3 if self.equation.rubs else 2)
         self.turned_back: list[float] = []
         self.scale = self._speed_scale(mechanism.speed)
         self.recorder = Recorder(self.equation, drive, linkage, mechanism, samples)
@@ -240,7 +242,7 @@ class _Run:
         from scipy.integrate import solve_ivp
 
         motor, added, direction = self.drive.torque, self.drive.inertia, self.equation.direction
-        slowest, fastest, way = self.slowest, self.fastest, stretch.way
+        slowest, fastest, way, rubs = self.slowest, self.fastest, stretch.way, self.equation.rubs
         edge = stretch.high if way > 0.0 else stretch.low
         angle = np.empty(1)
 
@@ -252,7 +254,12 @@ class _Run:
             drag = (terms.drag[0] + terms.square[0] * speed) * speed
             surplus = torque - terms.spin[0] * speed * speed - terms.static[0] - drag
             acceleration = surplus / (terms.inertia[0] + added)
-            return np.array([speed, acceleration, torque * speed, (drag - terms.load[0]) * speed])
+            works = torque * speed, (drag - terms.load[0]) * speed
+            if not rubs:
+                return np.array([speed, acceleration, *works])
+            pushed = np.array([torque]), added, np.array([acceleration])
+            rubbing, state = stretch.accelerated(angle, y[1:2].copy(), *pushed)
+            return np.array([speed, rubbing[0], *works, state.heat[0]])
 
         events: list[Any] = [lambda _time, y: way * (y[0] - edge), lambda _time, y: way * y[1]]
         if math.isfinite(limit := fastest if way > 0.0 else -slowest):
@@ -266,7 +273,7 @@ class _Run:
             self._y(),
             method="DOP853",
             rtol=self.tolerance,
-            atol=self.tolerance * np.array([1e-2, 1e-2 * self.scale, 1e-2 * energy, 1e-2 * energy]),
+            atol=self.tolerance * np.array([1e-2, 1e-2 * self.scale, *(1e-2 * energy for _ in self.works)]),
             events=events,
             dense_output=True,
         )
@@ -280,6 +287,13 @@ class _Run:
         ended = [name for name, times in zip(names, found, strict=False) if len(times)]
         return solution, ended[0] if ended else "time"
 
+    def _standing(self, stretch: Span, local: float) -> float:
+        """Return the torque, N m, against which the crank starts from standstill, in the span's way."""
+        at = np.array([local])
+        if self.equation.rubs:
+            return float(stretch.rubbed(at, np.zeros(1), np.zeros(1)).torque[0])
+        return float(stretch.at(at).static[0])
+
     def _leave_rest(self) -> Verdict | None:
         """Find out which way the crank starts from standstill; return why it does not, if so."""
         count = len(self.equation.breakpoints)
@@ -290,7 +304,7 @@ class _Run:
         for way, index in ((1.0, self.index), (-1.0, before)):
             stretch = self.equation.stretch(index, way)
             local = stretch.high if index != self.index else self.local
-            static = float(stretch.at(np.array([local])).static[0])
+            static = self._standing(stretch, local)
             push[way] = way * (motor - static) - _EPS * (abs(motor) + abs(static))
         arrived = self.arrived
         self.way = next((way for way in (-arrived, arrived) if push[way] > 0.0), 0.0)

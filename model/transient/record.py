@@ -20,7 +20,7 @@ _SAID: dict[Verdict, str] = {
     "time is up": "the time is up",
     "turns done": "the turns are done",
     "steady": "it runs steadily: speed repeats from turn to turn",
-    "stands still": "it stands still: the motor cannot overcome the load here",
+    "stands still": "it stands still: the motor cannot overcome the load or the friction here",
     "beyond the torque table": "the motor's torque is not known beyond its table of speeds",
     "cancelled": "cancelled",
 }
@@ -35,7 +35,7 @@ class Transient:
     angle: of the crank, turns counted. motor_torque: on the crank, N m, counter-clockwise. torque: what the mechanism
     takes of it; flywheel and rotor take the rest. power: of the motor, W.
     kinetic, potential: energies of mechanism and drive, and of gravity, J. motor_work, load_work: done since the start
-    by the motor and on the loads, springs among them, J.
+    by the motor and on the loads, springs among them, J. friction_work: heat of the joints since the start, J.
     """
 
     verdict: Verdict
@@ -54,6 +54,7 @@ class Transient:
     potential: Array
     motor_work: Array
     load_work: Array
+    friction_work: Array
 
     @property
     def message(self) -> str:
@@ -69,11 +70,11 @@ class Transient:
     def imbalance(self) -> float:
         """Greatest error of the energy balance, as a share of the greatest energy or work; 0 if all are 0.
 
-        Kinetic energy gained + potential gained - (work of the motor - work on the loads).
+        Kinetic energy gained + potential gained - (work of the motor - work on the loads - heat of friction).
         """
         stored = self.kinetic - self.kinetic[0] + self.potential - self.potential[0]
-        error = np.abs(stored - self.motor_work + self.load_work).max()
-        parts = (self.kinetic, self.potential - self.potential[0], self.motor_work, self.load_work)
+        error = np.abs(stored - self.motor_work + self.load_work + self.friction_work).max()
+        parts = (self.kinetic, self.potential - self.potential[0], self.motor_work, self.load_work, self.friction_work)
         size = max(float(np.abs(part).max()) for part in parts)
         return float(error) / size if size > 0.0 else 0.0
 
@@ -123,12 +124,18 @@ class Recorder:
             self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 
     def _take(self, stretch: Span, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
-        local, speed, motor_work, load_work = y
+        local, speed, motor_work, load_work, *heat = y
         terms, added = stretch.at(np.ascontiguousarray(local)), self._drive.inertia
         direction = self._equation.direction
         known = np.clip(direction * speed, *speed_range(self._drive))
         motor = self._drive.torque(direction * known, direction)
         acceleration = moving * (motor - terms.torque(speed, 0.0)) / (terms.inertia + added)
+        torque = terms.torque(speed, acceleration)
+        if self._equation.rubs:
+            if moving:
+                given = np.ascontiguousarray(local), np.ascontiguousarray(speed), motor, added
+                acceleration, _ = stretch.accelerated(*given, acceleration)
+            torque = motor - added * acceleration
         slider = self._linkage.at(local + self._equation.lead, speed=speed, acceleration=acceleration)
         self._parts.append(
             np.array(
@@ -138,7 +145,7 @@ class Recorder:
                     speed,
                     acceleration,
                     motor,
-                    terms.torque(speed, acceleration),
+                    torque,
                     motor * speed,
                     slider.slider_position,
                     slider.slider_velocity,
@@ -147,6 +154,7 @@ class Recorder:
                     self._equation.height_energy(local),
                     motor_work,
                     load_work,
+                    heat[0] if heat else np.zeros(len(time)),
                 ]
             )
         )

@@ -17,6 +17,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import Member, members
 from ..machine.two_turns import cycle_turns, half_at, halves
 from .equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
+from .rubbed import ITERATIONS, Rubbed, added_up, narrowed, require_single, settled
 
 
 class ShaftStretch(Span):
@@ -34,12 +35,36 @@ class ShaftStretch(Span):
         columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in found), strict=True)
         return Terms(*(np.sum(column, axis=0) for column in columns))
 
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+        """Return torque and heat with friction of all cylinders, (n,)."""
+        return added_up([stretch.rubbed(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts])
+
+    def accelerated(
+        self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
+    ) -> tuple[Array, Rubbed]:
+        """Return accelerations with friction, and torque and heat of all cylinders with them, (n,)."""
+        found, last = np.array(guess), math.inf
+        low, high = np.full(found.shape, -np.inf), np.full(found.shape, np.inf)
+        for _ in range(ITERATIONS):
+            state = self.rubbed(crank_angle, speed, found)
+            least = state.least + inertia
+            require_single(crank_angle, least)
+            excess = torque - inertia * found - state.torque
+            new, low, high = narrowed(found, excess, state.by_acceleration + inertia, least, low, high)
+            size = np.abs(new) + (np.abs(torque) + np.abs(state.torque)) / least
+            step = float((np.abs(new - found) / np.where(size > 0.0, size, 1.0)).max())
+            found = new
+            if settled(step, last):
+                break
+            last = step
+        return found, state
+
 
 class ShaftEquation(Equation):
     """The equation of motion of all cylinders of one linkage each, over a turn or two.
 
     marks: further angles of the shaft, rad, that shall be breakpoints.
-    Raises AssemblyError if the linkage does not turn fully, InputError for a mechanism with friction.
+    Raises AssemblyError if the linkage does not turn fully, InputError where friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
@@ -47,6 +72,7 @@ class ShaftEquation(Equation):
         turns = cycle_turns(mechanism)
         self.period = turns * TURN
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
+        self.rubs = mechanism.friction.acts
         alone = Member(mechanism, 0.0, 0.0, 0.0)
         self._members = (alone,) if mechanism.arrangement is None else members(mechanism)
         self._equations = [
@@ -90,6 +116,11 @@ class ShaftEquation(Equation):
         """Return the moving inertia of all cylinders, kg m^2; shape of the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
         return np.asarray(sum(equations[0].inertia(crank_angle + own.lead) for own, equations in parts))
+
+    def least_inertia(self, crank_angle: Array) -> Array:
+        """Return the least inertia that friction leaves of all cylinders, kg m^2; shape of the crank angle."""
+        parts = zip(self._members, self._equations, strict=True)
+        return np.asarray(sum(equations[0].least_inertia(crank_angle + own.lead) for own, equations in parts))
 
     def height_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity of all cylinders, J; shape of the crank angle."""

@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.dissipation import works_over_a_turn
 from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
+from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
 from .energy_integral import coasting, cut_where_least, graded
 from .equation import TURN
@@ -56,6 +57,7 @@ class Runner:
     """Steady running of one linkage, or of several cylinders, for any flywheel and motor."""
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
+        require_frictionless(mechanism.friction, "steady running")
         self.equation = equation_of(mechanism, linkage)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)

@@ -15,6 +15,7 @@ from rich.console import Console
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
+from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -142,3 +143,15 @@ def test_the_figure_of_the_flywheel_shows_the_model(machine: Mechanism, tmp_path
     assert np.all(np.diff(exact.y) < 0.0)
     speed, half = speeds.lines
     assert np.ptp(half.y) > 1.5 * np.ptp(speed.y)
+
+
+def test_the_heat_of_friction_is_told_of_a_start_with_friction_alone() -> None:
+    rubbing = replace(MACHINE, friction=Friction(guide=0.1, crank_pin=Pin(radius=0.01, coefficient=0.08)))
+    numbers = start_up.numbers(rubbing, LINKAGE, turns=3)
+    assert numbers["friction_work_J"] > 4.0
+    gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
+    spent = numbers["load_work_J"] + numbers["friction_work_J"]
+    assert gained == pytest.approx(numbers["motor_work_J"] - spent, rel=1e-6)
+    assert "heat of friction" in shown(start_up, rubbing)
+    assert start_up.numbers(MACHINE, LINKAGE, turns=3)["friction_work_J"] == 0.0
+    assert "heat of friction" not in shown(start_up, MACHINE)

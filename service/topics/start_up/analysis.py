@@ -61,6 +61,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str,
         "turned_back_s": list(run.turned_back),
         "motor_work_J": float(run.motor_work[-1]),
         "load_work_J": float(run.load_work[-1]),
+        "friction_work_J": float(run.friction_work[-1]),
         "kinetic_energy_gained_J": float(run.kinetic[-1] - run.kinetic[0]),
         "potential_energy_gained_J": float(run.potential[-1] - run.potential[0]),
         "energy_imbalance": run.imbalance,
@@ -94,6 +95,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         ("peak motor power", "peak_power_W", "W"),
         ("work of the motor", "motor_work_J", "J"),
         ("work on the loads", "load_work_J", "J"),
+        ("heat of friction", "friction_work_J", "J"),
         ("kinetic energy gained", "kinetic_energy_gained_J", "J"),
         ("error of the energy balance", "energy_imbalance", ""),
     ]
@@ -104,6 +106,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         ("mean motor power", "mean_power_W", "W"),
     ]
     steady = numbers["steady"]
+    told = [line for line in told if line[1] != "friction_work_J" or numbers["friction_work_J"]]
     for found, lines in ((numbers, told), (steady, then if steady is not None else [])):
         for title, key, unit in lines:
             rows.add_row(title, f"{found[key]:.4g}", unit)

@@ -117,9 +117,6 @@ def test_what_is_not_covered_is_refused_in_a_sentence() -> None:
     rubbing = replace(MACHINES["four in line"], friction=Friction(guide=0.1))
     with pytest.raises(InputError, match="friction"):
         Runner(rubbing, LINKAGE).constant(0.4)
-    motor = Drive(motor=LinearMotor(stall_torque=80.0, no_load_speed=220.0), flywheel=0.2)
-    with pytest.raises(InputError, match="friction"):
-        simulate(rubbing, LINKAGE, motor, duration=0.1)
 
 
 @pytest.mark.parametrize("name", ["one of four strokes", "a V of compressors"])

@@ -1,0 +1,241 @@
+"""Torque and heat of a crank that turns at any speed and acceleration, with friction in all joints.
+
+Joint forces hold inertia terms, so friction makes the torque T(a) of an acceleration a piecewise smooth instead of
+affine. Of the sizes |A|, |B|, |P| and |N| in the equations of `dynamics.rubbing` each has a slope of at most one. With
+their slopes at whatever values, y = B_y eliminated, and primes for the two derivatives,
+
+    dT/da = T_a - T_y h_a / h_y,
+
+    h_y = along - nu across + (rho_A + rho_B) q,
+    h_a = moment_a - across pull_a + rho_A |A_a| + rho_B |pull_a|,
+    T_y = r (cos - nu sin) + (rho_A + rho_O) q,
+    T_a = couple_a + r (cos A_ay - sin A_ax) + rho_A |A_a| + rho_O |P_a|,
+
+where every rho stands for itself times a number from -1 to 1, nu for mu times such a number, and q = sqrt(1 + mu^2).
+T_y / h_y is monotone in nu, so its ends nu = mu and nu = -mu tell the least. Where that, with the inertia of the drive,
+is more than zero, exactly one acceleration belongs to every torque of the motor: the root of
+T_motor - J_drive a - T(a). Every a gives a bracket of it by that bound. Newton's iteration, halving the bracket where
+it would leave it, converges, also over the kinks where the guide's force changes sides.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arrays import Array
+from ..dynamics.crank_loads import beside_crank_loads
+from ..dynamics.rubbing import Sides, joint_forces, touch
+from ..dynamics.segments import load_on_slider
+from ..dynamics.torque import balance
+from ..errors import InputError
+from ..kernel.arithmetic import STEP, analytic, root
+from ..kernel.kernel import ComplexTable, Integers, Row, Table, kernel
+from ..kinematics.position import Motion
+from ..machine.design import Design, design_at
+from ..machine.raw import Loads
+from ..signals.signals import design_motion
+
+ITERATIONS = 100
+"""Steps of Newton's iteration at most."""
+_SETTLED, _ROUNDING = 1e-15, 1e-9
+"""Steps that end it: the first, or one below the second that is not much smaller than the last, hence rounding."""
+_SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
+
+
+class Senses(NamedTuple):
+    """Signs within a span, each +1 or -1: of the crank speed, the slider's velocity along x, the rod's turning."""
+
+    turn: float
+    slide: float
+    swing: float
+
+
+class Rubbed(NamedTuple):
+    """State of motion at crank angles (n,), with friction.
+
+    torque: on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed: its
+    derivative, N m s, if asked for. least: bound of by_acceleration from below, whatever the acceleration. heat:
+    friction power of all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
+    """
+
+    torque: Array
+    by_acceleration: Array
+    by_speed: Array
+    least: Array
+    heat: Array
+    guides: Array
+
+
+@analytic
+def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> Any:
+    """Return the least dT/da, kg m^2, on one side of the guide, where friction does not lock.
+
+    push: the design at speed 0 and acceleration 1, without gravity. mu: the guide's coefficient, or minus that.
+    """
+    b = balance(sine, cosine, m, push, 0.0)
+    ax, ay = b.pull + b.rod_x, b.rod_y
+    px, py = ax + b.crank_x, ay + b.crank_y
+    pin, pivot = root(ax * ax + ay * ay), root(px * px + py * py)
+    q = root(1.0 + mu * mu)
+    h_y, h_a = m.along - mu * m.across, b.moment - m.across * b.pull
+    t_y, t_a = push.r * (cosine - mu * sine), b.couple + push.r * (cosine * ay - sine * ax)
+    off_h_y = q * (push.crank_pin_circle + push.slider_pin_circle)
+    off_h_a = push.crank_pin_circle * pin + push.slider_pin_circle * abs(b.pull)
+    off_t_y = q * (push.crank_pin_circle + push.crank_pivot_circle)
+    off_t_a = push.crank_pin_circle * pin + push.crank_pivot_circle * pivot
+    ratio, steep = h_a / h_y, abs(h_y) - off_h_y
+    off_ratio = (off_h_a + abs(ratio) * off_h_y) / steep
+    off = off_t_a + abs(t_y) * off_ratio + off_t_y * (abs(ratio) + off_ratio)
+    return t_a - t_y * ratio - off
+
+
+@analytic
+def settled(step: Any, last: Any) -> bool:
+    """Return whether the iteration ends with a step and the one before it, both as shares of the acceleration."""
+    return bool(step <= _SETTLED or (step <= _ROUNDING and step >= 0.5 * last))
+
+
+@analytic
+def narrowed(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -> Any:
+    """Return the next acceleration of Newton's iteration, and the bracket of its root.
+
+    excess: motor torque less what the motion takes at a, N m. slope, least: of what it takes, with the drive's inertia.
+    """
+    reach = a + excess / least
+    low, high = np.maximum(low, np.minimum(a, reach)), np.minimum(high, np.maximum(a, reach))
+    new = a + excess / slope
+    outside = 1.0 - 1.0 * ((low <= new) & (new <= high))
+    return new + outside * (0.5 * (low + high) - new), low, high
+
+
+@kernel
+def _rubbed(
+    stepped: ComplexTable,
+    block: Table,
+    push: int,
+    loads: Loads,
+    outward: bool,
+    senses: Senses,
+    piece: Integers,
+    shift: Row,
+    angles: Row,
+    speeds: Row,
+    accelerations: Row,
+    torques: Row,
+    inertia: float,
+    most: int,
+    by_speed: bool,
+    out: Table,
+) -> None:
+    """Fill the rows of `out` (6, n): those of `Rubbed`, in its order.
+
+    stepped: the design, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
+    acceleration 1, without gravity. Loads' pieces are those of the span. most: steps by which accelerations are solved
+    for, in place, given the motor's torques and the drive's inertia; 0 leaves them.
+    """
+    unit = design_at(block, push)
+    mu = unit.guide_friction
+    for i in range(angles.shape[0]):
+        theta, w, a = angles[i], speeds[i], accelerations[i]
+        sine, cosine = math.sin(theta), math.cos(theta)
+        still = design_motion(sine, cosine, unit)
+        least = least_inertia(sine, cosine, still, unit, mu)
+        least = min(least, least_inertia(sine, cosine, still, unit, -mu))
+        low, high, last, steps, by = -math.inf, math.inf, math.inf, 0, 0
+        while True:
+            stepped[_SPEED, 0] = complex(w, STEP if by == 1 else 0.0)
+            stepped[_ACCELERATION, 0] = complex(a, STEP if by == 0 else 0.0)
+            d = design_at(stepped, 0)
+            m = design_motion(sine, cosine, d)
+            load = load_on_slider(m, d, stepped, 0, theta, outward, loads, piece, shift)
+            guide = touch(sine, cosine, m, d, load, senses.turn, senses.swing)
+            sides = Sides(senses.turn, senses.slide, senses.swing, -1.0 if guide.real > 0.0 else 1.0)
+            f = joint_forces(sine, cosine, m, d, load, sides)
+            torque = beside_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
+            rate = torque.imag / STEP
+            out[1 + by, i] = rate
+            if by == 1:
+                break
+            if steps < most and least + inertia > 0.0:
+                excess = torques[i] - inertia * a - torque.real
+                new, low, high = narrowed(a, excess, rate + inertia, least + inertia, low, high)
+                size = abs(new) + (abs(torques[i]) + abs(torque.real)) / (least + inertia)
+                step = abs(new - a) / size if size > 0.0 else 0.0
+                a, steps = new, steps + 1
+                if not settled(step, last):
+                    last = step
+                    continue
+            accelerations[i] = a
+            out[0, i] = torque.real
+            out[3, i] = least
+            pivot = d.crank_pivot_circle.real * math.hypot(f.pivot_x.real, f.pivot_y.real)
+            in_crank = d.crank_pin_circle.real * math.hypot(f.crank_pin_x.real, f.crank_pin_y.real)
+            in_slider = d.slider_pin_circle.real * math.hypot(f.slider_pin_x.real, f.slider_pin_y.real)
+            pins = pivot + in_crank * (1.0 - m.rod_1.real) + in_slider * abs(m.rod_1.real)
+            out[4, i] = (pins + d.guide_friction.real * abs(f.guide.real * m.x_1.real)) * senses.turn * w
+            out[5, i] = f.guide.real
+            if not by_speed:
+                break
+            by = 1
+
+
+class Rubbing:
+    """Friction of one cylinder between two breakpoints.
+
+    block: columns of the design; push: the one at speed 0 and acceleration 1, without gravity. piece, shift: of the
+    loads there.
+    """
+
+    def __init__(
+        self, block: Table, push: int, loads: Loads, outward: bool, senses: Senses, piece: Integers, shift: Row
+    ) -> None:
+        stepped = np.array(block[:, :1], dtype=np.complex128)
+        self._given = stepped, block, push, loads, outward, senses, piece, shift
+
+    def at(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+        """Return torque and heat of a motion (n,)."""
+        return self._fill(crank_angle, speed, acceleration, np.empty(0), 0.0, 0, by_speed=True)
+
+    def under(
+        self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
+    ) -> tuple[Array, Rubbed]:
+        """Return the accelerations under a torque of the motor, and torque and heat of the motion with them."""
+        found = np.array(guess)
+        state = self._fill(crank_angle, speed, found, torque, inertia, ITERATIONS, by_speed=by_speed)
+        require_single(crank_angle, state.least + inertia)
+        return found, state
+
+    def _fill(
+        self, angle: Array, speed: Array, found: Array, torque: Array, inertia: float, most: int, *, by_speed: bool
+    ) -> Rubbed:
+        out = np.empty((6, len(angle)))
+        _rubbed(*self._given, angle, speed, found, torque, inertia, most, by_speed, out)
+        torque, by_acceleration, rate, least, heat, _ = out
+        return Rubbed(torque, by_acceleration, rate, least, heat, out[5:])
+
+
+def require_single(angle: Array, left: Array) -> None:
+    """Raise `InputError` where friction may jam a crank. angle: rad. left: inertia that friction leaves, kg m^2."""
+    if not (left > 0.0).all():
+        raise jamming(angle, left)
+
+
+def jamming(angle: Array, left: Array) -> InputError:
+    """Return the error of a crank that friction may jam where least inertia is left; see `require_single`."""
+    worst = int(np.argmin(np.where(np.isnan(left), -np.inf, left)))
+    return InputError(
+        "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "
+        f"one acceleration to follow from the torque; got {left[worst]:.3g} kg m^2 left at "
+        f"{math.degrees(angle[worst]) % 360.0:.4g} deg; give the drive a flywheel, the crank a mass, or reduce the "
+        "friction"
+    )
+
+
+def added_up(parts: list[Rubbed]) -> Rubbed:
+    """Return the state of a shaft from those of its cylinders."""
+    guides = np.concatenate([part.guides for part in parts])
+    torque, by_acceleration, by_speed, least, heat = np.sum([part[:-1] for part in parts], axis=0)
+    return Rubbed(torque, by_acceleration, by_speed, least, heat, guides)
