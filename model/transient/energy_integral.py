@@ -9,7 +9,8 @@ One unknown is left for the mean speed: K_least > 0. No load jumps over the cran
 least value, and the period grows without bound as K_least falls to 0: every mean speed has its running, however closely
 the crank comes to stopping.
 
-Loads D w and E w^2 are taken along the speed found last, from a constant one on: then the result is a first guess.
+Loads D w and E w^2, and friction, are taken along the motion found last, from a constant speed on: then the result is a
+first guess.
 """
 
 from __future__ import annotations
@@ -53,12 +54,15 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
 
     No energy below zero may hide between nodes: see `cut_where_least`.
     """
-    pace, viscous = np.full(turn.angle.shape, speed), turn.terms.speed_dependent
+    pace, rise = np.full(turn.angle.shape, speed), np.zeros(turn.angle.shape)
     for _ in range(_ROUNDS):
         load = turn.terms.static + (turn.way * turn.terms.drag + turn.terms.square * pace) * pace
+        if turn.equation.rubs:
+            load = load + turn.friction(turn.way * pace, rise)
         guess, stops = _running(turn, load, inertia, speed)
-        if stops or not viscous:
+        if stops or not turn.speed_dependent:
             return Coasting(load, guess, stops)
+        rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
         change = np.sqrt(2.0 * guess[0]) - pace
         pace = pace + 0.5 * change  # the whole of it overshoots where the drag is strong
         if np.abs(change).max() <= _SETTLED * pace.max():

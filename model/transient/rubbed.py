@@ -31,7 +31,7 @@ from ..dynamics.rubbing import Sides, joint_forces, touch
 from ..dynamics.segments import load_on_slider
 from ..dynamics.torque import balance
 from ..errors import InputError
-from ..kernel.arithmetic import STEP, analytic, root
+from ..kernel.arithmetic import analytic, root
 from ..kernel.kernel import ComplexTable, Integers, Row, Table, kernel
 from ..kinematics.position import Motion
 from ..machine.design import Design, design_at
@@ -42,6 +42,8 @@ ITERATIONS = 100
 """Steps of Newton's iteration at most."""
 _SETTLED, _ROUNDING = 1e-15, 1e-9
 """Steps that end it: the first, or one below the second that is not much smaller than the last, hence rounding."""
+_STEP = 1e-170
+"""Imaginary step whose square is zero: where no force acts, its size must not be the root of a negative number."""
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
@@ -146,8 +148,8 @@ def _rubbed(
         least = min(least, least_inertia(sine, cosine, still, unit, -mu))
         low, high, last, steps, by = -math.inf, math.inf, math.inf, 0, 0
         while True:
-            stepped[_SPEED, 0] = complex(w, STEP if by == 1 else 0.0)
-            stepped[_ACCELERATION, 0] = complex(a, STEP if by == 0 else 0.0)
+            stepped[_SPEED, 0] = complex(w, _STEP if by == 1 else 0.0)
+            stepped[_ACCELERATION, 0] = complex(a, _STEP if by == 0 else 0.0)
             d = design_at(stepped, 0)
             m = design_motion(sine, cosine, d)
             load = load_on_slider(m, d, stepped, 0, theta, outward, loads, piece, shift)
@@ -155,7 +157,7 @@ def _rubbed(
             sides = Sides(senses.turn, senses.slide, senses.swing, -1.0 if guide.real > 0.0 else 1.0)
             f = joint_forces(sine, cosine, m, d, load, sides)
             torque = beside_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
-            rate = torque.imag / STEP
+            rate = torque.imag / _STEP
             out[1 + by, i] = rate
             if by == 1:
                 break

@@ -10,9 +10,9 @@ from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.dissipation import works_over_a_turn
-from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
-from ..machine.friction import require_frictionless
+from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
+from .balanced import balanced_speed
 from .energy_integral import coasting, cut_where_least, graded
 from .equation import TURN
 from .forward import drive_of
@@ -57,12 +57,11 @@ class Runner:
     """Steady running of one linkage, or of several cylinders, for any flywheel and motor."""
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage) -> None:
-        require_frictionless(mechanism.friction, "steady running")
         self.equation = equation_of(mechanism, linkage)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
-        self.viscous = self.turn.terms.speed_dependent
+        self.viscous = self.turn.speed_dependent
         self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def under(self, drive: Drive) -> SteadyRunning:
@@ -141,47 +140,13 @@ class Runner:
         Only where it is stable: faster, the loads are stronger than the motor. Of several the nearest to the
         mechanism's speed, or the least if that is 0. Raises `InputError` where there is none.
         """
-        from scipy.optimize import brentq
-
-        way, motor = self.turn.way, self._motor(drive)
-        static, drag = way * self.turn.mean(self.turn.terms.static), self.turn.mean(self.turn.terms.drag)
-        square = way * self.turn.mean(self.turn.terms.square)
-
-        def surplus(speed: float) -> float:
-            return way * float(motor(np.array(way * speed))[0]) - static - (drag + square * speed) * speed
-
-        if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
-            raise InputError(
-                "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
-                f"{drive.gear_ratio * drive.motor.torque:g} N m on the crank against {static:.6g} N m on average at "
-                "every speed; give the motor a no-load speed, or add a viscous load or drag"
-            )
-        if isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
-            top = max(1.0, 1.01 * surplus(0.0) / (surplus(0.0) - surplus(1.0)))
-        else:
-            top = speed_range(drive)[1]
-        speeds = np.linspace(0.0, top, 401)
-        values = np.array([surplus(speed) for speed in speeds])
-        falls = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
-        if not len(falls):
-            weak = values.max() <= 0.0
-            raise InputError(
-                "steady running needs a speed at which motor and loads balance; got a motor that is "
-                + (
-                    "weaker than the mean load at every speed"
-                    if weak
-                    else "stronger than the loads where its table ends"
-                )
-                + f" ({static:.6g} N m on the crank besides loads that change with speed); "
-                + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
-            )
-        found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
-        return min(found, key=lambda speed: abs(speed - self.speed)) if self.speed else found[0]
+        return balanced_speed(self.turn, drive, self._motor(drive), self.speed)
 
     def energy_change(self, speed: float) -> float:
         """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: rad/s, its size."""
-        torque = self.turn.terms.torque(self.turn.way * speed, 0.0)
-        starts, nodes = self.turn.integral(self.turn.mean(torque) - torque)
+        turn, pace = self.turn.rubbing_at(speed), np.array(self.turn.way * speed)
+        torque = turn.terms.torque(pace, 0.0) + turn.friction(pace, 0.0)
+        starts, nodes = turn.integral(turn.mean(torque) - torque)
         return float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))
 
     def _motor(self, drive: Drive) -> Torque:

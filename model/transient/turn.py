@@ -10,7 +10,8 @@ Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: the
 number, E at the start, onto E at the end, and chained they close the turn.
 
 Where the crank nearly stops, the time for an angle, 1 / sqrt(2 E), rises steeply: panels whose last Legendre
-coefficients have not died out are halved, and the turn is solved anew.
+coefficients have not died out are halved, and the turn is solved anew. With friction, panels also end where a guide's
+force changes sides, and as that moves with the motion, the turn is solved anew until it stays.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from numpy.polynomial import legendre
 
 from ..arrays import Array, Mask
 from ..dynamics.segments import crowded, crowding, uncrowded
-from .equation import TURN, Equation, Terms
+from .contacts import contacts
+from .equation import TURN, Equation, Span, Terms
 
 _NODES = 16
 _PANELS = 40
@@ -33,6 +35,8 @@ _EXACT = 1e-13
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-11  # ... and what is left of them then, of the greatest value over the turn
 _HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
+_MOVES = 12  # times that panels are moved to where guides change sides
+_MOVED = 1e-9  # rad; a kink nearer to the end of a panel than its first node is off by the square of this
 
 Torque = Callable[[Array], tuple[Array, Array]]
 """Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
@@ -58,13 +62,18 @@ class PeriodicTurn:
     """Terms of the equation of motion on the nodes of a cycle, in the order of the crank's passage.
 
     angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
-    cuts: crank angles, rad, at which panels end besides.
+    cuts: crank angles, rad, at which panels end besides; contacts: those where a guide changes sides, ascending.
+    spans: the parts of the cycle, each with its panels.
     """
 
     def __init__(
-        self, equation: Equation, dimensions: tuple[float, float, float], cuts: tuple[float, ...] = ()
+        self,
+        equation: Equation,
+        dimensions: tuple[float, float, float],
+        cuts: tuple[float, ...] = (),
+        contacts: tuple[float, ...] = (),
     ) -> None:
-        self.equation, self.dimensions, self.cuts = equation, dimensions, cuts
+        self.equation, self.dimensions, self.cuts, self.contacts = equation, dimensions, cuts, contacts
         self.way = equation.direction
         nodes, weights = legendre.leggauss(_NODES)
         self.nodes, self.weights = nodes, 0.5 * weights
@@ -73,18 +82,25 @@ class PeriodicTurn:
         self.sums = legendre.legval(nodes, self._integral).T @ self._series
         kappa = crowding(*dimensions) if equation.crowds else 1.0
         low, width, angle, terms = [], [], [], []
+        self.spans: list[tuple[Span, slice]] = []
+        passed = 0
         for stretch in equation.turn(self.way):
             first, last = crowded(stretch.low, kappa), crowded(stretch.high, kappa)
             count = max(2, math.ceil(_PANELS * (last - first) / TURN))
             ends = np.array([uncrowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
             ends[0], ends[-1] = stretch.low, stretch.high
             ends = np.union1d(ends, [cut for cut in cuts if stretch.low < cut < stretch.high])
+            for contact in contacts:
+                if np.abs(ends - contact).min() > _MOVED and stretch.low < contact < stretch.high:
+                    ends = np.union1d(ends, contact)
             ends = ends if self.way > 0.0 else ends[::-1]
             at = ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (1.0 + nodes)
             low.append(ends[:-1])
             width.append(np.diff(ends))
             angle.append(at)
             terms.append(stretch.at(at.ravel()))
+            self.spans.append((stretch, slice(passed, passed + len(at))))
+            passed += len(at)
         self.low, self.width, self.angle = np.concatenate(low), np.concatenate(width), np.concatenate(angle)
         columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in terms), strict=True)
         self.terms = Terms(*(np.concatenate(column).reshape(self.angle.shape) for column in columns))
@@ -112,6 +128,47 @@ class PeriodicTurn:
         total = t.inertia + inertia
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
 
+    def rates(self, energy: Array, motor: Torque, inertia: float, added: float) -> tuple[Array, Array, Array]:
+        """Return dE / d(theta) and its derivatives by E and by a torque, of which there is `added`, N m."""
+        rate, by_energy = self.rate(energy, motor, inertia)
+        by_torque = 1.0 / (self.terms.inertia + inertia)
+        rate = rate + added * by_torque
+        if self.equation.rubs:
+            speed = self.way * np.sqrt(2.0 * energy)
+            torque, slope = motor(speed)
+            for span, panels in self.spans:
+                angles, speeds, torques, guess = (
+                    of[panels].ravel() for of in (self.angle, speed, torque + added, rate)
+                )
+                found, state = span.accelerated(angles, speeds, torques, inertia, guess, by_speed=True)
+                share = 1.0 / (state.by_acceleration + inertia)
+                by_speed = (slope[panels].ravel() - state.by_speed) * share
+                for column, of in ((rate, found), (by_torque, share), (by_energy, by_speed / speeds)):
+                    column[panels] = of.reshape(column[panels].shape)
+        return rate, by_energy, by_torque
+
+    @property
+    def speed_dependent(self) -> bool:
+        """Whether a load, or friction, depends on the motion of the crank."""
+        return self.equation.rubs or self.terms.speed_dependent
+
+    def friction(self, speed: Array, rate: Array | float) -> Array:
+        """Return the torque on the nodes, N m, that friction adds at speeds, rad/s, and accelerations, rad/s^2."""
+        found = np.zeros(self.angle.shape)
+        if not self.equation.rubs:
+            return found
+        speed, rate = np.broadcast_to(speed, found.shape), np.broadcast_to(rate, found.shape)
+        for span, panels in self.spans:
+            rubbed = span.rubbed(*(of[panels].ravel() for of in (self.angle, speed, rate)))
+            found[panels] = rubbed.torque.reshape(found[panels].shape)
+        without: Array = self.terms.torque(speed, rate)
+        return found - without
+
+    def rubbing_at(self, speed: float) -> PeriodicTurn:
+        """Return the turn whose panels end where guides change sides at a constant speed, rad/s, of its size."""
+        energy, start, rate = self.even(speed)
+        return (self.moved(energy, start, np.full(energy.shape, rate)) if self.equation.rubs else None) or self
+
     def even(self, speed: float) -> Guess:
         """Return the first guess of a constant speed, rad/s, of its size."""
         return np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2), 0.0
@@ -128,12 +185,15 @@ class PeriodicTurn:
 
         guess: where Newton's iteration starts on a turn; None ends the search. Other arguments: see `solve`.
         """
-        turn = self
-        for _ in range(_HALVINGS):
+        turn, moves = self, _MOVES if self.equation.rubs else 0
+        for _ in range(_HALVINGS + moves):
             first = guess(turn)
             profile = None if first is None else turn.solve(motor, inertia, first, mean_speed=mean_speed)
             if profile is None:
                 return None
+            if moves and (moved := turn.moved(profile.energy, profile.start, profile.rate)) is not None:
+                turn, moves = moved, moves - 1
+                continue
             rough = turn._rough(1.0 / np.sqrt(profile.energy)) | turn._rough(profile.rate)
             if not rough.any():
                 return turn, profile
@@ -142,7 +202,34 @@ class PeriodicTurn:
 
     def cut(self, angles: Array) -> PeriodicTurn:
         """Return the same turn whose panels end at further crank angles, (n,), rad."""
-        return PeriodicTurn(self.equation, self.dimensions, (*self.cuts, *(float(angle) for angle in angles)))
+        cuts = (*self.cuts, *(float(angle) for angle in angles))
+        return PeriodicTurn(self.equation, self.dimensions, cuts, self.contacts)
+
+    def moved(self, energy: Array, start: Array, rate: Array) -> PeriodicTurn | None:
+        """Return the turn whose panels end where guides change sides in a motion; None if they do.
+
+        energy, rate: E and its derivative on the nodes. start: E at the panels' starts.
+        """
+        found: list[float] = []
+        ends = self.low + self.width
+        for span, panels in self.spans:
+
+            def motion(angle: float, panels: slice = panels) -> tuple[float, float]:
+                p = panels.start + int(np.searchsorted(self.way * ends[panels][:-1], self.way * angle))
+                own, gain = self.within(rate, p, 2.0 * (angle - self.low[p]) / self.width[p] - 1.0)
+                return self.way * math.sqrt(2.0 * (start[p] + gain)), own
+
+            edges = float(self.low[panels.start]), float(ends[panels.stop - 1])
+            (first, first_rate), (last, last_rate) = map(motion, edges)
+            speeds = np.concatenate([[first], self.way * np.sqrt(2.0 * energy[panels].ravel()), [last]])
+            rates = np.concatenate([[first_rate], rate[panels].ravel(), [last_rate]])
+            angles = np.concatenate([edges[:1], self.angle[panels].ravel(), edges[1:]])
+            found += contacts(span, motion, angles, speeds, rates)
+        found.sort()
+        known = self.contacts
+        if len(found) == len(known) and np.abs(np.subtract(found, known)).max(initial=0.0) < _MOVED:
+            return None
+        return PeriodicTurn(self.equation, self.dimensions, self.cuts, tuple(found))
 
     def _rough(self, values: Array) -> Mask:
         """Return the panels, (panels,), on which values on the nodes are not resolved."""
@@ -158,9 +245,7 @@ class PeriodicTurn:
         energy, start, added = guess
         last = math.inf
         for _ in range(_STEPS):
-            rate, by_energy = self.rate(energy, motor, inertia)
-            by_torque = 1.0 / (self.terms.inertia + inertia)
-            rate = rate + added * by_torque
+            rate, by_energy, by_torque = self.rates(energy, motor, inertia, added)
             system = np.eye(_NODES) - self.width[:, None, None] * self.sums * by_energy[:, None, :]
             integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ self.sums.T)
             sides = np.stack([start[:, None] + integrals[0] - energy, np.ones(energy.shape), integrals[1]], axis=-1)
@@ -188,7 +273,7 @@ class PeriodicTurn:
             energy, start, added = energy + share * step, start + share * starts, added + share * more
             size = float(np.abs(step).max() / energy.max())
             if share == 1.0 and size < 1e-8 and (size < _EXACT or size >= 0.5 * last):
-                rate = self.rate(energy, motor, inertia)[0] + added * by_torque
+                rate = self.rates(energy, motor, inertia, added)[0]
                 return Profile(energy, start, rate, added, float(memory))
             last = size
         return None

@@ -193,6 +193,20 @@ def test_a_disc_starts_once_the_motor_is_stronger_than_its_pivot(way: float) -> 
     assert started.speed[-1] == pytest.approx(way * 0.001 * HELD / 0.02, rel=1e-9)
 
 
+def test_a_linkage_starts_from_rest_where_no_force_acts_yet() -> None:
+    """Forces of zero have sizes of zero, with no derivative: at rest the motor has nothing but inertia to overcome."""
+    for machine in MACHINES.values():
+        bare = replace(machine, gravity=(0.0, 0.0), loads=(), friction=RUBBING)
+        linkage = replace(LINKAGE, branch=machine.branch)
+        start = float(linkage.dead_centre_angles[0]) + 0.7
+        found = simulate(bare, linkage, DRIVE, duration=0.02, start=State(angle=start))
+        assert found.verdict == "time is up"
+        assert found.imbalance < 1e-9
+        first = cycle(bare, linkage, start, speed=machine.direction * 1e-12, acceleration=found.acceleration[0]).torque
+        assert found.torque[0] == pytest.approx(first[0], rel=1e-9)
+        assert found.torque[0] + DRIVE.inertia * found.acceleration[0] == pytest.approx(90.0 * machine.direction)
+
+
 def test_a_load_turns_a_crank_back_only_if_it_overcomes_the_friction() -> None:
     """Pushed by 60 N against its start it runs back; where its weight holds it in the pivot it stays."""
     wheel = RigidLink(mass=20.0, centre=0.0, inertia=0.02)

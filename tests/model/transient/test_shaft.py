@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
@@ -113,10 +112,15 @@ def test_a_flywheel_of_four_cylinders_keeps_what_is_wanted_and_is_smaller_than_t
     assert found.estimate == pytest.approx(found.inertia, rel=0.3)
 
 
-def test_what_is_not_covered_is_refused_in_a_sentence() -> None:
-    rubbing = replace(MACHINES["four in line"], friction=Friction(guide=0.1))
-    with pytest.raises(InputError, match="friction"):
-        Runner(rubbing, LINKAGE).constant(0.4)
+@pytest.mark.parametrize("name", ["one of four strokes", "a V of compressors"])
+def test_friction_in_every_cylinder_counts(name: str) -> None:
+    """With a motor that it slows; the torque is that of the inverse dynamics of each cylinder, friction included."""
+    rubbing = replace(MACHINES[name], friction=Friction(guide=0.1, crank_pivot=Pin(radius=0.02, coefficient=0.05)))
+    motor = Drive(motor=LinearMotor(stall_torque=80.0, no_load_speed=220.0), flywheel=0.2)
+    plain, found = (steady_running(machine, LINKAGE, motor) for machine in (MACHINES[name], rubbing))
+    assert abs(found.mean_speed) < abs(plain.mean_speed)
+    off = np.sort(np.abs(found.torque - needed(rubbing, found)))
+    assert off[: int(0.98 * len(off))].max() < 1e-9 * np.abs(found.torque).max()  # the others are at jumps
 
 
 @pytest.mark.parametrize("name", ["one of four strokes", "a V of compressors"])

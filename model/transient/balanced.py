@@ -1,0 +1,93 @@
+"""Constant speed at which a motor and the loads balance over a turn: where the search for steady running starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..errors import InputError
+from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
+from .turn import PeriodicTurn, Torque
+
+_TRIED = 401
+_KNOTS = 33
+"""Speeds at which the mean torque of friction is found; between them it is interpolated."""
+_DOUBLINGS = 40
+
+
+def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float) -> float:
+    """Return the size of the speed, rad/s; see `Runner.balanced_speed`.
+
+    motor: the drive's torque. near: the mechanism's speed, rad/s, its size.
+    """
+    from scipy.optimize import brentq
+
+    way = turn.way
+    static, drag = way * turn.mean(turn.terms.static), turn.mean(turn.terms.drag)
+    square = way * turn.mean(turn.terms.square)
+
+    def unrubbed(speed: float) -> float:
+        return way * float(motor(np.array(way * speed))[0]) - static - (drag + square * speed) * speed
+
+    if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
+        top = _rubbed_away(turn, unrubbed, near)
+        if top is None:
+            raise InputError(
+                "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
+                f"{drive.gear_ratio * drive.motor.torque:g} N m on the crank against {static:.6g} N m on average at "
+                "every speed; give the motor a no-load speed, or add a viscous load or drag"
+            )
+    elif isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
+        top = max(1.0, 1.01 * unrubbed(0.0) / (unrubbed(0.0) - unrubbed(1.0)))
+    else:
+        top = speed_range(drive)[1]
+    friction = _friction(turn, top)
+
+    def surplus(speed: float) -> float:
+        return unrubbed(speed) - friction(speed)
+
+    speeds = np.linspace(0.0, top, _TRIED)
+    values = np.array([surplus(speed) for speed in speeds])
+    falls = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
+    if not len(falls):
+        weak = values.max() <= 0.0
+        loads, held = ("load and friction", static + friction(0.0)) if turn.equation.rubs else ("load", static)
+        raise InputError(
+            "steady running needs a speed at which motor and loads balance; got a motor that is "
+            + (
+                f"weaker than the mean {loads} at every speed"
+                if weak
+                else "stronger than the loads where its table ends"
+            )
+            + f" ({held:.6g} N m on the crank besides loads that change with speed); "
+            + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
+        )
+    found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
+    return min(found, key=lambda speed: abs(speed - near)) if near else found[0]
+
+
+def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
+    """Return the mean torque of friction at a constant speed, rad/s, its size, against the turning; N m."""
+    return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
+
+
+def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
+    """Return the mean torque of friction, N m, at speeds up to the greatest, rad/s."""
+    if not turn.equation.rubs:
+        return lambda speed: 0.0
+    from scipy.interpolate import CubicSpline
+
+    speeds = np.linspace(0.0, top, _KNOTS)
+    spline = CubicSpline(speeds, [_mean_friction(turn, speed) for speed in speeds])
+    return lambda speed: float(spline(speed))
+
+
+def _rubbed_away(turn: PeriodicTurn, unrubbed: Callable[[float], float], near: float) -> float | None:
+    """Return a speed, rad/s, at which friction, growing with the forces of inertia, takes all that a motor has left."""
+    top = max(1.0, near)
+    for _ in range(_DOUBLINGS if turn.equation.rubs else 0):
+        if unrubbed(top) <= _mean_friction(turn, top):
+            return top
+        top *= 2.0
+    return None

@@ -1,0 +1,36 @@
+"""Crank angles at which a guide's force changes sides in a motion.
+
+They move with the motion. Two within one spacing of the points, where the force is next to nothing, are passed over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..arrays import Array
+from .equation import Span
+
+Motion = Callable[[float], tuple[float, float]]
+"""Speed, rad/s, and acceleration, rad/s^2, at a crank angle, rad."""
+_CLOSE = 1e-12
+"""rad; how closely an angle is found."""
+
+
+def contacts(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:
+    """Return the crank angles within a span, rad, in the order of its points.
+
+    angles: (n,), rad. speeds, accelerations: the motion there.
+    """
+    from scipy.optimize import brentq
+
+    def guide(angle: float, cylinder: int) -> float:
+        state = span.rubbed(*(np.array([each]) for each in (angle, *motion(angle))))
+        return float(state.guides[cylinder, 0])
+
+    values = span.rubbed(angles, speeds, accelerations).guides
+    changes = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
+    return [
+        float(brentq(guide, angles[i], angles[i + 1], args=(c,), xtol=_CLOSE)) for c, i in zip(*changes, strict=True)
+    ]
