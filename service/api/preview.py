@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, ValidationError
 
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import Kind
 from .job_files import Understood, understood
-from .job_requests import given_problem
+from .job_requests import Submission, given_problem
+from .problems import rule_and_value
 from .settings import SettingsDep
 from .throttle import READING
 
@@ -33,10 +34,15 @@ class Draft(BaseModel, extra="forbid", strict=True):
         description="the tables of a job file",
         examples=[{"variables": {"crank": ["20 mm", "60 mm"], "rod": "100 mm", "offset": "10 mm"}}],
     )
+    submission: dict[str, Any] = Field(
+        default_factory=dict,
+        description="priority and limits, side by side",
+        examples=[{"priority": 1, "seconds": 600}],
+    )
 
 
 class WrongModel(BaseModel):
-    """Something that is wrong with a job. path: the key, "" for the job as a whole."""
+    """Something that is wrong with a job. path: the key, "" for the whole job, "submission.seconds" and the like."""
 
     path: str = Field(examples=["mechanism.slider.mass"])
     sentence: str = Field(examples=['must be a mass; got "2 mm", which is a length; write it like "0.8 kg"'])
@@ -161,7 +167,8 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     with READING:
         look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
         return PreviewModel(
-            wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong],
+            wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong]
+            + _wrong_submission(draft.submission),
             understood=None if look.problem is None else understood(look.problem, draft.job),
             allowed=_allowed(look),
             example=_example(look),
@@ -172,6 +179,19 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
             ],
             names=[NameModel(name=of.name[:500], title=of.title[:200], unit=_unit(of.kind)) for of in look.names],
         )
+
+
+def _wrong_submission(given: dict[str, Any]) -> list[WrongModel]:
+    own = {"priority": given["priority"]} if "priority" in given else {}
+    limits = {key: value for key, value in given.items() if key != "priority"}
+    try:
+        Submission.model_validate({"job": {}, "limits": limits, **own})
+    except ValidationError as error:
+        return [
+            WrongModel(path=f"submission.{details['loc'][-1]}"[:500], sentence=rule_and_value(details)[:2000])
+            for details in error.errors(include_url=False)
+        ]
+    return []
 
 
 def _unit(kind: Kind | None) -> str | None:

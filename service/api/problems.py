@@ -125,17 +125,21 @@ def _methods(request: Request) -> list[str]:
 
 
 def _sentence(details: Mapping[str, Any]) -> str:
-    """Return rule and value of one thing that is wrong in a request."""
+    """Return place, rule and value of one thing that is wrong in a request."""
+    return f"{_place(details['loc'])}: {rule_and_value(details)}"
+
+
+def rule_and_value(details: Mapping[str, Any]) -> str:
+    """Return what is wrong where pydantic says so: rule, value, remedy."""
     from ...optimise.job.messages import rule_of
     from ...optimise.job.units import shown
 
-    where = _place(details["loc"])
     if details["type"] == "missing":
-        return f"{where}: is required; it is missing; add it"
+        return "is required; it is missing; add it"
     if details["type"] == "extra_forbidden":
-        return f"{where}: unknown; got {shown(details['input'])}; leave it out"
+        return f"unknown; got {shown(details['input'])}; leave it out"
     rule = rule_of(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"
-    return f"{where}: {rule}; got {shown(details['input'])}; correct it"
+    return f"{rule}; got {shown(details['input'])}; correct it"
 
 
 def _place(location: Sequence[Any]) -> str:

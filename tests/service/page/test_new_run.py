@@ -353,11 +353,28 @@ def test_limits_and_priority_go_with_the_job_and_wrong_ones_are_said(form: Open,
     page = form(store, "#/new?preset=feeder", expected=("422",))
     ready(page)
     page.get_by_text("Samples, budget, priority and limits").click()
-    page.get_by_label("priority", exact=True).fill("2000")
-    page.get_by_label("time limit (s)", exact=True).fill("60")
+    wrong = {
+        "priority": ("2000", "1.5", "high"),
+        "time limit (s)": ("-1", "0", "abc", "1e400"),
+        "limit of designs": ("0", "2.5", "1e30"),
+        "memory limit (MB)": ("-1", "x"),
+    }
+    for name, values in wrong.items():
+        field = page.get_by_label(name, exact=True)
+        for value in values:
+            field.fill(value)
+            expect(status(page)).to_have_text("One thing to correct.")
+            expect(field).to_have_attribute("aria-invalid", "true")
+            expect(field).to_have_accessible_description(re.compile("got"))
+        field.fill("")
+        ready(page)
+    priority = page.get_by_label("priority", exact=True)
+    priority.fill("2000")
     start(page)
-    expect(page.get_by_label("priority", exact=True)).to_have_attribute("aria-invalid", "true")
-    page.get_by_label("priority", exact=True).fill("5")
+    expect(page.get_by_role("alert")).to_have_text("Correct what is marked first.")
+    priority.fill("5")
+    page.get_by_label("time limit (s)", exact=True).fill("60")
+    ready(page)
     start(page)
     page.wait_for_url("**/#/jobs/1")
     assert (store.job(1).priority, store.job(1).limits.seconds) == (5, 60.0)

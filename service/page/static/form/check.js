@@ -2,11 +2,13 @@
 
 import { isAbort, post, statusOf } from "../lib/api.js";
 
+/** @typedef {Pick<Form.Whole, "job" | "submission">} Asked */
+
 const WAIT = 200; // ms
 const AGAIN = 3000; // ms until the next try while the service does not answer
 
 /**
- * Return a function that asks about a job; told({answer}) or told({problem}) with the latest; `signal` ends it.
+ * Return a function that asks about a job and how it is submitted; told({answer}) or told({problem}) with the latest; `signal` ends it.
  * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} told @param {AbortSignal} signal
  */
 export function checker(told, signal) {
@@ -14,26 +16,26 @@ export function checker(told, signal) {
   let timer;
   /** @type {AbortController | null} */
   let asked = null;
-  /** @param {Form.Job} job */
-  const ask = async (job) => {
+  /** @param {Asked} given */
+  const ask = async (given) => {
     asked?.abort();
     const mine = (asked = new AbortController());
     try {
-      const answer = await post("preview", { job }, { signal: mine.signal });
+      const answer = await post("preview", given, { signal: mine.signal });
       if (asked === mine && !signal.aborted) told({ answer });
     } catch (problem) {
       if (isAbort(problem) || asked !== mine || signal.aborted) return;
       told({ problem });
-      if (statusOf(problem) === 0) timer = setTimeout(() => ask(job), AGAIN);
+      if (statusOf(problem) === 0) timer = setTimeout(() => ask(given), AGAIN);
     }
   };
   signal.addEventListener("abort", () => {
     clearTimeout(timer);
     asked?.abort();
   });
-  return (/** @type {Form.Job} */ job, { now = false } = {}) => {
+  return (/** @type {Asked} */ { job, submission }, { now = false } = {}) => {
     clearTimeout(timer);
     asked?.abort(); // what it says is of another job by now
-    timer = setTimeout(() => ask(structuredClone(job)), now ? 0 : WAIT);
+    timer = setTimeout(() => ask(structuredClone({ job, submission })), now ? 0 : WAIT);
   };
 }

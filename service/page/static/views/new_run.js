@@ -83,7 +83,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     submit: (key, value) => {
       if (value === undefined) delete form.submission[key];
       else form.submission[key] = value;
-      changed({ check: false });
+      changed();
     },
     rename: (path, from, to, within) => {
       const table = /** @type {Record<string, unknown>} */ (at(form.job, path));
@@ -111,15 +111,13 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     else say(sentenceOf(problem));
   }, signal);
 
-  /** @param {{ check?: boolean }} given */
-  function changed({ check: again = true } = {}) {
+  function changed() {
     draft.key = newKey();
     keepDraft(draft);
     file.refresh();
     refusal.hidden = true;
-    if (!again) return;
     checked = null;
-    check(form.job);
+    check(form);
   }
   /** @param {string | null | undefined} focus */
   function redraw(focus = document.activeElement?.id) {
@@ -151,7 +149,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       status.classList.remove("good");
       say("Checking …");
     }
-    check(form.job, { now: true });
+    check(form, { now: true });
   }
   /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given */
   function mark(wrong, given = {}) {
@@ -200,8 +198,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       start.disabled = false;
       const lines = sentenceOf(error).split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
       const wrong = lines.flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []]).filter((found) => found.length);
-      if (statusOf(error) === 422) showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })));
-      refuse(sentenceOf(error));
+      const { first: marked, elsewhere } = statusOf(error) === 422
+        ? showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })))
+        : { first: null, elsewhere: [] };
+      refuse(marked && !elsewhere.length ? "Correct what is marked first." : sentenceOf(error));
     }
   }
   /** @param {string} sentence */
@@ -242,7 +242,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   redraw(null);
   file.refresh();
   say("Checking …");
-  check(form.job, { now: true });
+  check(form, { now: true });
   window.addEventListener("units", () => showFactsAgain(), { signal });
   function showFactsAgain() {
     if (checked) showFacts(facts, checked);
