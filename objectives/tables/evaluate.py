@@ -18,7 +18,7 @@ from ..cycle_peak import screened
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
 from ..registry import quantity
-from .swinging import require_in_motion
+from .swinging import require_in_motion, require_of_swing
 
 
 @overload
@@ -60,7 +60,8 @@ def evaluate(
     follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the exact one of
     `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks the slope is
     that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a quantity that the
-    machine does not define (a position error without tolerances), and for the gradient of a function that has none.
+    machine does not define (a position error without tolerances), for one of a full turn with a swing, and for the
+    gradient of a function that has none.
 
     >>> from slidercrank import Mechanism, evaluate
     >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
@@ -72,6 +73,8 @@ def evaluate(
     require_in_motion(quantities, own, swing)
     chosen = [quantity(name, own) for name in quantities]
     for item in chosen:
+        if swing is not None:
+            require_of_swing(item.name, item)
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")

@@ -106,7 +106,9 @@ class Analysis(Mapping[str, float]):
         angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns carry their unit: crank_angle_rad,
         slider_position_m, slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad,
         transmission_angle_rad, torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
+        Raises `InputError` for a design that swings.
         """
+        self._require_turning("a cycle")
         return cycle_table(self.mechanism, self.linkage, angles)
 
     def deviations(self, measured: Mapping[str, ArrayLike] | pd.DataFrame) -> pd.DataFrame:
@@ -116,8 +118,9 @@ class Analysis(Mapping[str, float]):
         `cycle` in SI, metric or inch units, such as slider_position_mm; NaN where nothing was measured. Columns: title,
         unit, samples, rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift, which,
         added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
-        without crank angle or curve, units that do not fit and values that no machine has.
+        without crank angle or curve, units that do not fit, values that no machine has, and a design that swings.
         """
+        self._require_turning("a deviation from measured curves")
         import pandas as pd
 
         given = measured_from(measured, self.mechanism, self.linkage)
@@ -129,7 +132,11 @@ class Analysis(Mapping[str, float]):
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def plot(self) -> Figure:
-        """Return a matplotlib figure of position, velocity, acceleration and torque over the cycle."""
+        """Return a matplotlib figure of position, velocity, acceleration and torque over the cycle.
+
+        Raises `InputError` for a design that swings.
+        """
+        self._require_turning("a figure of the cycle")
         from matplotlib.figure import Figure
 
         curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, even_angles(361))}
@@ -143,6 +150,13 @@ class Analysis(Mapping[str, float]):
             axes.label_outer()
         found.suptitle(self.title or self.linkage.label)
         return found
+
+    def _require_turning(self, what: str) -> None:
+        if self.swing is not None:
+            raise InputError(
+                f"{what} is of a crank that turns through; got a design that swings; `Problem.swing` has the numbers "
+                "of its ways forth and back, `slidercrank swing --curves FILE.csv` the curves"
+            )
 
     def _repr_html_(self) -> str:
         """Picture of the linkage and table of its quantities, for notebooks."""

@@ -6,9 +6,11 @@ import tomllib
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem
 
@@ -49,6 +51,26 @@ def test_a_quantity_of_a_full_turn_is_not_one_of_a_swing() -> None:
         found["stroke"]
     with pytest.raises(InputError, match="no quantity is called 'strok'"):
         found["strok"]
+
+
+def test_every_quantity_of_a_full_turn_is_refused_for_a_swing_and_every_other_is_a_number() -> None:
+    problem = load_job(SUPPORT)
+    own = {of.name for of in problem.own}
+    assert own
+    for name in (*QUANTITIES, *own):
+        if problem.quantity(name).turning:
+            with pytest.raises(InputError, match=f"{name} is of a crank that turns through"):
+                problem.evaluate([DESIGN], [name])
+        elif not problem.quantity(name).undefined_because([problem.mechanism]):
+            assert np.isfinite(problem.evaluate([DESIGN], [name])).all(), name
+
+
+@pytest.mark.parametrize("ask", ["cycle", "plot", "deviations"])
+def test_curves_of_a_full_turn_are_refused_for_a_design_that_swings(ask: str) -> None:
+    found = load_job(SUPPORT).analyse(DESIGN)
+    given = [{"crank_angle_deg": [20.0, 30.0], "slider_position_mm": [3e3, 2.9e3]}] if ask == "deviations" else []
+    with pytest.raises(InputError, match="got a design that swings"):
+        getattr(found, ask)(*given)
 
 
 def test_cylinders_at_one_place_are_told_as_such() -> None:
