@@ -1,4 +1,4 @@
-"""The moving linkage as an animated GIF: a turn of the crank, or a swing forth and back, repeated."""
+"""The moving linkage as an animated GIF: a turn of the crank, two of a cycle of 720 deg, or a swing, repeated."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...model.cycle.gas_cycle import cylinders
+from ...model.cycle.indicator import indicator
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
 from ..designs.swing_curves import at_even_times
 from ..drawings.parts import look_of, moving, pins_at, scenery
@@ -23,7 +26,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 FRAMES, MILLISECONDS = 60, 60
-"""Of a turn or a swing, and how long each is shown: 3.6 s, whatever the speed of the machine is."""
+"""Of a turn or a swing, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
 _WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
 _COLOURS = 32
 _WHITE = 246  # of 255; the fill of the slider is just below
@@ -57,14 +60,17 @@ class _Scene:
 
 
 def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
-    look = look_of(mechanism, linkage)
+    look, turns = look_of(mechanism, linkage), cycle_turns(mechanism)
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
+    angles = turn * 2.0 * math.pi * np.arange(turns * FRAMES) / FRAMES
+    gas = [indicator(mechanism, linkage, load, angles).pressure for _, load in cylinders(mechanism)]
     frames = []
-    for step in range(FRAMES):
-        angle = turn * 2.0 * math.pi * step / FRAMES
+    for step, angle in enumerate(angles.tolist()):
         pin, slider = pins_at(linkage, angle)
-        degrees = round(math.degrees(angle)) % 360
-        frames.append((moving(pin, slider, look), f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"))
+        degrees = round(math.degrees(angle)) % (360 * turns)
+        pressures = ", ".join(f"{1e-5 * pressure[step]:.3g}" for pressure in gas)
+        told = f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"
+        frames.append((moving(pin, slider, look), f"{told}, {pressures} bar" if gas else told))
     return _Scene(look.extent, look.size, scenery(linkage, look, below=True), frames, "dead centres dashed")
 
 

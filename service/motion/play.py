@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from ...model.arrays import Array
+from ...model.cycle.gas_cycle import cylinders
+from ...model.cycle.indicator import indicator
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
 from ..drawings.parts import Look, bar, block, in_words, look_of, scenery
 from ..drawings.shapes import Circle, Shape
 
 ANGLES = 360
-"""Places of the curves: of a turn a degree apart."""
+"""Places of the curves, of a turn: a degree apart."""
 _READOUT = (
     "slider_position_mm",
     "slider_velocity",
@@ -43,8 +47,9 @@ class Play:
     """A motion as a page plays it, over and over.
 
     summary: a line on the linkage. record: numbers for the script, with the places of slider and rod. columns: the
-    curves at the same places. marks: places of lines in them, deg of 360. still, moving: shapes of the drawing, those
-    that move by their name, each in its own coordinates. extent: left, bottom, right, top, mm. size: of line types.
+    curves at the same places. marks: places of lines in them, deg. turns: of the crank, after which the motion repeats;
+    1 of a swing. still, moving: shapes of the drawing, those that move by their name, each in its own coordinates.
+    extent: left, bottom, right, top, mm. size: of line types.
     """
 
     summary: str
@@ -56,6 +61,7 @@ class Play:
     extent: tuple[float, float, float, float]
     size: float
     words: Words
+    turns: int = 1
 
 
 SHOWN = "Pivots are exact; {}, and so are the widths of links that the job does not describe by a section."
@@ -69,11 +75,16 @@ _TURNS = Words(
 
 
 def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
-    """Return the motion of a fully turning linkage. Raises `AssemblyError` for one that does not turn fully."""
-    curves = cycle_table(mechanism, linkage, angles=ANGLES)
+    """Return the motion of a fully turning linkage. Raises `AssemblyError` for one that does not turn fully.
+
+    It has both turns of a cycle of two.
+    """
+    turns = cycle_turns(mechanism)
+    curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
     look = look_of(mechanism, linkage)
-    turn = linkage.at(np.arange(ANGLES) * (2.0 * math.pi / ANGLES))
-    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
+    angles = np.arange(turns * ANGLES, dtype=np.float64) * (2.0 * math.pi / ANGLES)
+    turn = linkage.at(angles)
+    dead = [math.degrees(float(angle)) % 360.0 for angle in linkage.dead_centre_angles]
     rpm = mechanism.speed * 30.0 / math.pi
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
     return Play(
@@ -83,14 +94,32 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
             "direction": -1 if mechanism.speed < 0.0 else 1,
             "perSecond": abs(mechanism.speed) / (2.0 * math.pi),
         },
-        columns=[column for key in _READOUT for column in curves if column.key.startswith(key)],
-        marks=(inner, outer),
+        columns=[
+            *(column for key in _READOUT for column in curves if column.key.startswith(key)),
+            *_pressures(mechanism, linkage, angles),
+        ],
+        marks=tuple(angle + 360.0 * number for number in range(turns) for angle in dead),
         still=scenery(linkage, look, below=True),
         moving=links_of(look),
         extent=look.extent,
         size=look.size,
-        words=_TURNS,
+        words=_TURNS if turns == 1 else replace(_TURNS, over=f"{turns} turns of the crank"),
+        turns=turns,
     )
+
+
+def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[CurveColumn]:
+    """Return the pressure in each cylinder at crank angles, rad."""
+    found = cylinders(mechanism)
+    return [
+        CurveColumn(
+            f"pressure_{place + 1}_bar",
+            "pressure" if len(found) == 1 else f"pressure, load {place + 1}",
+            "bar",
+            (1e-5 * indicator(mechanism, linkage, load, angles).pressure).tolist(),
+        )
+        for place, load in found
+    ]
 
 
 def places(look: Look, slider: Any, rod: Any) -> dict[str, Any]:

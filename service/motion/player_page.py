@@ -21,7 +21,7 @@ from .play import ANGLES, Play, play_of_turn
 from .swing_play import play_of_swing
 
 _PLAYER = Path(__file__).parent / "player"
-_STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a turn, and height
+_STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a motion of one turn, and height
 _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME)
 
 
@@ -45,7 +45,8 @@ def player_page(
         script=(_PLAYER / "player.js").read_text(encoding="utf-8"),
         data=_data(play),
         drawing=_drawing(play, title),
-        strips="\n".join(_strip(column, play.marks) for column in play.columns),
+        strips="\n".join(_strip(column, play) for column in play.columns),
+        degrees=360 * play.turns,
         readout="\n".join(_row(column) for column in play.columns),
         control=play.words.control,
         times=play.words.times,
@@ -61,7 +62,7 @@ def _data(play: Play) -> str:
         column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
         for column in play.columns
     }
-    record = {**play.record, "times": play.words.times, "curves": curves}
+    record = {**play.record, "turns": play.turns, "times": play.words.times, "curves": curves}
     return json.dumps(record, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
@@ -88,8 +89,9 @@ def _row(column: CurveColumn) -> str:
     )
 
 
-def _strip(column: CurveColumn, marks: tuple[float, ...]) -> str:
-    """Return a small picture of a curve with marks, deg, and a line that the script moves."""
+def _strip(column: CurveColumn, play: Play) -> str:
+    """Return a small picture of a curve with the marks of a motion, and a line that the script moves."""
+    marks = (angle / play.turns for angle in play.marks)
     known = [value for value in column.values if math.isfinite(value)]
     low, high = (min(known), max(known)) if known else (0.0, 1.0)
     span = (abs(high) or 1.0) if is_constant((low, high)) else high - low

@@ -2,14 +2,15 @@
 /** @type {(id: string) => HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id)); // player.html has them all
 /**
- * Curves have a value each degree; of a crank that swings each 360th of the way forth and back, angles are its own there.
- * Lengths are mm, angles deg.
- * @type {{ crank: number, offset: number, direction: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
+ * Curves have a value each degree of one turn or two; of a crank that swings each 360th of the way forth and back, angles
+ * are its own there. Lengths are mm, angles deg.
+ * @type {{ crank: number, offset: number, direction: number, turns: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
  */
 const data = JSON.parse(at("data").textContent ?? "");
 const slide = /** @type {HTMLInputElement} */ (at("angle"));
 const speed = /** @type {HTMLSelectElement} */ (at("speed"));
 const count = data.slider.length;
+const whole = 360 * data.turns;
 const cursors = [...document.querySelectorAll(".strip .now")];
 const outputs = /** @type {HTMLOutputElement[]} */ ([...document.querySelectorAll("output[data-curve]")]);
 let angle = 0;
@@ -19,7 +20,7 @@ let before = null;
 
 /** A value between those one degree apart; none next to a gap. @type {(values: (number | null)[], degrees: number) => number | null} */
 function between(values, degrees) {
-  const place = (degrees / 360) * count;
+  const place = (degrees / whole) * count;
   const low = Math.floor(place) % count;
   const high = (low + 1) % count;
   const [from, to] = [values[low], values[high]];
@@ -53,8 +54,8 @@ function draw() {
   put("slider-pin", slider, data.offset);
   if (document.getElementById("push")) put("push", slider, data.offset);
   for (const cursor of cursors) {
-    cursor.setAttribute("x1", String(angle));
-    cursor.setAttribute("x2", String(angle));
+    cursor.setAttribute("x1", String(angle / data.turns));
+    cursor.setAttribute("x2", String(angle / data.turns));
   }
   for (const output of outputs) output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
   at("angle-now").textContent = `${crank.toFixed(0).replace("-", "\u2212")}\u00b0`;
@@ -66,7 +67,7 @@ function frame(now) {
   if (!playing) return;
   if (before !== null) {
     const turns = ((now - before) / 1000) * Number(speed.value) * data.direction;
-    angle = (((angle + 360 * turns) % 360) + 360) % 360;
+    angle = (((angle + 360 * turns) % whole) + whole) % whole;
     draw();
   }
   before = now;
@@ -90,7 +91,7 @@ if (data.perSecond > 0 && data.perSecond <= 5) {
 at("play").addEventListener("click", () => play(!playing));
 slide.addEventListener("input", () => {
   play(false);
-  angle = Number(slide.value) % 360;
+  angle = Number(slide.value) % whole;
   draw();
 });
 draw();

@@ -15,6 +15,7 @@ from PIL import Image
 
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.motion.animated_gif import FRAMES, MILLISECONDS, animated_gif
@@ -101,3 +102,47 @@ def test_a_machine_turns_its_own_way_round() -> None:
     data = data_of(player_page(replace(Mechanism(), speed=4.0), LINKAGES["offset"], name=""))
     assert data["direction"] == 1
     assert data["perSecond"] == pytest.approx(4.0 / (2.0 * math.pi))
+
+
+def four_strokes() -> Mechanism:
+    load = FourStroke(
+        bore=0.086,
+        low=1e5,
+        high=5e6,
+        clearance=0.1,
+        compression_exponent=1.3,
+        expansion_exponent=1.25,
+        exhaust=1.2e5,
+    )
+    return replace(Mechanism(speed=300.0), loads=(load,))
+
+
+def test_a_cycle_of_two_turns_plays_both_with_the_pressure() -> None:
+    linkage = LINKAGES["in line"]
+    page = player_page(four_strokes(), linkage, name="engine")
+    data = data_of(page)
+    assert data["turns"] == 2
+    assert b'max="720"' in page
+    assert b"2 turns of the crank" in page
+    assert {len(values) for values in (data["slider"], data["rod"], *data["curves"].values())} == {720}
+    pressure = np.array(data["curves"]["pressure_1_bar"])
+    # Open branch, head at the outer dead centre: intake from 0 deg, compression to 360, expansion to 540, exhaust.
+    assert pressure[1:180] == pytest.approx(1.0, rel=1e-6)
+    assert pressure[361] == pytest.approx(50.0, rel=0.01)
+    assert pressure[541:720] == pytest.approx(1.2, rel=1e-6)
+    assert data["slider"][:360] == pytest.approx(data["slider"][360:], abs=1e-6)
+    marks = {float(x) for x in re.findall(r'class="dead" x1="([\d.]+)"', page.decode())}
+    assert marks == {0.0, 90.0, 180.0, 270.0}
+
+
+def test_the_picture_of_a_cycle_of_two_turns_has_both() -> None:
+    with Image.open(io.BytesIO(animated_gif(four_strokes(), LINKAGES["in line"], name="engine"))) as picture:
+        assert getattr(picture, "n_frames", 1) == 2 * FRAMES
+        pictures = []
+        for step in (5, FRAMES + 5):
+            picture.seek(step)
+            pictures.append(np.asarray(picture.convert("RGB")).astype(int))
+    differs = np.argwhere((pictures[0] != pictures[1]).any(axis=2))
+    foot = pictures[0].shape[0] - 35  # 0.35 inch of 100 dots: angle and pressure are told there
+    assert len(differs) > 0
+    assert differs[:, 0].min() >= foot
