@@ -16,7 +16,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.places import Along
 from ....model.strength.stress_cycle import stress_peaks
-from ....objectives.bars import LINKS
+from ....objectives.bars import LINKS, NEAR
 from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
@@ -45,7 +45,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     eyes = eye_stresses(mechanism, design)
     bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
     for name, bar in bars.items():
-        bar["eyes_MPa"] = {pin: plain(1e-6 * stress) for pin, stress in eyes[name].items()}
+        bar |= {f"eye_at_{pin}_MPa": plain(1e-6 * stress) for pin, stress in eyes[name].items()}
     return found | {"bars": bars}
 
 
@@ -88,8 +88,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
             places = (bar[f"greatest_{sign}_{key}"] for key in ("MPa", "at_crank_angle_deg", "from_crank_pin_mm"))
             rows.add_row(f"along the {name}, {sign}", *(_told(one) for one in places))
     for name, bar in numbers["bars"].items():
-        for pin, stress in bar["eyes_MPa"].items():
-            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", _told(stress))
+        for pin in (NEAR, LINKS[name].far):
+            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", _told(bar[f"eye_at_{pin}_MPa"]))
     text.print_table(console, rows)
 
 
