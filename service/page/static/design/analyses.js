@@ -83,7 +83,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
     }
     const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
-    const head = h("p", { class: "quiet hint" }, `${capital(shows)}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
+    const head = h("p", { class: "quiet hint" }, `${capital(inWords(shows))}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
     fill(panel, head, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     try {
       const found = await get(path, { ...lengths }, signal);

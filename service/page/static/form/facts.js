@@ -40,7 +40,7 @@ function row(title, value, note = null) {
 function told(unchecked, understood, said = []) {
   return [
     unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
-    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${sentence}.`)),
+    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
     said.map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   ];

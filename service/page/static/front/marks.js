@@ -4,6 +4,7 @@ import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, withUnit } from "../lib/numbers.js";
+import { inWords } from "../lib/words.js";
 import { smallLinkage } from "../mechanism/small.js";
 import { namesOf } from "./marked.js";
 
@@ -22,7 +23,7 @@ export function marksPanel(explorer) {
   const several = data.objectives.length > 1;
   const place = h("section", { class: "panel worth", "aria-labelledby": "marks-title" },
     h("h2", { id: "marks-title" }, "Worth a look"),
-    front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)),
+    front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${inWords(sentence)}.`)),
     list,
     front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), costs],
     several && [h("h3", { class: "weights" }, "Weigh the objectives"),

@@ -52,6 +52,9 @@ const SAID = [
   [/\b(?:variables|mechanism|tolerances|motion)\.(?=[a-z])/g, ""],
   [/must be an? ([a-z ]+): one number and one unit; got ""; write it like /g, (_, kind) => `needs a number: a ${kind}, such as `],
   [/is missing, but required; (?:add|write) for example /g, "is missing; give a value, such as "],
+  [/^slow_stroke = "(\w+)" leaves/, (_, stroke) => `a slow stroke that is the ${stroke} one leaves`],
+  [/\bat --at\b/g, "at a crank angle"],
+  [/--(?=[a-z])/g, ""],
   [/require slow_stroke = "(\w+)"(?: among the constraints)?/g, (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];

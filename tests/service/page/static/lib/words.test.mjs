@@ -16,6 +16,12 @@ const SAID = [
   ["a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle", "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle"],
   ["it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md", "it comes from a material and pins; got none; give it under “Material and pins”"],
   ["forward dynamics needs a motor; got a mechanism without a drive; add a [drive]", "forward dynamics needs a motor; got a mechanism without a drive; give it under “Motor and flywheel”"],
+  ['if it is to be slow, require slow_stroke = "outward" among the constraints; if it is meant so, require slow_stroke = "inward"',
+    "if it is to be slow, choose “outward” as the slow stroke, under Motion; if it is meant so, choose “inward” as the slow stroke, under Motion"],
+  ['slow_stroke = "inward" leaves only offsets from 0 to 20 mm of the range', "a slow stroke that is the inward one leaves only offsets from 0 to 20 mm of the range"],
+  ["position, velocity and acceleration diagrams at --at", "position, velocity and acceleration diagrams at a crank angle"],
+  ["flywheel for a speed --fluctuation", "flywheel for a speed fluctuation"],
+  ["start from rest under [drive], steady running", "start from rest under “Motor and flywheel”, steady running"],
 ];
 
 for (const [sentence, words] of SAID) {
