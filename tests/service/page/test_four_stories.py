@@ -125,7 +125,6 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         theirs.keyboard.press("Tab")
         theirs.get_by_label("Decided for Design 2").press("Space")
         expect(theirs.locator(".decision")).to_contain_text("because fits the old frame", timeout=PATIENCE)
-        mine.reload()
         expect(mine.locator(".decision")).to_contain_text(
             "Decided for Design 2 because fits the old frame", timeout=PATIENCE
         )

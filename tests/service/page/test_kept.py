@@ -70,6 +70,28 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     expect(page.locator("#what-if-rod_mm")).to_have_value("650", timeout=30_000)
 
 
+def test_a_note_that_is_typed_outlives_what_others_do_meanwhile(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    page.goto(f"{address}/#/help")
+    kept = [httpx.post(f"{api}/kept", json={"design": n, "name": f"Typed {n}"}, timeout=60.0).json() for n in (4, 5)]
+    page.goto(f"{address}/#/jobs/{solved.number}")
+    note = page.get_by_label("Note on Typed 4")
+    note.press_sequentially("stiff, but", timeout=30_000)
+    httpx.patch(f"{api}/kept/{kept[1]['number']}", json={"star": True}, timeout=60.0).raise_for_status()
+    with page.expect_response("**/kept") as looked:
+        page.evaluate("window.dispatchEvent(new Event('focus'))")
+    looked.value.finished()
+    note.press_sequentially(" heavy")
+    expect(note).to_have_value("stiff, but heavy")
+    note.press("Tab")
+    expect(page.get_by_role("button", name="Star of Typed 5")).to_have_attribute("aria-pressed", "true")
+    expect(note).to_have_value("stiff, but heavy")
+    notes = {one["name"]: one["note"] for one in httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]}
+    assert notes["Typed 4"] == "stiff, but heavy"
+    for one in kept:
+        httpx.delete(f"{api}/kept/{one['number']}", timeout=60.0).raise_for_status()
+
+
 def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, str, str], solved: Solved) -> None:
     page, address, api = opened
     before = len(httpx.get(f"{api}/kept", timeout=60.0).json()["designs"])

@@ -11,6 +11,8 @@ import { LENGTHS } from "./linkages.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
+const EVERY = 5_000; // ms between two looks at what others keep
+
 /** Return {place, file, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
 export function keptPanel(explorer) {
   const { data, job, chosen } = explorer;
@@ -26,15 +28,22 @@ export function keptPanel(explorer) {
     h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add), why, none, table);
   /** @type {Api.Kept[]} */
   let designs = [];
+  let turn = 0; // of the latest question
+  let typing = false; // a note or a reason, which is not sent yet
+  let late = false; // drawing waits until that is
 
-  async function ask() {
+  /** Ask for the kept designs. complain(problem): of a failure. */
+  async function ask(complain = sayProblem) {
+    const own = (turn += 1);
     try {
       const marked = marks().length;
-      designs = (await get(`jobs/${job.id}/kept`, {}, explorer.signal)).designs;
+      const found = (await get(`jobs/${job.id}/kept`, {}, explorer.signal)).designs;
+      if (own !== turn || JSON.stringify(found) === JSON.stringify(designs)) return;
+      designs = found;
       if (marked || marks().length) show();
       else drawTable(); // charts stay as they are, and what is typed at their axes
     } catch (problem) {
-      if (!isAbort(problem)) sayProblem(problem);
+      if (!isAbort(problem)) complain(problem);
     }
   }
 
@@ -50,8 +59,16 @@ export function keptPanel(explorer) {
       await patch(`jobs/${job.id}/kept/${number}`, changes);
     } catch (problem) {
       sayProblem(problem);
+      if (changes.decided) drawTable(); // the mark is where it was; what was typed stays, to be sent again
     }
     await ask();
+  }
+
+  /** What was typed goes to the service; nothing, where it was typed back. @param {number} [number] @param {Partial<Api.Kept>} [changes] */
+  function sent(number, changes) {
+    typing = false;
+    if (number !== undefined && changes) change(number, changes);
+    else if (late) drawTable();
   }
 
   async function keepTicked() {
@@ -88,7 +105,7 @@ export function keptPanel(explorer) {
     const { number, name } = one;
     const href = hrefOf(one);
     /** @param {"note" | "reason"} key @param {string} label */
-    const words = (key, label) => h("td", {}, h("input", { type: "text", maxlength: 4000, value: one[key], "aria-label": `${label} ${name}`, "data-act": `${key}-${number}`, onchange: ({ currentTarget }) => change(number, { [key]: currentTarget.value }) }));
+    const words = (key, label) => h("td", {}, h("input", { type: "text", maxlength: 4000, value: one[key], "aria-label": `${label} ${name}`, "data-act": `${key}-${number}`, oninput: () => (typing = true), onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }), onblur: () => sent() }));
     return h("tr", { class: one.decided ? "decided" : null },
       h("td", {}, h("button", { type: "button", class: "star", "aria-pressed": String(one.star), "aria-label": `Star of ${name}`, "data-act": `star-${number}`, onclick: () => change(number, { star: !one.star }) }, one.star ? "★" : "☆")),
       h("th", { scope: "row" }, href ? h("a", { href }, name) : name,
@@ -103,6 +120,8 @@ export function keptPanel(explorer) {
   }
 
   function drawTable() {
+    late = typing;
+    if (late) return; // the field would be another one, without what stands in it
     const held = focused(place)?.dataset.act;
     const shown = only.checked ? designs.filter(({ star }) => star) : designs;
     none.hidden = designs.length > 0;
@@ -118,6 +137,11 @@ export function keptPanel(explorer) {
       h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n > 1 && (n < words || n > words + 2) && title ? "number" : null }, title || h("span", { class: "hidden" }, n ? (n < heads.length - 1 ? "Search near" : "Drop") : "Star"))))), h("tbody", {}, shown.map(line))));
     if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();
   }
+
+  const look = () => document.hidden || drawn === "" || ask(() => {}); // the next one may be answered
+  const watcher = setInterval(look, EVERY);
+  explorer.signal.addEventListener("abort", () => clearInterval(watcher));
+  for (const [from, name] of /** @type {const} */ ([[document, "visibilitychange"], [window, "focus"]])) from.addEventListener(name, look, { signal: explorer.signal });
 
   let drawn = "";
   let ticked = "-";
