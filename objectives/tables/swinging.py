@@ -33,8 +33,8 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
 
 def why_not(name: str, swing: Swing | None) -> str | None:
     """Return why a motion lacks a quantity of a swing; None where it has it, and for other names."""
-    fact = next((of for of in swing_facts() if of.name == name), None)
-    if fact is None:
+    fact = FACTS.get(name)
+    if not isinstance(fact, SwingQuantity):
         return None
     if swing is None:
         return (

@@ -25,8 +25,8 @@ from ...objectives.tables.swinging import (
     require_in_motion,
     require_loads,
     require_of_swing,
-    swing_facts,
     swing_quantities,
+    why_not,
 )
 from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
@@ -178,8 +178,7 @@ class Problem:
             require_loads(variant.mechanism)
         tables = {item.quantity: "objectives" for item in self.objectives}
         for name, table in ({item.quantity: "constraints" for item in self.every_constraint} | tables).items():
-            fact = next((of for of in swing_facts() if of.name == name), None)
-            reason = None if fact is None else fact.unfit(swing)
+            reason = why_not(name, swing)
             if reason is not None:
                 raise InputError(f"{table}.{name}: {reason}")
             require_of_swing(f"{table}.{name}", self.quantity(name))
