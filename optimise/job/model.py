@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
@@ -18,7 +19,7 @@ from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
 from .own import MOST_OWN, Declared, QuantityPart, named, one_line
-from .quantities import ConstraintsPart, ObjectivesPart, tables
+from .quantities import ConstraintsPart, ObjectivesPart, Stated, tables
 from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
@@ -188,7 +189,12 @@ def job_with(declared: Declared) -> type[Job]:
     """Return the job whose [objectives] and [constraints], of options too, may name quantities of its own."""
     if not declared.tables and not declared.formulas:
         return Job
-    constraints, objectives = tables(declared.tables, declared.formulas)
+    return _job_with(tuple(declared.tables.items()), declared.formulas)
+
+
+@lru_cache(maxsize=16)  # a form asks for the same job again and again, and each takes as long as reading ten others
+def _job_with(own: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
+    constraints, objectives = tables(dict(own), formulas)
     choice: Any = choice_with(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_some)]
     return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

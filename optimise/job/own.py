@@ -188,7 +188,9 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             tables[name] = _stated(name.replace("_", " "), kind)
     asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
     asked += [word for name in names for word in words_of(parts[name]["formula"])]
-    unknown = [name for name in dict.fromkeys(asked) if name not in {*FACTS, *tables, *names, SLOW_STROKE}]
+    known = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
+    # Formulas stand among the names; looking for packages takes longer than reading a job.
+    unknown = [name for name in dict.fromkeys(asked) if name not in known and name.isidentifier()]
     packages = own_quantities() if unknown else {}
     found = tuple(installed(name) for name in unknown if name in packages)
     for quantity in found:

@@ -30,6 +30,9 @@ def slack_field(of: Quantity) -> str:
 
 def require_own_columns(own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[str]) -> None:
     """Raise `InputError` for a quantity of a problem's own whose column is that of another number."""
+    own = tuple(own)
+    if not own:
+        return
     owner = dict.fromkeys(_EVERY, "every table") | {of.field: name for name, of in FACTS.items()}
     owner |= {column: name for name, (column, _) in columns_of_numbers(varying).items()}
     owner |= {choice_field(name): f"the choice {name}" for name in choices}

@@ -18,6 +18,7 @@ from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.job import files_beside, load_job, parse_job
+from slidercrank.optimise.job.own import FormulaPart, named
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.questions.like import like_design
 from slidercrank.optimise.solve import solve
@@ -289,14 +290,18 @@ def test_no_quantity_takes_the_column_of_another_number() -> None:
     tables = job(constraints=asked, objectives={"time_ratio": "maximise"})
     columns = [*solve(parse_job(tables)).columns, "design"]
     assert {"status", "residual", "slow_stroke", "slack_stroke_mm", "crank_minus_offset_mm"} <= set(columns)
+    problems = {
+        unit: parse_job(tables | {"quantity": {"mine": {"formula": formula}}}) for unit, formula in units.items()
+    }
     refused = 0
     for column in columns:
         name, _, unit = column.rpartition("_")
-        for stem, formula in ((column, units[""]), *([(name, units[unit])] if name and unit in units else [])):
-            own = tables | {"quantity": {stem: {"formula": formula}}}
+        for stem, problem in ((column, problems[""]), *([(name, problems[unit])] if name and unit in units else [])):
+            own = tuple(replace(of, name=stem) if of.name == "mine" else of for of in problem.own)
             with contextlib.suppress(InputError):
-                found = {of.name: of.field for of in parse_job(own).own}
-                assert found[stem] not in columns
+                named({stem: FormulaPart(formula="rod / crank")})
+                fields = {of.name: of.field for of in replace(problem, own=own).own}
+                assert fields[stem] not in columns
                 continue
             refused += 1
     assert refused >= len(columns) // 2
