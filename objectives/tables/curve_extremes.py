@@ -98,7 +98,7 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     samples = [values(piece) for piece in pieces]
     sizes = _sizes(first, samples)
     period = cycle_turns(mechanism) * _TURN
-    least, greatest = (_greatest(values, pieces, samples, sizes, sign, period) for sign in (-1.0, 1.0))
+    least, greatest = _ends(values, pieces, samples, sizes, period)
     found = []
     for row, curve in enumerate(first):
         ends = []
@@ -184,16 +184,39 @@ def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
     return np.stack([own, shared], axis=1)
 
 
-def _greatest(
-    values: Callable[[Array], Array],
-    pieces: list[Array],
-    samples: list[Array],
-    sizes: Array,
-    sign: float,
-    period: float,
-) -> list[tuple[float, float]]:
-    """Return value and crank angle of each curve's greatest value (sign 1) or least value (sign -1)."""
-    found, rows, left, right, owner = [], [], [], [], []
+def _ends(
+    values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, period: float
+) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """Return value and crank angle of each curve's least value, and of its greatest one.
+
+    All are refined together: a section of many brackets takes hardly longer than one of few.
+    """
+    sides = [_coarse(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
+    rows, left, right = (np.concatenate(parts) for parts in zip(*(side[1:] for side in sides), strict=True))
+    at, signs = rows.astype(np.intp), np.repeat([-1.0, 1.0], [len(side[1]) for side in sides])
+    tops, angles = golden(lambda theta: signs * values(theta)[at, np.arange(len(at))], left, right)
+    ends = []
+    for sign, (found, *_) in zip((-1.0, 1.0), sides, strict=True):
+        refined = list(found)
+        for row in np.unique(at[signs == sign]):
+            inside = np.flatnonzero((at == row) & (signs == sign))
+            best = inside[np.argmax(tops[inside])]
+            if tops[best] > refined[row][0] + _EQUAL * sizes[row, 0]:
+                refined[row] = (float(tops[best]), float(angles[best]))
+            refined[row] = (sign * refined[row][0] + 0.0, refined[row][1] % period)
+        ends.append(refined)
+    return ends[0], ends[1]
+
+
+def _coarse(
+    pieces: list[Array], samples: list[Array], sizes: Array, sign: float
+) -> tuple[list[tuple[float, float]], Array, Array, Array]:
+    """Return each curve's best end of a piece, times the sign, or its value where it is constant or undetermined.
+
+    With it the brackets in which it may be exceeded: row of the curve, left and right crank angle of each.
+    """
+    found: list[tuple[float, float]] = []
+    brackets: list[tuple[int, float, float]] = []
     for row, (own, shared) in enumerate(sizes):
         curve = [sign * values[row] for values in samples]
         top, bottom = max(values.max() for values in curve), min(values.min() for values in curve)
@@ -203,20 +226,9 @@ def _greatest(
             found.append((0.0 if own <= _CONSTANT * shared else sign * top, math.nan))
         else:
             found.append(_best_end(curve, pieces))
-            owner.append(row)
-            brackets = _brackets(curve, pieces)
-            rows += [row] * len(brackets)
-            left += [bracket[0] for bracket in brackets]
-            right += [bracket[1] for bracket in brackets]
-    at = np.array(rows, dtype=np.intp)
-    tops, angles = golden(lambda theta: sign * values(theta)[at, np.arange(len(at))], np.array(left), np.array(right))
-    for row in owner:
-        inside = np.flatnonzero(at == row)
-        best = inside[np.argmax(tops[inside])]
-        if tops[best] > found[row][0] + _EQUAL * sizes[row, 0]:
-            found[row] = (float(tops[best]), float(angles[best]))
-        found[row] = (sign * found[row][0] + 0.0, found[row][1] % period)
-    return found
+            brackets += [(row, *bracket) for bracket in _brackets(curve, pieces)]
+    rows, left, right = np.array(brackets, dtype=float).reshape(-1, 3).T
+    return found, rows, left, right
 
 
 def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
