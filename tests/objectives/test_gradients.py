@@ -96,7 +96,7 @@ def away(gradients: Array, expected: Array) -> Array:
 @pytest.mark.parametrize(("quantity", "machine"), CASES)
 def test_gradient_is_that_of_extrapolated_differences(quantity: Quantity, machine: Mechanism) -> None:
     # A fifth of them within 0.3 % of locking.
-    designs = DESIGNS[: designs_for(quantity, 150 if machine is SMOOTH else 60)]
+    designs = DESIGNS[: designs_for(quantity, 75 if machine is SMOOTH else 30)]
     first = steps_to_the_nearest_edge(designs, kink_without_offset=True)
     function, _ = same_piece(quantity, machine, designs, greatest_piece(quantity, machine, designs))
     expected, _ = derivatives(function, designs, first)
@@ -119,7 +119,7 @@ def test_gradient_of_the_second_piece_is_that_of_extrapolated_differences(quanti
     machine = MACHINES[name]
     values = quantity.pieces(machine, DESIGNS).values
     second = np.argsort(-values, axis=1, kind="stable")[:, 1]
-    exists = np.flatnonzero(np.isfinite(values[np.arange(len(DESIGNS)), second]))[:300]
+    exists = np.flatnonzero(np.isfinite(values[np.arange(len(DESIGNS)), second]))[:150]
     designs, second = DESIGNS[exists], second[exists]
     assert len(designs) > 100
     function, gradients = same_piece(quantity, machine, designs, second)
