@@ -18,6 +18,8 @@ from tests.service.api.fixed_front import served
 from tests.service.page.browser import BROWSERS, browser_path, chromium
 
 Open = Callable[..., Page]
+PATIENCE = 30_000.0
+"""ms, for what a page is to show: a busy machine takes many times as long as an idle one."""
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +27,7 @@ def browser() -> Iterator[Browser]:
     """Return a browser for the tests of a file. Its driver keeps an event loop, which other tests must not meet."""
     if browser_path() is None:
         pytest.skip(f"no browser: the page is not tested; install one of {', '.join(BROWSERS)}")
+    expect.set_options(timeout=PATIENCE)
     with chromium() as opened:
         yield opened
 
