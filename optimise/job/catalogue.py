@@ -14,50 +14,26 @@ import io
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...model.errors import InputError, JobError
-from ...objectives.registry import FACTS, QUANTITIES
+from ...model.errors import JobError
 from .beside import beside
+from .catalogue_columns import Column, columns_of
 from .messages import key_of
-from .units import closest, shown, to_si
+from .units import shown
 
 LARGEST = 10_000_000
 """Bytes of a file."""
 MOST_ROWS = 50_000
 MOST_OPTIONS = 200
 """Rows that may be left after screening: each is solved."""
-_UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
-_COLUMN = re.compile(rf"(?P<name>[^#()]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?", re.ASCII)
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
 _FORMULA = ("=", "+", "@")
 _LONGEST = 60
-
-
-@dataclass(frozen=True)
-class _Column:
-    """A column of numbers. header: as it is written. word: of a limit; None for a number of the job."""
-
-    place: int
-    header: str
-    name: str
-    word: str | None
-    unit: str
-
-    def value(self, cell: str) -> str | float:
-        """Return a cell as a job has it."""
-        return f"{cell} {self.unit}" if self.unit else float(cell)
-
-    @property
-    def monotone(self) -> bool:
-        """Whether a looser limit only ever allows more designs."""
-        of = QUANTITIES.get(self.name)
-        return self.word == "min" or (self.word == "max" and (of is None or of.floor is None))
 
 
 def catalogues(data: Mapping[str, Any]) -> list[str]:
@@ -115,7 +91,7 @@ def options_of(text: str, name: str, own: frozenset[str] = frozenset()) -> tuple
     first = next(lines, None)
     if first is None:
         raise JobError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
-    columns = _columns(first[1], name, own)
+    columns = columns_of(first[1], name, own)
     labels: dict[str, int] = {}
     rows: list[list[str]] = []
     for number, cells in lines:
@@ -162,61 +138,6 @@ def _lines(text: str, name: str) -> Iterator[tuple[int, list[str]]]:
         raise JobError(f"{name}, row {reader.line_num}: must be a line of CSV; got: {error}; save it as CSV") from None
 
 
-def _columns(header: Sequence[str], name: str, own: frozenset[str]) -> list[_Column]:
-    if header[0] != "name":
-        raise JobError(f"{name} must have the column name first; got {shown(header[0])}; rename or move it")
-    found: list[_Column] = []
-    for place, text in enumerate(header[1:], 1):
-        if text.startswith("#"):
-            continue
-        where = f"{name}, column {shown(text)}"
-        parts = _COLUMN.fullmatch(text)
-        if parts is None or not text:
-            raise JobError(
-                f"{where}: must be a quantity with min, max or equals, or the path of a number, and its unit, like "
-                '"peak_torque max (N m)"; a column to be passed over begins with #'
-            )
-        column = _Column(place, text, parts["name"], parts["word"], (parts["unit"] or parts["other"] or "").strip())
-        if column.name not in own:
-            _require_unit(column, where)
-        if any((column.name, column.word) == (other.name, other.word) for other in found):
-            raise JobError(f"{where}: columns must differ; got it twice; leave out one")
-        found.append(column)
-    if not found:
-        raise JobError(f"{name} must have a column of numbers beside the name; got none; add one")
-    return found
-
-
-def _require_unit(column: _Column, where: str) -> None:
-    """Refuse a limit's unit that is none of its quantity; of other numbers the job knows."""
-    if column.word is None and column.name in FACTS:
-        raise JobError(f"{where}: a quantity needs min, max or equals; got none; write {column.name} max for its limit")
-    of = FACTS.get(column.name) if column.word else None
-    if of is None:
-        near = closest(column.name, list(FACTS)) if column.word and column.name.isidentifier() else None
-        if near:
-            raise JobError(f"{where}: must name a quantity; got {column.name}; did you mean {near}?")
-        return
-    if of.kind.unit and not column.unit:
-        raise JobError(
-            f"{where}: must have the unit of {of.kind.name} in brackets; got none; write it like "
-            f"({_unit(of.kind.example)})"
-        )
-    try:
-        to_si(f"1 {column.unit}".strip() if of.kind.unit else 1.0, of.kind)
-        if not of.kind.unit and column.unit:
-            raise InputError("")
-    except InputError:
-        raise JobError(
-            f"{where}: must have a unit of {of.kind.name}; got {shown(column.unit)}; "
-            + (f"write it like ({_unit(of.kind.example)})" if of.kind.unit else "leave it out")
-        ) from None
-
-
-def _unit(example: str) -> str:
-    return example.partition(" ")[2]
-
-
 def _require_number(cell: str, where: str) -> None:
     if _NUMBER.fullmatch(cell) and math.isfinite(float(cell)):
         return
@@ -233,7 +154,7 @@ def _require_number(cell: str, where: str) -> None:
     raise JobError(f"{where}: must be a number; got {shown(cell)}; {write}")
 
 
-def _unbeaten(columns: Sequence[_Column], rows: Sequence[Sequence[str]]) -> list[int]:
+def _unbeaten(columns: Sequence[Column], rows: Sequence[Sequence[str]]) -> list[int]:
     """Return the places of rows that no other one beats; of equal ones the first."""
     from ..front.dominance import nondominated  # brings what computes
 
@@ -253,7 +174,7 @@ def _unbeaten(columns: Sequence[_Column], rows: Sequence[Sequence[str]]) -> list
     return sorted(kept)
 
 
-def _option(columns: Sequence[_Column], row: Sequence[str]) -> dict[str, Any]:
+def _option(columns: Sequence[Column], row: Sequence[str]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     constraints: dict[str, Any] = {}
     for column in columns:

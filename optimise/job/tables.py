@@ -14,7 +14,7 @@ from ...objectives.own.apply import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
-from . import parse_job
+from . import parse_job, with_files
 
 
 def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None = None) -> Problem:
@@ -22,7 +22,8 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
 
     Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays will do. The function of
     a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this
-    process, without a time limit. folder: where modules named by text lie, besides the working directory.
+    process, without a time limit. folder: where the files lie that the tables name, such as catalogues, the working
+    directory if left out; modules named by text may lie in either.
     Raises `JobError`, naming key, rule, value and remedy, like `load_job`.
 
     >>> from slidercrank import problem
@@ -47,7 +48,9 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
             if isinstance(part, dict) and callable(part.get("function")):
                 given[name] = part["function"]
                 part["function"] = "given:function"  # in the place of a name, for the validation
-    found = parse_job(data, folder=None if folder is None else Path(folder))
+    found = parse_job(
+        with_files(data, Path() if folder is None else Path(folder)), folder=None if folder is None else Path(folder)
+    )
     return replace(found, own=tuple(_with(item, given) for item in found.own)) if given else found
 
 
