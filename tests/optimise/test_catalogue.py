@@ -153,7 +153,7 @@ ROW = "A,10,5,1"
         ("name,peak_torque max\nA,1", "must have the unit of a torque in brackets; got none"),
         ("name,time_ratio max (mm)\nA,1", 'got "mm"; leave it out'),
         ("name,peak_torque (N m)\nA,1", "a quantity needs min, max or equals"),
-        ("name,peak_torqe max (N m)\nA,1", 'is called "peak_torqe"; did you mean peak_torque?'),
+        ("name,peak_torqe max (N m)\nA,1", 'is called "peak_torqe"; did you mean peak_torque or'),
         ("name,stroke max (mm),stroke max (m)\nA,1,1", "columns must differ"),
         ("name,(mm)\nA,1", "must be a quantity or formula with min, max or equals, or the path of a number"),
         ("name,# price\nA,1", "must have a column of numbers beside the name"),
