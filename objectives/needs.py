@@ -117,7 +117,7 @@ LOAD_WORK = _defining(
     'for example [[load]] force = "200 N", opposes = "motion"',
 )
 _RUBS = "add for example [friction] guide = 0.1"
-RUBS = Need(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")
+RUBS = _defining(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")
 LOSSES = Need(
     rubs_under_load,
     f"without friction nothing is lost, and the efficiency of every design is 1; got none; {_RUBS}",

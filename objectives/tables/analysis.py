@@ -36,8 +36,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     own: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
-    rotation, the loaded stroke that of `loaded_stroke`. Position errors are NaN without tolerances. Raises
-    `AssemblyError` for a linkage that does not turn fully.
+    rotation, the loaded stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors
+    without tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     import pandas as pd
 
@@ -75,7 +75,7 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
     for quantity in (*QUANTITIES.values(), *own):
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
-        if quantity.lacks(mechanism, "undefined"):
+        if quantity.undefined_because([mechanism]):
             columns[quantity.field] = np.full(len(dimensions), np.nan)
     for quantity in own:
         if isinstance(quantity, MotionDeviation):

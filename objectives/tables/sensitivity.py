@@ -84,7 +84,7 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     ends = None if swing is None else started(mechanism, swing)
     for quantity in QUANTITIES.values() if ends is None else swinging(swing_quantities(ends)):
         value, below, above = _one_sided(quantity, mechanism, design)
-        if quantity.lacks(mechanism, "undefined"):
+        if quantity.undefined_because([mechanism]):
             value = math.nan
         rows.append(_row(quantity, value, (below, above), design, tolerances, True))
     for centre in _DEAD_CENTRES if ends is None else ():

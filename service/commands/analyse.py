@@ -11,6 +11,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
+from ..designs.columns import key_in
 from ..designs.requirements import judged
 from ..designs.selection import value_of
 from ..designs.shown_units import record_in, row_in
@@ -31,8 +32,8 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, give, say, waiting
-from ..text.tables import show_design, show_rules
-from ..topics.design_analysis import analysis_of, numbers_of
+from ..text.tables import show_design, show_rules, show_undefined
+from ..topics.design_analysis import analysis_of, numbers_of, undefined_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
@@ -106,12 +107,17 @@ def analyse(
     if cycle is not None:
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
+    undefined = (
+        {} if problem is None else {key_in(key, units)[0]: why for key, why in undefined_of(mechanism, own).items()}
+    )
     if json:
         record = record_in(found.record(), units)
-        give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
+        more = {"rules": [asdict(rule) for rule in rules], "undefined": undefined}
+        give(json_text(record | ({} if problem is None else more)))
     else:
         screen = console()
         show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
+        show_undefined(screen, {key: why for key, why in undefined.items() if key not in TOLD_THERE}, own)
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")

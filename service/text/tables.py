@@ -74,6 +74,18 @@ def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None,
     print_table(screen, rows)
 
 
+def show_undefined(screen: Console, reasons: Mapping[str, str], own: Sequence[Quantity] = ()) -> None:
+    """Write why quantities of a design have no value, those of one rule together. reasons: by the columns."""
+    known = {of.field: of.title for of in own}
+    together: dict[str, list[str]] = {}
+    for key, reason in reasons.items():
+        together.setdefault(reason.partition(";")[0], []).append(known.get(key) or find_column(key, reasons).title)
+    if together:
+        screen.print("\nNot defined here:", style="dim")
+    for rule, titles in together.items():
+        screen.print(f"  {', '.join(titles)}: {rule}", style="dim", soft_wrap=True, markup=False)
+
+
 def table(*columns: str, ruled: bool = False, **look: Any) -> Table:
     """Return an empty table. columns: heads, aligned to the right where they begin with ">". ruled: the heads.
 

@@ -44,6 +44,14 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
     return rows_of(columns_of(mechanism, row_of(linkage), own=own))[0]
 
 
+def undefined_of(mechanism: Mechanism, own: Sequence[Quantity] = ()) -> dict[str, str]:
+    """Return why a machine does not define a quantity, by the columns of those without a value. own: of its job."""
+    from ...objectives.registry import QUANTITIES
+
+    reasons = {of.field: of.undefined_because([mechanism]) for of in (*QUANTITIES.values(), *own)}
+    return {key: reason for key, reason in reasons.items() if reason}
+
+
 def numbers_of_swing(design: StoredDesign) -> Row:
     """Return every quantity of a design that swings."""
     import numpy as np

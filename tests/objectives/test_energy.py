@@ -161,7 +161,7 @@ def test_what_is_undefined_or_always_the_same_is_told() -> None:
     smooth = replace(inert, friction=Friction(), loads=resists)
     assert "of every design is 1" in str(EFFICIENCY.undefined_because([smooth]))
     assert EFFICIENCY.evaluate(smooth, DESIGNS).values == pytest.approx(np.ones(6), abs=1e-15)
-    assert "friction" in str(LOSS.zero_because([smooth]))
+    assert "friction" in str(LOSS.undefined_because([smooth]))
     assert np.all(LOSS.evaluate(smooth, DESIGNS).values == 0.0)
     assert EFFICIENCY.undefined_because([replace(inert, loads=resists)]) is None
     driving = replace(inert, loads=(StrokeForce(outward=50.0, inward=-50.0),))

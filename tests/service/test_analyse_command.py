@@ -79,7 +79,7 @@ def test_a_job_gives_every_number(tmp_path: Path, command: Command) -> None:
     row = json.loads(command("analyse", job, *FEEDER, "--json").stdout)
     expected = analyse(load_job(job).mechanism, np.array([[0.04, 0.064, 0.02]])).iloc[0]
     assert row["peak_torque_Nm"] == expected["peak_torque_Nm"]
-    assert list(row) == [*expected.index, "rules"]
+    assert list(row) == [*expected.index, "rules", "undefined"]
 
 
 def test_the_speed_overrides_that_of_the_job(tmp_path: Path, command: Command) -> None:
@@ -144,7 +144,11 @@ def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Co
     titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
     for key in TOLD_THERE:
         assert titles[key] not in shown
-        assert row[key] is not None
+    for key, value in row.items():
+        assert (value is None) == (key in row["undefined"])
+    assert "efficiency, friction loss: " not in shown  # of one rule each
+    assert "efficiency: without friction nothing is lost, and the efficiency of every design is 1\n" in shown
+    assert "friction loss: it comes from friction in loaded joints\n" in shown
     assert titles["peak_torque_Nm"] in shown
     assert "--show: static_forces, friction, motor" in shown
 
