@@ -12,7 +12,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying import Varying
-from slidercrank.optimise.job.formulas import Formulas
+from slidercrank.objectives.formula.formulas import Formulas
 from slidercrank.optimise.problem.requirements import Range
 
 MACHINE = Mechanism(

@@ -17,6 +17,7 @@ from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
 from ...model.machine.strength import Material
+from ...objectives.units import shown
 from ..problem.problem import Problem
 from ..sizing.section_limits import SectionLimits
 from .catalogue import catalogues, with_catalogues
@@ -28,7 +29,6 @@ from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
 from .target_motion import points_file, with_points
-from .units import shown
 from .varying import with_values
 
 __all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job", "with_files"]

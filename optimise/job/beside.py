@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePath
 
 from ...model.errors import JobError
-from .units import shown
+from ...objectives.units import shown
 
 _LARGEST = 1_000_000  # bytes
 

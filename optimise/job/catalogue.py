@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import JobError
+from ...objectives.units import shown
 from .beside import beside
 from .catalogue_columns import Column, columns_of
 from .messages import key_of
-from .units import shown
 
 LARGEST = 10_000_000
 """Bytes of a file."""

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, names_in, text_of
+from ...objectives.formula.formulas import ROOTS, Units, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.own.quantity import own_quantities
 from ...objectives.registry import FACTS, QUANTITIES
-from .dimensions import kind_of_formula
-from .formulas import ROOTS, Units, unknown_name
-from .units import shown, to_si
+from ...objectives.units import shown, to_si
 
 _UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
 _COLUMN = re.compile(rf"(?P<name>[^#]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")

@@ -14,6 +14,7 @@ from ...model.errors import InputError, JobError
 from ...model.machine.links import Bar
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.units import shown
 from ..feasibility.swinging import require_swinging
 from ..problem.problem import Problem
 from ..problem.requirements import Range
@@ -24,7 +25,6 @@ from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
 from .pins import require_room_for_pins
-from .units import shown
 
 
 def require_consistent(problem: Problem) -> None:

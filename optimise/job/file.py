@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import JobError
+from ...objectives.units import shown
 from .messages import key_of
-from .units import shown
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes a fifth of it, notes and comments aside."""

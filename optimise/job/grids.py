@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any
 
 from ...model.errors import InputError
-from .units import shown
+from ...objectives.units import shown
 
 KEYS = frozenset({"min", "max", "step", "series", "values"})
 """Keys of a table that says the values of a variable."""

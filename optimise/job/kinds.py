@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...model.errors import InputError
-from .units import closest, shown
+from ...objectives.units import closest, shown
 from .values import Part
 
 

@@ -19,9 +19,9 @@ from pydantic import (
 from ...model.errors import InputError
 from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import kinds
+from ...objectives.units import shown
 from . import values
 from .kinds import Kinds
-from .units import shown
 from .values import Checked, optional
 
 

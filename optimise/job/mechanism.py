@@ -12,8 +12,8 @@ from ...model.errors import InputError
 from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
+from ...objectives.units import shown
 from .speed_profile import SpeedProfilePart
-from .units import shown
 from .values import (
     Angle,
     AngleTolerance,

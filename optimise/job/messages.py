@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from .units import closest, shown
+from ...objectives.units import closest, shown
 
 _MOST_KEYS = 20  # that are told where none is near
 

@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
+from ...objectives.units import shown
 from ..methods.registry import methods
 from ..problem.problem import Settings
 from .costs import CostsPart
@@ -24,7 +25,6 @@ from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart
-from .units import shown
 from .values import Built, Part, optional, required, retyped
 from .variables import ChoicePart, VariablesPart, choice_with
 

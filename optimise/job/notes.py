@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, LENGTH, Kind
+from ...objectives.units import per_si
 from .model import Job, job_with
 from .own import declared
-from .units import per_si
 
 _MOST = 6  # plain numbers that are told one by one
 _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}

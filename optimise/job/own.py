@@ -12,7 +12,9 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.formula import formulas
 from ...objectives.formula.expression import ARGUMENTS
+from ...objectives.formula.formulas import words_of
 from ...objectives.kinds import TIME, Kind, kind_in
 from ...objectives.own.quantity import (
     FUNCTION,
@@ -24,11 +26,9 @@ from ...objectives.own.quantity import (
     require_name,
 )
 from ...objectives.registry import FACTS
-from . import formulas
-from .formulas import words_of
+from ...objectives.units import kind_for, per_si, shown
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
-from .units import kind_for, per_si, shown
 from .values import Part, Physical, optional, required
 
 

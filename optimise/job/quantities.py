@@ -28,12 +28,12 @@ from pydantic_core import CoreSchema
 from ...model.errors import InputError, JobError
 from ...model.linkage.linkage import SlowStroke
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
+from ...objectives.units import closest, shown
 from ..problem.requirements import SENSES, Constraint, Objective, Word
-from .formulas import ROOTS, Formulas, is_formula
 from .messages import key_of, toml
-from .units import closest, shown
 from .values import Part, Physical, optional, required
 
 

@@ -12,8 +12,8 @@ from pydantic import Field
 
 from ...model.errors import InputError, JobError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
+from ...objectives.units import shown
 from .beside import beside, table_of
-from .units import shown
 from .values import Angle, AngularSpeed, Checked, Number, optional
 
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")

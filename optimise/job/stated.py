@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ...model.errors import InputError, JobError
+from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.tables.swinging import swing_quantities
@@ -14,7 +15,6 @@ from ..methods.registry import require_fit
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, merged
 from .contradictions import require_consistent
-from .formulas import Formulas
 from .messages import key_of
 from .model import Job
 from .motion import require_speed, require_start, require_swing_asked, with_margin

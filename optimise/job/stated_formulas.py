@@ -9,15 +9,15 @@ from typing import Any
 
 from ...model.errors import InputError
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import names_in
+from ...objectives.formula.formulas import Units, is_formula, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
-from .dimensions import kind_of_formula
-from .formulas import Units, is_formula, unknown_name
+from ...objectives.units import is_value, kind_for
 from .messages import key_of
 from .quantities import SLOW_STROKE, WORDS
-from .units import is_value, kind_for
 from .variables import varying_in
 
 _MOST = 200

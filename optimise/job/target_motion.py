@@ -11,9 +11,9 @@ from pydantic import Field, WrapValidator
 from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
+from ...objectives.units import shown
 from .beside import beside, table_of
 from .loads import increasing
-from .units import shown
 from .values import Angle, Checked, Length, Part, optional
 
 HEADER = ("crank_angle_deg", "position_mm")

@@ -14,11 +14,10 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Tolerance
-from ...objectives import kinds
+from ...objectives import kinds, units
 from ...objectives.kinds import Kind
-from . import units
+from ...objectives.units import Sign, shown, to_si
 from .grids import Grid, grid_schema, read_grid, says_values
-from .units import Sign, shown, to_si
 
 SHORTEST = 1e-9
 """m; a shorter link is a mistaken unit."""

@@ -14,12 +14,12 @@ from typing import Annotated, Any, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
+from ...objectives.formula.formulas import ROOTS
+from ...objectives.units import shown
 from .catalogue import MOST_OPTIONS
 from .file import DEEPEST
-from .formulas import ROOTS
 from .grids import says_values
 from .quantities import ConstraintsPart
-from .units import shown
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
 Table = dict[str, Any]

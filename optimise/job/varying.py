@@ -22,16 +22,16 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
+from ...objectives.formula.formulas import ROOTS, Formulas
+from ...objectives.units import closest, shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from .formulas import ROOTS, Formulas
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
 from .quantities import constraints_of, slow_stroke_of
 from .schema import schema_of
-from .units import closest, shown
 from .values import Choices, Part, RangeOf, ToleranceOf
 
 MOST = 200

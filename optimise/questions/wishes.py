@@ -16,8 +16,8 @@ from typing import Literal
 import numpy as np
 
 from ...model.errors import InputError
+from ...objectives.units import shown, to_si
 from ..front.front import ParetoFront
-from ..job.units import shown, to_si
 from ..problem.violation import minimised
 
 Kind = Literal["value", "improve", "keep", "limit", "free"]

@@ -146,8 +146,8 @@ def within(asked: AskedLimits, most: Limits) -> Limits:
 
 def require_no_file(tables: Mapping[str, Any]) -> None:
     """Refuse a job whose target motion is in a file: it would be one of the service. Raises `JobError`."""
+    from ...objectives.units import shown
     from ...optimise.job.target_motion import points_file
-    from ...optimise.job.units import shown
 
     file = points_file(tables)
     if file is not None:

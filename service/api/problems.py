@@ -131,8 +131,8 @@ def _sentence(details: Mapping[str, Any]) -> str:
 
 def rule_and_value(details: Mapping[str, Any]) -> str:
     """Return what is wrong where pydantic says so: rule, value, remedy."""
+    from ...objectives.units import shown
     from ...optimise.job.messages import rule_of
-    from ...optimise.job.units import shown
 
     if details["type"] == "missing":
         return "is required; it is missing; add it"

@@ -91,7 +91,7 @@ class UnitTable(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
-    from ...optimise.job.units import per_si
+    from ...objectives.units import per_si
 
     told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
     kinds = [

@@ -95,7 +95,7 @@ def parse_axis(text: str) -> Axis:
     import numpy as np
 
     from ...objectives.tables.sweep import Axis, Parameter
-    from ...optimise.job.units import closest
+    from ...objectives.units import closest
 
     known, asked = get_args(Parameter), text.partition("=")[0].strip()
     if "=" in text and asked and asked not in known:

@@ -116,7 +116,7 @@ def _meant(name: str, keys: Collection[str]) -> str:
     if len(longer) == 1:
         return longer[0]
 
-    from ...optimise.job.units import closest
+    from ...objectives.units import closest
 
     near = closest(name, [*keys, *meant]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"

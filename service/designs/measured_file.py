@@ -64,7 +64,7 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 def _any_unit(text: str, kind: Kind) -> float | None:
     """Return the value in SI of any unit that jobs know; None for what is no unit of a kind."""
     from ...objectives.tables.measured import squeezed
-    from ...optimise.job.units import to_si
+    from ...objectives.units import to_si
 
     typed = {squeezed(symbol): symbol for symbol in kind.typed}
     try:

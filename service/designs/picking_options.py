@@ -98,7 +98,7 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
 
 
 def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
-    from ...optimise.job.units import kind_for, per_si, to_si
+    from ...objectives.units import kind_for, per_si, to_si
 
     try:
         if value.endswith("%"):

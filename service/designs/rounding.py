@@ -25,7 +25,7 @@ def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
     """
     from ...model.machine.numbers import unit_of
     from ...objectives.tables.varying_column import varying_column
-    from ...optimise.job.units import kind_of
+    from ...objectives.units import kind_of
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}

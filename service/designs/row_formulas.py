@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.errors import InputError
+from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
+from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import key_of
 from ...objectives.formula.slopes import Slopes
 from ...objectives.kinds import Kind
 from ...objectives.quantity import Array, Values
-from ...optimise.job.dimensions import kind_of_formula
-from ...optimise.job.formulas import Units
-from ...optimise.job.units import kind_for
+from ...objectives.units import kind_for
 from ..runs.result import Row
 from .columns import Column, find_column, split_unit
 

@@ -109,7 +109,7 @@ def plain_number(text: str) -> float | None:
 
 def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
     """Return a value in SI. Raises `InputError` that begins with the key; a unit is always needed."""
-    from ...optimise.job.units import shown, to_si
+    from ...objectives.units import shown, to_si
 
     if plain_number(text) is not None:
         raise InputError(f'{key} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"')
@@ -121,7 +121,7 @@ def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
 
 def _number(text: str, column: Column, value: str) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
-    from ...optimise.job.units import kind_for, to_si
+    from ...objectives.units import kind_for, to_si
 
     number = plain_number(value)
     if column.plain is not None and number is not None and math.isfinite(number):

@@ -45,7 +45,7 @@ def parse_allowed(
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     """Return the functions that a job names, by the names of their quantities. Raises `JobError` for what is none."""
     from ...objectives.own.quantity import FUNCTION
-    from ...optimise.job.units import shown
+    from ...objectives.units import shown
 
     parts, found = tables.get("quantity", {}), {}
     write = 'write it like { function = "mymodule:myfunction" }'
@@ -65,7 +65,7 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
-    from ...optimise.job.units import shown
+    from ...objectives.units import shown
 
     here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(

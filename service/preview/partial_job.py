@@ -13,8 +13,8 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.registry import QUANTITIES
+from ...objectives.units import to_si
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
-from ...optimise.job.units import to_si
 from ...optimise.job.values import RangeOf
 from ...optimise.job.varying import ends_of
 from ...optimise.problem.problem import Problem

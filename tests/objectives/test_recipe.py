@@ -9,7 +9,7 @@ import pytest
 from tests.recipes import code_of, require_taken_up
 
 NAME = "rms_slider_acceleration"
-SUITES = ("objectives/test_quantities.py", "optimise/test_units.py", "optimise/test_job.py")
+SUITES = ("objectives/test_quantities.py", "objectives/test_units.py", "optimise/test_job.py")
 
 
 def test_a_quantity_in_one_file_is_taken_up_by_the_suites_of_all_quantities(

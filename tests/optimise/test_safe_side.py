@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.units import kind_of, to_si
 from slidercrank.optimise.feasibility.safe_side import Side, exact, safe
-from slidercrank.optimise.job.units import kind_of, to_si
 
 UNITS = sorted({(quantity.unit.symbol, quantity.unit.factor) for quantity in QUANTITIES.values()})
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from slidercrank.optimise.job.units import shown
+from slidercrank.objectives.units import shown
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.store import Artefact, Store
 from tests.service.api.conftest import Serve

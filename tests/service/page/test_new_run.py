@@ -12,9 +12,9 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from slidercrank.objectives.units import kind_for, to_si
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.catalogue import with_catalogues
-from slidercrank.optimise.job.units import kind_for, to_si
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible

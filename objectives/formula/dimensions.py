@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ...model.errors import InputError
-from ...objectives.formula.expression import ANGLES, INVERSES, Node, Number, Text, fold
-from ...objectives.kinds import ANGLE, Kind
-from .units import Dimension, dimension_of, kind_with
+from ..kinds import ANGLE, Kind
+from ..units import Dimension, dimension_of, kind_with
+from .expression import ANGLES, INVERSES, Node, Number, Text, fold
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
 _LARGEST = 9  # a power that a unit has a notation for

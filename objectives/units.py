@@ -21,8 +21,8 @@ from datetime import date, time
 from fractions import Fraction
 from typing import Any, Literal
 
-from ...model.errors import InputError
-from ...objectives.kinds import KINDS, TIME, Face, Kind, kind_in
+from ..model.errors import InputError
+from .kinds import KINDS, TIME, Face, Kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]

@@ -8,11 +8,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives import kinds
+from slidercrank.objectives import kinds, units
 from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.job import units
-from slidercrank.optimise.job.units import closest, kind_of, shown, to_si
+from slidercrank.objectives.units import closest, kind_of, shown, to_si
 
 GOOD = [
     ("80 mm", kinds.LENGTH, 0.08),

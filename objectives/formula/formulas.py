@@ -6,24 +6,24 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
-from ...objectives.formula.expression import ARGUMENTS, Name, Node, names_in, text_of
-from ...objectives.formula.linear import Linear, linear_of, unknown
-from ...objectives.formula.parser import parse
-from ...objectives.formula.quantity import FormulaQuantity, key_of
-from ...objectives.formula.ranges import Interval, Ranges
-from ...objectives.kinds import LENGTH, Kind, kind_in
-from ...objectives.quantity import Quantity
-from ...objectives.reach import CLEAR, Reach, Within
-from ...objectives.reach import Ranges as Box
-from ...objectives.registry import FACTS, QUANTITIES
-from ..problem.requirements import Range
+from ..kinds import LENGTH, Kind, kind_in
+from ..quantity import Quantity
+from ..reach import CLEAR, Reach, Within
+from ..reach import Ranges as Box
+from ..registry import FACTS, QUANTITIES
+from ..units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
 from .dimensions import kind_of_formula
-from .units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
+from .expression import ARGUMENTS, Name, Node, names_in, text_of
+from .linear import Linear, linear_of, unknown
+from .parser import parse
+from .quantity import FormulaQuantity, key_of
+from .ranges import Interval, Ranges
 
 ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and begin names of formulas then."""
@@ -97,6 +97,18 @@ def unknown_name(name: str, known: Iterable[str], units: Units) -> InputError:
     return InputError(f"no quantity, dimension or varying number is called {shown(name)}; {hint}")
 
 
+class Ends(Protocol):
+    """Where a number may lie, SI."""
+
+    @property
+    def lower(self) -> float:
+        """Least value."""
+
+    @property
+    def upper(self) -> float:
+        """Greatest value."""
+
+
 class Formulas:
     """The formulas of a job, and what their names mean.
 
@@ -107,7 +119,7 @@ class Formulas:
         self,
         own: Iterable[Quantity],
         machine: Mechanism,
-        ranges: Mapping[str, Range],
+        ranges: Mapping[str, Ends],
         named: Mapping[str, Stated],
         *,
         turning: bool = True,
