@@ -23,6 +23,8 @@ def declared(package: str) -> tuple[Quantity, ...]:
     return tuple(sorted(found.values(), key=lambda quantity: quantity.place))
 
 
+_MOST_NAMES = 12  # of a message
+
 FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared(__package__)}
 """Every quantity of the product, also those whose values need a table of the job."""
 QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.items() if not quantity.table}
@@ -42,6 +44,13 @@ for _kind in {type(of) for of in FACTS.values()}:
     copyreg.pickle(_kind, _reduced)
 
 
+def listed(names: Collection[str]) -> str:
+    """Return the first of many names for a message, and where all are."""
+    few = ", ".join(list(names)[:_MOST_NAMES])
+    more = len(names) - _MOST_NAMES
+    return f"{few} and {more} more, all in `slidercrank schema` and slidercrank.quantities()" if more > 0 else few
+
+
 def quantity(name: str, own: Collection[Quantity] = ()) -> Quantity:
     """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
 
@@ -50,8 +59,8 @@ def quantity(name: str, own: Collection[Quantity] = ()) -> Quantity:
     """
     found = next((of for of in own if of.name == name), None) or QUANTITIES.get(name)
     if found is None:
-        known = [*QUANTITIES, *(of.name for of in own)]
-        near = difflib.get_close_matches(str(name), known, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(known)}"
+        known = list(dict.fromkeys([*QUANTITIES, *(of.name for of in own)]))
+        near = difflib.get_close_matches(str(name)[:60], known, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose from {listed(known)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
     return found

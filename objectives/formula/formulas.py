@@ -16,7 +16,7 @@ from ..kinds import LENGTH, Kind, kind_in
 from ..quantity import Quantity
 from ..reach import CLEAR, Reach, Within
 from ..reach import Ranges as Box
-from ..registry import FACTS, QUANTITIES
+from ..registry import FACTS, QUANTITIES, listed
 from ..units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
 from .dimensions import kind_of_formula
 from .expression import ARGUMENTS, Name, Node, names_in, text_of
@@ -29,7 +29,6 @@ ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and begin names of formulas then."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3
-_MOST_NAMES = 12  # of a message
 _LONGEST_TITLE = 60
 
 
@@ -86,8 +85,7 @@ def unknown_name(name: str, known: Iterable[str], units: Units) -> InputError:
     """Return the refusal of a name that no quantity, dimension or varying number has. known: the names there are."""
     every = list(known)
     near = difflib.get_close_matches(name[:60], every, n=_NEAREST)
-    more = f" and {len(every) - _MOST_NAMES} more" if len(every) > _MOST_NAMES else ""
-    hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {', '.join(every[:_MOST_NAMES])}{more}"
+    hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {listed(every)}"
     if "." in name and not near:
         hint = "let the number vary in [variables], or write its value"
     elif name in ARGUMENTS:
@@ -119,13 +117,14 @@ class Formulas:
         self,
         own: Iterable[Quantity],
         machine: Mechanism,
-        ranges: Mapping[str, Ends],
+        ranges: Mapping[str, Ends] | None,
         named: Mapping[str, Stated],
         *,
         turning: bool = True,
     ) -> None:
         """Take a job's own quantities, its machine, the ranges of the dimensions and its named formulas.
 
+        ranges: None for formulas whose values alone are wanted, where nothing is known of the designs.
         turning: whether the crank must turn through, which narrows the dimensions.
         Raises JobError for a named formula that is wrong.
         """
@@ -137,7 +136,8 @@ class Formulas:
         self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
         self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
         self._kinds |= {item.name: kind_of(unit_of(item.paths[0])) for item in machine.varying}
-        self._intervals = {name: Interval(of.lower, of.upper) for name, of in ranges.items()}
+        self._known = ranges is not None
+        self._intervals = {name: Interval(of.lower, of.upper) for name, of in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
         self._linears: dict[str, Linear | None] = {name: unknown(name) for name in self._places}
         self._units = Units(frozenset((*self._quantities, *self._places, *named)))
@@ -225,12 +225,7 @@ class Formulas:
                 raise InputError(f"{part.name} is not defined here: {reason}")
         kinds = {item: self._kinds[item] for item in names if item in self._places}
         kind = kind or kind_of_formula(node, kinds | {part.name: part.kind for part in parts})
-        for part in parts:
-            if part.name not in self._intervals:
-                self._intervals[part.name] = self._interval(part)
-                self._linears.setdefault(part.name, None)
-        linears = self._linears if self._turning else dict.fromkeys(self._linears)
-        within = Ranges(self._intervals, linears, self._advice(names)).of(node)
+        within = self._within(node, parts)
         wider = f"widen the ranges of {' and '.join(DIMENSIONS)}"
         self._intervals[name] = within
         self._linears[name] = linear_of(node, self._linears)
@@ -254,8 +249,18 @@ class Formulas:
             signs=tuple((item, sign) for item in names if item in self._places and (sign := self._sign(item))),
         )
 
+    def _within(self, node: Node, parts: tuple[Quantity, ...]) -> Interval:
+        if not self._known:
+            return Interval(-float("inf"), float("inf"))
+        for part in parts:
+            if part.name not in self._intervals:
+                self._intervals[part.name] = self._interval(part)
+                self._linears.setdefault(part.name, None)
+        linears = self._linears if self._turning else dict.fromkeys(self._linears)
+        return Ranges(self._intervals, linears, self._advice(names_in(node))).of(node)
+
     def _sign(self, name: str) -> int:
-        of = self._intervals[name]
+        of = self._intervals.get(name, Interval(-1.0, 1.0))
         return 1 if of.lower >= 0.0 else -1 if of.upper <= 0.0 else 0
 
     def _meant(self, name: str) -> Quantity:

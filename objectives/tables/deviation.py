@@ -26,7 +26,7 @@ _NODES = 2880  # of the computed curve that the grid interpolates
 _GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
 _CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
-_FEWEST = 3  # crank angles: one more than there are shifts
+_APART = 1e-3  # rad: crank angles nearer than this, as of times that were rounded, count as one
 _CONSTANT = 1e-12  # of the greatest size
 _EQUAL = 1e-9  # relative: of equally good shifts the lesser one is told
 
@@ -103,7 +103,7 @@ def _fit(
 ) -> Fit | None:
     """Return the best shifts. nodes, table: crank angles over a turn and the computed curve there."""
     varies = float(np.ptp(table)) > _CONSTANT * float(np.abs(table).max())  # and is not NaN
-    if not varies or len(np.unique(angles)) < _FEWEST:
+    if not varies or not _three(angles):
         return None
     theta, means, weights = _grouped(angles, values)
 
@@ -137,6 +137,17 @@ def _fit(
     shift = float(shifts[good[np.argmin(np.abs(shifts[good]))]])
     off = values - computed(angles + shift)
     return Fit(shift, 0.0 - float(off.mean()), _rms(off - off.mean()))
+
+
+def _three(angles: Array) -> bool:
+    """Return whether there are three crank angles apart from one another, one more than there are shifts."""
+    ordered = np.sort(angles)
+    for _ in range(2):
+        first = ordered[0]
+        ordered = ordered[(ordered >= first + _APART) & (ordered <= angles.min() + _TURN - _APART)]
+        if not len(ordered):
+            return False
+    return True
 
 
 def _grouped(angles: Array, values: Array) -> tuple[Array, Array, Array]:

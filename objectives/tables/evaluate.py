@@ -15,9 +15,9 @@ from ...model.signals.peaks import ANGLES
 from ...model.swing.many import able
 from ...model.swing.swing import Swing
 from ..cycle_peak import screened
+from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
-from ..registry import quantity
 from .swinging import require_in_motion, require_of_swing
 
 
@@ -53,8 +53,8 @@ def evaluate(
     """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
     A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
-    before the last: one design (3 + k,) gives (q,). quantities: names as in job files. own: quantities that may be
-    named besides those of the product. swing: which designs need only make, in place of a full turn.
+    before the last: one design (3 + k,) gives (q,). quantities: names or formulas as in job files. own: quantities
+    that may be named besides those of the product. swing: which designs need only make, in place of a full turn.
 
     The row of a design that does not turn fully, or that has NaN in it, is NaN. Where friction locks the linkage, what
     follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the exact one of
@@ -71,7 +71,7 @@ def evaluate(
     if isinstance(quantities, str):
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
     require_in_motion(quantities, own, swing)
-    chosen = [quantity(name, own) for name in quantities]
+    chosen = meant(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
         if swing is not None:
             require_of_swing(item.name, item)

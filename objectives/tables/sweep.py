@@ -15,8 +15,8 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
+from ..formula.meant import meant
 from ..quantity import Array, Quantity
-from ..registry import quantity
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
 MOST = 1_000_000
@@ -41,13 +41,13 @@ def sweep(
 ) -> pd.DataFrame:
     """Return a table with a row for every combination of the values of the axes, the first axis slowest.
 
-    dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities.
-    own: those that it may name besides those of the registry.
+    dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities or
+    formulas. own: those that it may name besides those of the registry.
     Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
     the row has no values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
     """
-    quantities = [quantity(name, own) for name in of]
+    quantities = meant(of, mechanism, own)
     names = [axis.parameter for axis in over]
     if not names or not quantities:
         raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")

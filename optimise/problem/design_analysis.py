@@ -13,11 +13,14 @@ from numpy.typing import ArrayLike
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing
+from ...objectives.formula.meant import meant
+from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.kinds import unit_text
-from ...objectives.quantity import Array, Quantity
-from ...objectives.registry import QUANTITIES, quantity
+from ...objectives.quantity import Array, Quantity, Values
+from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
@@ -54,19 +57,26 @@ class Analysis(Mapping[str, float]):
     swing: Swing | None = None
 
     def __getitem__(self, name: str) -> float:
-        """Return a quantity, SI. Raises `InputError` for one that is not defined, or not known."""
+        """Return a quantity or formula, SI. Raises `InputError` for one that is not defined, or not known."""
         if name in self.found:
             return self.found[name]
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
         require_in_motion([name], self.quantities, self.swing)
-        known = quantity(name, self.quantities)
+        (known,) = meant([name], self.mechanism, self.quantities, turning=self.swing is None)
+        if isinstance(known, FormulaQuantity) and known.name not in self.found:
+            return self._of_formula(known)
         if known.name not in self.found:
             raise InputError(
                 f"{name} is of a crank that turns through; got one that swings; ask for a quantity of a swing, "
                 f"such as {', '.join(of.name for of in self.quantities if of.name in self.found)}"
             )
         return self.found[known.name]
+
+    def _of_formula(self, formula: FormulaQuantity) -> float:
+        sizes = [float(getattr(self.linkage, name)) for name in DIMENSIONS]
+        parts = {part.name: Values(np.array([self[part.name]]), None) for part in formula.parts}
+        return float(formula.combined(parts, self.mechanism, np.array([sizes]), gradients=False).values[0])
 
     @overload
     def get(self, name: str, /) -> float | None: ...

@@ -18,8 +18,9 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
+from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
-from ...objectives.registry import QUANTITIES, quantity
+from ...objectives.registry import QUANTITIES, listed
 from ...objectives.tables.evaluate import evaluate
 from ...objectives.tables.swinging import (
     require_in_motion,
@@ -126,6 +127,7 @@ class Problem:
         else:
             for own in self.variants or (self,):
                 require_no_winding(own.mechanism)
+        self._take_formulas()
         require_own_columns(self.own, self.mechanism.varying, self.choices)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
@@ -139,7 +141,7 @@ class Problem:
             if [x.name for x in variant.mechanism.varying] != [x.name for x in self.mechanism.varying]:
                 raise InputError("the same numbers must vary in all variants of a problem")
         if not self.objectives:
-            raise InputError(f"a problem needs at least one objective; choose from {', '.join(QUANTITIES)}")
+            raise InputError(f"a problem needs at least one objective; choose from {listed(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
         machines = [variant.mechanism for variant in self.variants] or [self.mechanism]
         keys = [("objectives", name) for name in names]
@@ -183,6 +185,19 @@ class Problem:
                 raise InputError(f"{table}.{name}: {reason}")
             require_of_swing(f"{table}.{name}", self.quantity(name))
 
+    def _take_formulas(self) -> None:
+        """Add the formulas that objectives and constraints name."""
+        asked = [item.quantity for item in self.objectives]
+        for name in (*asked, *(item.quantity for item in self.every_constraint)):
+            if is_formula(name, self.mechanism, self.own):
+                made = self.quantity(name)
+                if made.name != name:
+                    raise InputError(
+                        f"an objective or constraint names a formula as it is printed; got {name!r}; write "
+                        f"{made.name!r}"
+                    )
+                object.__setattr__(self, "own", (*self.own, made))
+
     def __repr__(self) -> str:
         wanted = ", ".join(f"{objective.sense} {objective.quantity}" for objective in self.objectives)
         count = f"{len(self.constraints)} constraint" + ("" if len(self.constraints) == 1 else "s")
@@ -201,9 +216,14 @@ class Problem:
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{asked}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity of a name, the problem's own ones included; raise `InputError` with the nearest names."""
+        """Return the quantity of a name, the problem's own ones included, or of a formula as in job files.
+
+        Raises `InputError` with the nearest names, or with what is wrong with the formula.
+        """
         require_in_motion([name], self.own, self.motion)
-        return quantity(name, self.own)
+        lengths = {name: getattr(self, name) for name in DIMENSIONS}
+        (found,) = meant([name], self.mechanism, self.own, ranges=lengths, turning=self.motion is None)
+        return found
 
     @overload
     def evaluate(
@@ -218,8 +238,8 @@ class Problem:
     ) -> Array | tuple[Array, Array]:
         """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
-        The Jacobian is (n, q, 3 + k). quantities: names; the objectives if None. Values are those of the quantities,
-        not yet turned into what is minimised. Rows of designs that do not turn fully are NaN. See
+        The Jacobian is (n, q, 3 + k). quantities: names or formulas; the objectives if None. Values are those of the
+        quantities, not yet turned into what is minimised. Rows of designs that do not turn fully are NaN. See
         `tables.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
         """
         self._require_chosen()

@@ -11,7 +11,7 @@ from typing import Literal
 
 from ...model.errors import InputError
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.registry import QUANTITIES
+from ...objectives.registry import QUANTITIES, listed
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {
@@ -119,7 +119,7 @@ def _require_name(name: object) -> None:
     if not isinstance(name, str) or not (_NAME.fullmatch(name) or _FORMULA.fullmatch(name)):
         raise InputError(
             f"a quantity is named by small letters, digits and underscores, such as {PEAK_TORQUE.name!r}; got "
-            f"{name!r}; choose from {', '.join(QUANTITIES)}, or a quantity of the problem's own"
+            f"{name!r}; choose from {listed(QUANTITIES)}, or a quantity of the problem's own"
         )
 
 

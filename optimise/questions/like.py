@@ -170,7 +170,7 @@ def _require_new(
         columns.append((f"{name}_mm", 1e3, ends))
     if not columns:
         raise InputError("say what is to be different: add a constraint or a range")
-    if all(_within(row[key], ends, factor) for key, factor, ends in columns):
+    if all(key in row and _within(row[key], ends, factor) for key, factor, ends in columns):
         raise InputError("the design already meets what is added; ask for more of it")
 
 

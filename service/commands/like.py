@@ -36,7 +36,7 @@ def like(
     where: Annotated[
         list[str],
         typer.Option(metavar="CONDITION"),
-        'What it must also meet: a quantity or a dimension, >= <= or =, a value, such as "crank = 40 mm". '
+        'What it must also meet: a quantity, a dimension or a formula, >= <= or =, a value, such as "crank = 40 mm". '
         "May be repeated.",
     ],
     runs: Runs = None,
@@ -80,13 +80,14 @@ def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constrain
     found: dict[str, Ends] = {}
     for text in where:
         condition = parse_condition(text, list(row), row)
-        name = names.get(condition.column.key)
+        formula = condition.formula
+        name = names.get(condition.column.key) if formula is None else formula.text
         if name is None or isinstance(condition.value, str):
             raise InputError(
-                "a design can be asked for by quantities, dimensions and formulas of its job; "
+                "a design can be asked for by quantities, dimensions and formulas of these; "
                 f"got {text!r}; write it like {_EXAMPLE}"
             )
-        factor = 1e3 if name in DIMENSIONS else problem.quantity(name).unit.factor
+        factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
         ends = common(found.get(name, (None, None)), _ends(condition, factor, text))
         if ends is None:
             raise InputError(f"the conditions on {name} contradict each other; got {text!r} last; leave out one")

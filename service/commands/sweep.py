@@ -36,7 +36,11 @@ def sweep(
     over: Annotated[
         list[str], typer.Option(metavar="RANGE"), 'What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.'
     ],
-    of: Annotated[list[str], typer.Option(metavar="QUANTITY"), "Quantity to compute, such as peak_torque. Repeatable."],
+    of: Annotated[
+        list[str],
+        typer.Option(metavar="QUANTITY"),
+        'Quantity or formula to compute, such as peak_torque or "crank + rod". Repeatable.',
+    ],
     *,
     size: Dimensions,
     figures: Annotated[Figures, "Draw the sweep into sweep.png there."] = None,
@@ -60,7 +64,7 @@ def sweep(
         if name in swept and text is not None:
             raise InputError(f"{name} is swept by --over and given by --{name}; leave out one of the two")
     lengths = [1.0 if name in swept else length_option(name, text, problem) for name, text in vars(size).items()]
-    names = [name.strip() for text in of for name in text.split(",") if name.strip()]
+    names = [name for text in of for name in _names(text)]
     quantities = [problem.quantity(name) for name in names]
     swept_table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
     rows = rows_in(rows_of(swept_table.to_dict("list")), units)
@@ -70,6 +74,18 @@ def sweep(
 
         file = figures / "sweep.png"
         write_figure(file, lambda: sweep_figure(swept_table, axes, quantities, title=problem.name, system=units))
+
+
+def _names(text: str) -> list[str]:
+    """Return the parts between commas; those within brackets are of a function."""
+    parts, depth = [""], 0
+    for sign in text:
+        depth += (sign == "(") - (sign == ")")
+        if sign == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += sign
+    return [part.strip() for part in parts if part.strip()]
 
 
 def _show(

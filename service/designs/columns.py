@@ -26,6 +26,7 @@ _TO_INCH = {
 }
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 DIMENSIONS = ("crank", "rod", "offset")
+_MOST = 12  # keys of a message
 
 
 @dataclass(frozen=True)
@@ -119,8 +120,13 @@ def _meant(name: str, keys: Collection[str]) -> str:
     from ...objectives.units import closest
 
     near = closest(name, [*keys, *meant]) if name else None
-    hint = f"did you mean {near}?" if near else f"choose from {', '.join(keys)}"
+    hint = f"did you mean {near}?" if near else f"choose from {_listed(keys)}"
     raise InputError(f"no quantity or column is called {name!r}; {hint}")
+
+
+def _listed(keys: Collection[str]) -> str:
+    more = len(keys) - _MOST
+    return ", ".join(list(keys)[:_MOST]) + (f" and {more} more, the columns of front.csv" if more > 0 else "")
 
 
 def split_unit(key: str) -> tuple[str, str, float]:

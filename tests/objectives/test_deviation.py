@@ -144,6 +144,21 @@ def test_two_crank_angles_do_not_determine_shifts(angles: list[float]) -> None:
     assert math.isfinite(found.rms)
 
 
+def test_samples_once_a_turn_determine_no_shift_however_their_times_are_rounded() -> None:
+    random = np.random.default_rng(46)
+    for digits in (6, 9, 17):
+        speed = float(random.uniform(5.0, 30.0))
+        machine, place = replace(MOVING, speed=speed), random.choice([0.0, float(random.uniform(0.0, 6.0))])
+        for places in ((place,), (place, place + 2.0)):
+            times = [(2.0 * math.pi * turn + at) / speed for turn in range(12) for at in places]
+            angles = speed * np.array([float(f"{time:.{digits}g}") for time in times])
+            found = one(machine, LINKAGE, angles, "slider_position", np.full(len(times), 0.2))
+            assert found.fit is None
+            assert math.isfinite(found.rms)
+        found = one(machine, LINKAGE, np.append(angles, place + 4.0), "slider_position", np.full(len(angles) + 1, 0.2))
+        assert found.fit is not None
+
+
 def test_a_constant_curve_has_no_shift_and_a_locked_one_no_deviation() -> None:
     angles = np.linspace(0.0, 6.0, 20)
     constant = replace(SMOOTH, loads=SMOOTH.loads[:1])  # the same force in both strokes

@@ -1,0 +1,43 @@
+"""Names of quantities that may be formulas too, as functions in Python and commands take them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+from ...model.linkage.values import DIMENSIONS
+from ...model.machine.mechanism import Mechanism
+from ..quantity import Quantity
+from ..registry import QUANTITIES, quantity
+from .formulas import Ends, Formulas
+
+
+def meant(
+    names: Sequence[str],
+    mechanism: Mechanism,
+    own: Collection[Quantity] = (),
+    *,
+    ranges: Mapping[str, Ends] | None = None,
+    turning: bool = True,
+) -> list[Quantity]:
+    """Return the quantities that names and formulas mean.
+
+    own: quantities of a problem besides those that every one has. ranges: of the dimensions, for the refusal of what
+    may divide by zero in them; without, such a formula has no value where it does. turning: whether the crank must
+    turn through. Raises `InputError` with the nearest names, or with what is wrong with a formula.
+    """
+    formulas: Formulas | None = None
+    found = []
+    for name in names:
+        if is_formula(name, mechanism, own):
+            formulas = formulas or Formulas(own, mechanism, ranges, {}, turning=turning)
+            found.append(formulas.quantity(name, f"the formula {name[:60]}"))
+        else:
+            found.append(quantity(name, own))
+    return found
+
+
+def is_formula(name: object, mechanism: Mechanism, own: Collection[Quantity] = ()) -> bool:
+    """Return whether a text is no name of a quantity, but of a dimension or a number that varies, or more."""
+    if not isinstance(name, str) or name in QUANTITIES or any(of.name == name for of in own):
+        return False
+    return name in DIMENSIONS or any(item.name == name for item in mechanism.varying) or not name.isidentifier()
