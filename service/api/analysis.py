@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from typing import Annotated, Any, Literal
@@ -14,6 +14,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...objectives.quantity import Quantity
 from ..designs.columns import all_columns
 from ..designs.cycle_table import LEAST, MOST
 from ..designs.design_curves import design_curves
@@ -23,9 +24,9 @@ from ..designs.stored_designs import StoredDesign
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_lengths
-from ..runs.result import Row, finite
+from ..runs.result import Row, json_ready
 from ..text.options import Dimensions, speed_option
-from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing
+from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing, undefined_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .fronts import Cells, ColumnModel, OfDesign, column_models
 from .job_requests import given_problem
@@ -184,9 +185,11 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     if stored.part.motion is not None:
         if topics:
             require_turning(stored.part, f"the analysis {', '.join(topics)}")
-        return StoredAnalysisModel(job=found.job.id, number=design, analysis=finite(numbers_of_swing(stored)), notes=[])
+        return StoredAnalysisModel(
+            job=found.job.id, number=design, analysis=json_ready(numbers_of_swing(stored)), notes=[]
+        )
     row = numbers_of(stored.mechanism, stored.linkage, stored.part.own)
-    record, notes = _with_topics(row, stored.mechanism, stored.linkage, topics, lenient=ALL in show)
+    record, notes = _with_topics(row, stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
 
 
@@ -214,7 +217,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))
     linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem)
     row = numbers_of(mechanism, linkage, problem.own)
-    record, notes = _with_topics(row, mechanism, linkage, topics, lenient=ALL in asked.show)
+    record, notes = _with_topics(row, mechanism, linkage, topics, problem.own, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
 
 
@@ -263,7 +266,7 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
         job=found.job.id,
         number=design,
         columns=column_models(all_columns(changed.row)),
-        design=finite(changed.row),
+        design=json_ready(changed.row),
         broken=changed.broken,
         outside=changed.outside,
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
@@ -286,17 +289,20 @@ def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
         outer_dead_centre_deg=outer,
         slow_stroke=slow,
         columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
-        curves={column.key: finite(column.values) for column in found.columns},
+        curves={column.key: json_ready(column.values, gaps=True) for column in found.columns},
     )
 
 
 def _with_topics(
-    row: Row, mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], *, lenient: bool
+    row: Row, mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], own: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
+    undefined = undefined_of(mechanism, own)
     with SIMULATING.turn() if topics else nullcontext():
-        analysed = analysis_of(row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient)
-    return finite(analysed.record()), analysed.notes + analysed.refused
+        analysed = analysis_of(
+            row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient, undefined=undefined
+        )
+    return json_ready(analysed.record()), analysed.notes + analysed.refused
 
 
 def over(seconds: float) -> Callable[[], bool]:

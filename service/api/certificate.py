@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
 from ..designs.proof import certificate_record, infeasible_record, sentences_of, sizes_of
-from ..runs.result import finite, rows_of
+from ..runs.result import json_ready, rows_of
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 from .throttle import Turns
@@ -67,5 +67,5 @@ def _proof(found: StoredFront, epsilon: float, seconds: float) -> CertificateMod
 
     proof = certify_designs(problem, sizes_of(result), epsilon=epsilon, seconds=seconds)
     rows = rows_of(proof.table.to_dict("list")) if len(proof.table) else []
-    record = finite(certificate_record(proof, problem, result.run, rows))
+    record = json_ready(certificate_record(proof, problem, result.run, rows))
     return CertificateModel(job=job, proven=proof.proven, sentences=sentences_of(proof, result), certificate=record)

@@ -20,7 +20,7 @@ from ..designs.measured_file import read_measured
 from ..designs.rounding import rounded_record, rounded_record_in, steps_of
 from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
-from ..runs.result import finite
+from ..runs.result import json_ready
 from ..swing.record import swing_record
 from ..topics.measured import MEASURED
 from .fronts import OfDesign
@@ -98,7 +98,7 @@ def find_crank_angles(
 ) -> InverseModel:
     """Find every crank angle that puts the slider of a design at a position, with crank speed and acceleration."""
     motion = SliderMotion(slider_position_mm / LENGTH.metric.factor, slider_velocity_m_s, slider_acceleration_m_s2)
-    record = finite(inverse_record(found.design(design).linkage, motion))
+    record = json_ready(inverse_record(found.design(design).linkage, motion))
     return InverseModel(job=found.job.id, number=design, inverse=record_in(record, units))
 
 
@@ -152,7 +152,7 @@ def compare_measured(
     with SIMULATING.turn():
         samples = read_measured(given.csv, stored.mechanism, stored.linkage)
         topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
-        record = finite(topic.numbers(lambda: False))
+        record = json_ready(topic.numbers(lambda: False))
     return MeasuredModel(job=found.job.id, number=design, measured=record_in(record, units))
 
 
@@ -206,7 +206,7 @@ def round_design(found: FrontDep, design: DesignNumber, given: Steps, units: Uni
     steps = steps_of(given.to, found.front.part(design - 1), key="to")
     with SIMULATING.turn():
         rounded = found.front.rounded(design - 1, steps, count=given.count)
-        record = finite(rounded_record_in(units, rounded_record(rounded), rounded))
+        record = json_ready(rounded_record_in(units, rounded_record(rounded), rounded))
     return RoundedModel(job=found.job.id, number=design, rounded=record)
 
 
@@ -280,7 +280,7 @@ def analyse_swing(
     )
     stored = found.design(design)
     machine, swing = asked_swing(stored.mechanism, stored.part.motion, asked, _NAMES)
-    record = finite(swing_record(machine, summarise(machine, stored.linkage, swing)))
+    record = json_ready(swing_record(machine, summarise(machine, stored.linkage, swing)))
     return SwingModel(job=found.job.id, number=design, swing=record_in(record, units))
 
 

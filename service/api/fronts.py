@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import math
 from collections.abc import Iterable, Sequence
 from typing import Annotated, Any
 
@@ -15,7 +16,7 @@ from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
 from ..page.router import tagged
-from ..runs.result import finite
+from ..runs.result import Cell, json_ready
 from .models import JobNumber, Whole
 from .problems import problem_responses, tagged_json
 from .settings import StoreDep
@@ -28,7 +29,7 @@ _WORTHWHILE = 16_384
 """Bytes from which an answer is compressed. At the quickest level 10,000 designs of 8 columns take 40 ms and shrink to
 half: worth it once for all who ask, not for each."""
 Cells = dict[str, float | str | None]
-"""A design: numbers and words by column; null for what is infinite or not defined."""
+"""A design: numbers and words by column; null for what is not defined, "inf" and "-inf" for infinity."""
 
 Where = Annotated[
     list[Annotated[str, Field(max_length=500)]],
@@ -130,7 +131,7 @@ class DesignModel(OfDesign):
 
 
 class ColumnsModel(BaseModel):
-    """All values of some columns, in the order of the front; null for what is infinite or not defined."""
+    """All values of some columns, in the order of the front; null: not defined, "inf" and "-inf": infinite."""
 
     job: int = Field(examples=[7])
     count: int = Field(description="how many designs the front has", examples=[100])
@@ -144,7 +145,7 @@ class ColumnsModel(BaseModel):
 @router.get("/jobs/{number}/front")
 def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
-    record = finite(store.record(number))
+    record = json_ready(store.record(number))
     keys = record.pop("columns")
     return FrontModel(**record, job=number, columns=column_models(all_columns(keys)))
 
@@ -181,7 +182,7 @@ def pick_design(
     row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
         raise NotFound(none_meets(result, where))
-    return PickedModel(job=found.job.id, number=row + 1, design=finite(result.designs[row]))
+    return PickedModel(job=found.job.id, number=row + 1, design=json_ready(result.designs[row]))
 
 
 @router.get("/jobs/{number}/designs")
@@ -209,7 +210,7 @@ def list_designs(
         offset=offset,
         columns=column_models(shown),
         numbers=[row + 1 for row in page],
-        designs=[{column.key: finite(result.designs[row][column.key]) for column in shown} for row in page],
+        designs=[{column.key: json_ready(result.designs[row][column.key]) for column in shown} for row in page],
     )
 
 
@@ -218,7 +219,7 @@ def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
     columns = column_models(found.columns)
-    return DesignModel(job=found.job.id, number=design, columns=columns, design=finite(row))
+    return DesignModel(job=found.job.id, number=design, columns=columns, design=json_ready(row))
 
 
 @router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))
@@ -256,10 +257,14 @@ def _content(found: StoredFront, shown: Sequence[Column], *, compressed: bool) -
         "job": found.job.id,
         "count": len(rows),
         "columns": [column.model_dump() for column in column_models(shown)],
-        "values": {column.key: [row[column.key] for row in rows] for column in shown},
+        "values": {column.key: _written([row[column.key] for row in rows]) for column in shown},
     }
     content = to_json(answer, inf_nan_mode="null")
     return gzip.compress(content, compresslevel=1, mtime=0) if compressed and len(content) > _WORTHWHILE else content
+
+
+def _written(cells: list[Cell]) -> list[Cell]:
+    return json_ready(cells) if math.inf in cells or -math.inf in cells else cells
 
 
 def column_models(columns: Iterable[Column]) -> list[ColumnModel]:

@@ -15,7 +15,7 @@ from ..designs.requirements import ranges_of
 from ..designs.shown_units import rows_in
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..designs.variation import Variation, variation_of, with_lengths
-from ..runs.result import csv_text, finite
+from ..runs.result import csv_text, json_ready
 from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
 from .exports import download, of_type
 from .fronts import Cells, ColumnModel, column_models
@@ -181,4 +181,6 @@ def _shown(found: StoredFront, one: Kept) -> KeptDesign:
     varied = _varied(found, design)
     same = one.design is not None and stored_design(found.problem, found.result, one.design).values == one.dimensions
     told = {name: value for name, value in vars(one).items() if name not in ("job", "variant", "dimensions")}
-    return KeptDesign(**told, changed=not same, cells=finite(varied.row), broken=varied.broken, outside=varied.outside)
+    return KeptDesign(
+        **told, changed=not same, cells=json_ready(varied.row), broken=varied.broken, outside=varied.outside
+    )

@@ -10,7 +10,7 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ..designs.turning import require_turning
-from ..runs.result import finite
+from ..runs.result import json_ready
 from ..topics.discovery import TOPICS
 from ..topics.topic import Topic, TopicOfDesign
 from .analysis import LONGEST_TOPICS, over
@@ -104,7 +104,7 @@ def tell_topic(shown: ShownDep, topic: Name) -> Response:
         numbers = asked.numbers(over(LONGEST_TOPICS))
         blocks = [BlockModel(**vars(block)) for block in told(asked, numbers)]
         answer = ToldTopic(
-            job=shown.found.job.id, number=shown.number, name=topic, numbers=finite(numbers), told=blocks
+            job=shown.found.job.id, number=shown.number, name=topic, numbers=json_ready(numbers), told=blocks
         )
         return (shown.key,), to_json(answer)
 

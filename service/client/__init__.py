@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, JobError, ServiceError
-from ..runs.result import Result, Row
+from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
 from .connection import Connection, Record, followed, given
@@ -152,9 +152,9 @@ class Client(Designs):
         return job
 
     def front(self, number: int) -> Result:
-        """Return the result of a job with all designs; infinite and undefined values are None."""
+        """Return the result of a job with all designs; undefined values are None."""
         record = self._connection.ask(f"jobs/{number}/export.json")
-        rows: list[Row] = record["designs"]
+        rows = [read_row(row) for row in record["designs"]]
         return result_from(record, rows, str(record["run"]))
 
     def designs(
@@ -178,7 +178,7 @@ class Client(Designs):
         numbers: list[int] = []
         while True:
             page = self._connection.ask(f"jobs/{number}/designs", {**query, "offset": len(rows)})
-            rows += page["designs"]
+            rows += map(read_row, page["designs"])
             numbers += page["numbers"]
             if not page["designs"] or len(rows) >= page["chosen"]:
                 break
@@ -189,8 +189,8 @@ class Client(Designs):
 
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number in the front, counted from 1; the number comes first."""
-        row: Row = self._connection.ask(f"jobs/{number}/designs/{design}")["design"]
-        return {"number": design, **row}
+        row = self._connection.ask(f"jobs/{number}/designs/{design}")["design"]
+        return {"number": design, **read_row(row)}
 
     def pick(
         self,

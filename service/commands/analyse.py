@@ -11,7 +11,6 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
-from ..designs.columns import key_in
 from ..designs.requirements import judged
 from ..designs.selection import value_of
 from ..designs.shown_units import record_in, row_in
@@ -103,21 +102,19 @@ def analyse(
             notes=notes,
             cancelled=interruption.asked,
             lenient=True,
+            undefined=None if problem is None else undefined_of(mechanism, own),
         )
     if cycle is not None:
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
-    undefined = (
-        {} if problem is None else {key_in(key, units)[0]: why for key, why in undefined_of(mechanism, own).items()}
-    )
     if json:
         record = record_in(found.record(), units)
-        more = {"rules": [asdict(rule) for rule in rules], "undefined": undefined}
-        give(json_text(record | ({} if problem is None else more)))
+        give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
         screen = console()
         show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
-        show_undefined(screen, {key: why for key, why in undefined.items() if key not in TOLD_THERE}, own)
+        reasons = (found.undefined or {}).items()
+        show_undefined(screen, {key: why for key, why in reasons if key not in TOLD_THERE}, own)
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...objectives.kinds import System, shown_in
-from ..runs.result import finite, rows_of
+from ..runs.result import json_ready, rows_of
 from .shown_units import row_in
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ def wished_record(answer: Wished, units: System = "metric") -> dict[str, Any]:
         "number": None if answer.row is None else answer.row + 1,
         "possible": answer.possible,
         "sentences": answer.sentences(units),
-        "achievement": finite(answer.value),
+        "achievement": json_ready(answer.value),
         "objectives": [_outcome(outcome, units) for outcome in answer.outcomes],
-        "design": finite(row_in(rows[0], units)) if rows else None,
+        "design": json_ready(row_in(rows[0], units)) if rows else None,
     }
 
 

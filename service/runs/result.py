@@ -105,9 +105,9 @@ class Result:
         return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
     def record(self) -> dict[str, Any]:
-        """Return the result for JSON: finite numbers only, null for undefined values."""
+        """Return the result for JSON: null for undefined values, "inf" and "-inf" for infinite ones."""
         left_out = ("exact",) if self.discrete else ("exact", "discrete")
-        fields = {name: finite(value) for name, value in vars(self).items() if name not in left_out}
+        fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
         wanted = [wanted_record(wanted) for wanted in self.objectives]
         return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
 
@@ -187,20 +187,34 @@ def wanted_record(wanted: Wanted) -> dict[str, Any]:
     return {name: value for name, value in vars(wanted).items() if value is not None}
 
 
-def finite(value: Any) -> Any:
-    """Return a value with None for every number in it that is infinite or not a number."""
+def json_ready(value: Any, *, gaps: bool = False) -> Any:
+    """Return a value as JSON has it: None for every number that is not defined, "inf" and "-inf" for infinities.
+
+    CSV files have the same words. gaps: None for infinities too, in what is drawn.
+    """
     if isinstance(value, float):
-        return value if math.isfinite(value) else None
+        if math.isfinite(value):
+            return value
+        return None if gaps or math.isnan(value) else repr(value)
     if isinstance(value, Mapping):
-        return {key: finite(item) for key, item in value.items()}
+        return {key: json_ready(item, gaps=gaps) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [finite(item) for item in value]
+        return [json_ready(item, gaps=gaps) for item in value]
     return value
+
+
+def read_row(row: Mapping[str, Any]) -> Row:
+    """Return a design of `json_ready` with its infinite numbers; words of choices stay words."""
+    return {key: _infinite(cell) if not key.startswith("choice_") else cell for key, cell in row.items()}
+
+
+def _infinite(cell: Any) -> Any:
+    return float(cell) if cell in ("inf", "-inf") else cell
 
 
 def json_text(value: Any) -> str:
     """Return strict JSON, every number as precise as it is; in ASCII, so that no terminal garbles it."""
-    return json.dumps(finite(value), indent=2, allow_nan=False) + "\n"
+    return json.dumps(json_ready(value), indent=2, allow_nan=False) + "\n"
 
 
 def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:

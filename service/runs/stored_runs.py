@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
-from .result import Exact, Result, Row, Wanted, finite, rows_from_csv
+from .result import Exact, Result, Row, Wanted, json_ready, rows_from_csv
 from .run_folder import MARK
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def read_run(folder: Path) -> Result:
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
-        if finite(rows) != record["designs"]:
+        if json_ready(rows) != record["designs"]:
             raise ValueError("front.csv and front.json differ")
         result = result_from(record, rows, str(folder))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, select, update
 
 from ...model.errors import LeaseLost
-from ..runs.result import Result, finite
+from ..runs.result import Result, json_ready
 from .clock import JUMP, later, now
 from .database import Database, Full, Unavailable
 from .queue import MOST_DELAY, put_files
@@ -87,8 +87,8 @@ class Claim:
         each carried one would make a store of many runs grow.
         """
         self.begun = self.begun or not progress.prepares
-        data = finite(asdict(progress))
-        standing = data if front is None else {**data, "front": finite(front)}
+        data = json_ready(asdict(progress), gaps=True)
+        standing = data if front is None else {**data, "front": json_ready(front, gaps=True)}
         self._write({"progress": text_of(standing)}, [("progress", data)])
 
     def renew(self) -> None:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import RunError
-from ..runs.result import Cell, Exact, Result, Row, finite
+from ..runs.result import Cell, Exact, Result, Row, json_ready
 
 if TYPE_CHECKING:
     from numpy.lib.npyio import NpzFile
@@ -158,12 +158,12 @@ def summary_of(result: Result) -> dict[str, Any]:
     }
     return {
         "designs": len(result.designs),
-        "hypervolume": finite(result.hypervolume),
+        "hypervolume": json_ready(result.hypervolume),
         "evaluations": result.evaluations,
-        "seconds": finite(result.seconds),
-        "best": finite(best),
+        "seconds": json_ready(result.seconds),
+        "best": json_ready(best),
         "axes": axes,
-        "points": [[finite(row[axis]) for axis in axes] for row in _spread(result.designs)],
+        "points": [[json_ready(row[axis], gaps=True) for axis in axes] for row in _spread(result.designs)],
     }
 
 

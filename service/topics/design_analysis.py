@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class Analysis:
     """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why.
 
-    refused: topics that the design does not have, each with the reason.
+    refused: topics that the design does not have, each with the reason. undefined: why quantities have no value, by
+    their columns; None without a job, which defines next to nothing.
     """
 
     row: Row
@@ -30,10 +31,11 @@ class Analysis:
     topics: tuple[TopicOfDesign, ...]
     notes: list[str]
     refused: list[str]
+    undefined: dict[str, str] | None = None
 
     def record(self) -> dict[str, Any]:
-        """Return all numbers of the design and of its topics, for JSON."""
-        return self.row | self.found
+        """Return all numbers of the design and of its topics, for JSON, and the reasons of those that are undefined."""
+        return self.row | self.found | ({} if self.undefined is None else {"undefined": self.undefined})
 
 
 def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> Row:
@@ -72,12 +74,13 @@ def analysis_of(
     notes: Sequence[str] = (),
     cancelled: Callable[[], bool],
     lenient: bool,
+    undefined: dict[str, str] | None = None,
 ) -> Analysis:
     """Return the analysis of one design.
 
     row: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these. cancelled: asked
     now and then; when it says so, the topics left are left out. lenient: a topic that this design does not have is
-    left out, not an error.
+    left out, not an error. undefined: of `undefined_of`.
     """
     design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
     design += tuple(more)
@@ -94,4 +97,4 @@ def analysis_of(
             if not lenient:
                 raise InputError(reason) from None
             refused.append(reason)
-    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said, refused)
+    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said, refused, undefined)

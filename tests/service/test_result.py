@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.runs.result import Row, csv_text, finite, json_text, result_of, rows_from_csv
+from slidercrank.service.runs.result import Row, csv_text, json_ready, json_text, read_row, result_of, rows_from_csv
 from slidercrank.service.runs.stored_runs import result_from
 from tests.service import fronts
 
@@ -45,10 +45,26 @@ def test_an_empty_front_has_no_marked_design() -> None:
     assert (record["designs"], record["extremes"], record["knee"], record["trade_offs"]) == ([], {}, None, [])
 
 
-def test_numbers_that_are_not_finite_become_null() -> None:
-    text = json_text({"a": math.inf, "b": [math.nan, -math.inf, 1.5], "c": {"d": math.nan}})
-    assert json.loads(text) == {"a": None, "b": [None, None, 1.5], "c": {"d": None}}
-    assert finite("inf") == "inf"
+def test_what_is_not_defined_is_null_in_json_and_infinity_a_word() -> None:
+    given = {"a": math.inf, "b": [math.nan, -math.inf, 1.5], "c": {"d": math.nan}}
+    assert json.loads(json_text(given)) == {"a": "inf", "b": [None, "-inf", 1.5], "c": {"d": None}}
+    assert json_ready(given, gaps=True) == {"a": None, "b": [None, None, 1.5], "c": {"d": None}}
+
+
+def test_random_designs_read_back_from_json_as_from_csv() -> None:
+    random = np.random.default_rng(5)
+    values = np.array([math.inf, -math.inf, math.nan, 0.0, -0.0, 1e300, 5e-324, 1.5])
+    for _ in range(50):
+        row: Row = {f"column_{place}_mm": float(value) for place, value in enumerate(random.choice(values, 9))}
+        row |= {"choice_motor": str(random.choice(["inf", "-inf", "GM 4"])), "slow_stroke": "inward"}
+        read = read_row(json.loads(json_text(row)))
+        assert read.keys() == row.keys()
+        (line,) = rows_from_csv(csv_text([row]))
+        for key, value in row.items():
+            undefined = isinstance(value, float) and math.isnan(value)
+            assert read[key] == (None if undefined else value)
+            if not key.startswith("choice_"):
+                assert repr(line[key]) == repr(value)
 
 
 def test_json_is_ascii() -> None:

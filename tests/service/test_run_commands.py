@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.optimise.front.picking import Priority
 from slidercrank.service.designs.selection import numbered
-from slidercrank.service.runs.result import Result, finite, result_of, rows_from_csv
+from slidercrank.service.runs.result import Result, json_ready, result_of, rows_from_csv
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -138,12 +138,14 @@ def test_a_damaged_run_is_exit_code_2(stored: Result, command: Command) -> None:
 def test_export_writes_the_files_of_the_run(stored: Result, tmp_path: Path, command: Command) -> None:
     done = command("export", "latest", "--csv", tmp_path / "a.csv", "--json", tmp_path / "a.json")
     assert (done.exit_code, done.stdout) == (0, "")
-    assert finite(rows_from_csv((tmp_path / "a.csv").read_text())) == finite(numbered(stored.designs))
+    assert json_ready(rows_from_csv((tmp_path / "a.csv").read_text())) == json_ready(numbered(stored.designs))
     assert (tmp_path / "a.json").read_bytes() == (Path(stored.run) / "front.json").read_bytes()
 
 
 def test_export_writes_to_standard_output(stored: Result, command: Command) -> None:
-    assert finite(rows_from_csv(command("export", "latest", "--csv", "-").stdout)) == finite(numbered(stored.designs))
+    assert json_ready(rows_from_csv(command("export", "latest", "--csv", "-").stdout)) == json_ready(
+        numbered(stored.designs)
+    )
     assert json.loads(command("export", "latest", "--json", "-").stdout) == stored.record()
 
 
@@ -232,7 +234,7 @@ def test_an_export_takes_part_of_the_front_in_an_order(stored: Result, tmp_path:
     expected = [row for row in numbered(stored.designs) if row["peak_torque_Nm"] <= torque]  # type: ignore[operator]
     expected.sort(key=lambda row: row["crank_mm"], reverse=True)  # type: ignore[arg-type, return-value]
     assert 0 < len(expected) < len(stored.designs)
-    assert finite(rows_from_csv((tmp_path / "a.csv").read_text())) == finite(expected)
+    assert json_ready(rows_from_csv((tmp_path / "a.csv").read_text())) == json_ready(expected)
     written = json.loads((tmp_path / "a.json").read_text())
     assert written["numbers"] == [row["number"] for row in expected]
     assert [row["crank_mm"] for row in written["designs"]] == [row["crank_mm"] for row in expected]
@@ -249,7 +251,7 @@ def test_an_export_of_no_design_is_exit_code_3_and_writes_nothing(
 
 def test_front_shows_the_design_of_a_number(stored: Result, command: Command) -> None:
     record = json.loads(command("front", "latest", "--design", 4, "--json").stdout)
-    assert (record["number"], record["designs"]) == (4, [finite(stored.designs[3])])
+    assert (record["number"], record["designs"]) == (4, [json_ready(stored.designs[3])])
     assert "design 4 of 30" in command("front", "latest", "--design", 4).stdout
 
 

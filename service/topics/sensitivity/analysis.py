@@ -12,7 +12,7 @@ from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
-from ...runs.result import finite, rows_of
+from ...runs.result import json_ready, rows_of
 from ...text.tables import print_table, table
 from ..peaks import row_of
 
@@ -31,7 +31,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
     (<dimension>_tolerance), in the unit of the entry; each once more with _below, for the side of smaller values.
     """
-    return {"quantities": finite(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")))}
+    return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:

@@ -33,15 +33,16 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
 
     With the crank angle, the place along the bar from the crank pin and the side; and of each eye the greatest. None: a
-    quantity without a finite value, as the safety of what is not compressed. Raises `InputError` for a machine without
-    material and pins.
+    quantity without a value; the safety of what is not compressed is infinite. Raises `InputError` for a machine
+    without material and pins.
     """
     _require(mechanism)
     design = row_of(linkage)
     found: dict[str, Any] = {}
     for of in QUANTITIES.values():
         if of.group is Group.STRENGTH and not (of.lacks(mechanism, "undefined") or of.lacks(mechanism, "zero")):
-            found[of.field] = plain(of.unit.factor * of.evaluate(mechanism, design).values[0])
+            value = float(of.unit.factor * of.evaluate(mechanism, design).values[0])
+            found[of.field] = None if math.isnan(value) else value
     eyes = eye_stresses(mechanism, design)
     bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
     for name, bar in bars.items():

@@ -26,7 +26,7 @@ from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.designs.selection import numbered
-from slidercrank.service.runs.result import csv_text, finite, rows_from_csv
+from slidercrank.service.runs.result import csv_text, json_ready, rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with, served
@@ -58,10 +58,11 @@ def test_a_design_has_the_same_numbers_everywhere(solved: Solved, tmp_path: Path
         for key, value in given.items():
             same = value if isinstance(value, str) else pytest.approx(value, rel=0.0, abs=0.0, nan_ok=True)
             assert (by_csv[row][key], parquet.iloc[row][key]) == (same, same), (row, key)
-            shown = finite(value)  # JSON has no infinity
+            shown = json_ready(value)
             assert [table.iloc[row][key]] == ([value] if shown is not None else [pytest.approx(math.nan, nan_ok=True)])
-            for other in (by_json["designs"][row], singles[row], front.designs[row]):
-                assert other[key] == shown, (row, key)
+            assert by_json["designs"][row][key] == shown, (row, key)
+            for other in (singles[row], front.designs[row]):
+                assert other[key] == (None if shown is None else value), (row, key)
 
 
 def test_exports_are_those_of_the_command_line_but_for_formulas(solved: Solved, client: httpx.Client) -> None:

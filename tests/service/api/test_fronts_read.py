@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.runs.result import finite
+from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with
@@ -102,7 +102,7 @@ def test_pages_make_up_the_whole(solved: Solved, client: httpx.Client) -> None:
 
 def test_a_design_has_the_number_of_the_command_line(solved: Solved, client: httpx.Client) -> None:
     found = client.get(f"{solved.path}/designs/3").json()
-    assert (found["number"], found["design"]) == (3, finite(solved.result.designs[2]))
+    assert (found["number"], found["design"]) == (3, json_ready(solved.result.designs[2]))
     picked = command(solved, "--knee")
     assert client.get(f"{solved.path}/designs/{picked['number']}").json()["design"] == picked["designs"][0]
 
@@ -215,12 +215,15 @@ def test_a_front_without_designs_says_why(solved: Solved, store: Store, empty: h
     assert client.get(f"{path}/export.csv").text == ""
 
 
-def test_infinite_numbers_are_null(solved: Solved, store: Store, empty: httpx.Client) -> None:
+def test_infinite_numbers_are_words_and_undefined_ones_null(solved: Solved, store: Store, empty: httpx.Client) -> None:
     rows = rows_with(solved.result.designs, slack_x_mm=math.inf, low_mm=-math.inf, none_mm=math.nan)
     job = put_in(store, solved.result, TABLES, designs=rows)
     client = empty
     (design,) = client.get(f"{API}/jobs/{job}/designs?limit=1").json()["designs"]
-    assert (design["slack_x_mm"], design["low_mm"], design["none_mm"]) == (None, None, None)
+    assert (design["slack_x_mm"], design["low_mm"], design["none_mm"]) == ("inf", "-inf", None)
+    values = client.get(f"{API}/jobs/{job}/columns?columns=slack_x_mm,low_mm,none_mm,crank_mm").json()["values"]
+    assert [set(values[key]) for key in ("slack_x_mm", "low_mm", "none_mm")] == [{"inf"}, {"-inf"}, {None}]
+    assert values["crank_mm"] == [row["crank_mm"] for row in rows]
     for place in ("designs/1", "pick?knee", "export.json"):
         assert "Infinity" not in client.get(f"{API}/jobs/{job}/{place}").text
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from slidercrank.service.runs.result import finite, rows_from_csv
+from slidercrank.service.runs.result import json_ready, rows_from_csv
 from slidercrank.service.store import Store, schema_version
 from tests.service.api.serving import client_of
 
@@ -60,7 +60,7 @@ def test_fronts_of_an_old_store_are_served_as_they_were_written(client: httpx.Cl
     written = rows_from_csv((FOLDER / f"{job}.csv").read_text())
     assert len(written) == DESIGNS[job]
     served = client.get(f"/jobs/{job}/designs", params={"limit": 100}).json()["designs"]
-    assert [{key: cell for key, cell in row.items() if key != "number"} for row in served] == finite(written)
+    assert [{key: cell for key, cell in row.items() if key != "number"} for row in served] == json_ready(written)
 
 
 @pytest.mark.parametrize("job", DESIGNS)

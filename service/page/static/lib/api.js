@@ -107,12 +107,18 @@ async function ask(method, url, body, signal, more = {}) {
   const text = await response.text();
   let answer = null;
   try {
-    answer = text ? JSON.parse(text) : null;
+    answer = text ? JSON.parse(text, /"-?inf"/.test(text) ? infinite : undefined) : null;
   } catch {
     throw new Problem(response.status, `The answer was no JSON (status ${response.status}).`);
   }
   if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`);
   return answer;
+}
+
+/** Return the number that JSON has no form for, where a cell of a table stands for it. @param {string} key @param {unknown} value */
+function infinite(key, value) {
+  if ((value !== "inf" && value !== "-inf") || key === "name" || key === "title" || key.startsWith("choice_")) return value;
+  return value === "inf" ? Infinity : -Infinity;
 }
 
 /** Return a response, of whatever status. @param {string} method @param {string} url @param {RequestInit} options */

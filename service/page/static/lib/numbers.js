@@ -90,6 +90,7 @@ export function text(value, unit = "", digits = 5) {
   const shown = inShown(value, unit);
   if (shown === 0) return "0";
   const size = Math.abs(shown);
+  if (size === Infinity) return shown > 0 ? "∞" : "−∞";
   if (size >= 1e6 || size < 1e-4) return shown.toExponential(digits - 1).replace(/\.?0+e/, "e").replaceAll("-", "−");
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
