@@ -14,6 +14,7 @@ from .values import (
     Built,
     Checked,
     Fraction,
+    Limited,
     Physical,
     PositiveLength,
     PositiveRatio,
@@ -25,6 +26,9 @@ from .values import (
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
 
+_Exponent = Annotated[PositiveRatio, Limited("from 0.25 to 4", "processes have 0.5 to 3", least=0.25, most=4.0)]
+
+
 class _CostPart(Checked[Cost]):
     """The fields that all costs have. Any currency, the same in all."""
 
@@ -33,9 +37,7 @@ class _CostPart(Checked[Cost]):
 
     cost: PositiveRatio = required("of the part that depends on the tolerance, where that is `at`", 8.0)
     fixed: Fraction = optional("the rest of the cost", 5.0, default=0.0)
-    exponent: PositiveRatio = optional(
-        "k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0
-    )
+    exponent: _Exponent = optional("k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0)
 
 
 class LengthCostPart(_CostPart):

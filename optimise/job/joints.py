@@ -5,27 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, ClassVar
 
-from pydantic import AfterValidator
-
-from ...model.errors import InputError, JobError
+from ...model.errors import JobError
 from ...model.machine.clearance import Clearance, Joint, Law
 from ...model.machine.friction import Friction, Pin
 from .sections import PinsPart
-from .values import Built, Checked, Fraction, PositiveLength, Pressure, optional, required
+from .values import Built, Checked, Fraction, Limited, PositiveLength, Pressure, optional, required
 
-_MOST = 2.0
-
-
-def _believable(coefficient: float) -> float:
-    if coefficient > _MOST:
-        raise InputError(
-            f"must be a coefficient of friction of at most {_MOST:g}; got {coefficient:g}; "
-            "greased steel on bronze has about 0.1"
-        )
-    return coefficient
-
-
-Coefficient = Annotated[Fraction, AfterValidator(_believable)]
+Coefficient = Annotated[
+    Fraction,
+    Limited("a coefficient of friction of at most 2", "greased steel on bronze has about 0.1", most=2.0),
+]
+_Restitution = Annotated[
+    Fraction, Limited("above 0 and at most 1", "steel on steel has about 0.9", above=0.0, most=1.0)
+]
+_Poisson = Annotated[Fraction, Limited("from 0 to 0.5", "steel has 0.3", most=0.5)]
 
 
 class PinPart(Built[Pin]):
@@ -67,18 +60,6 @@ class FrictionPart(Built[Friction]):
         return found
 
 
-def _restitution(e: float) -> float:
-    if not 0.0 < e <= 1.0:
-        raise InputError(f"must be above 0 and at most 1; got {e:g}; steel on steel has about 0.9")
-    return e
-
-
-def _poisson(nu: float) -> float:
-    if nu > 0.5:
-        raise InputError(f"must be from 0 to 0.5; got {nu:g}; steel has 0.3")
-    return nu
-
-
 class ClearancePart(Checked[Clearance]):
     """A pin joint whose journal is loose in its bearing."""
 
@@ -90,12 +71,10 @@ class ClearancePart(Checked[Clearance]):
         "radius of the bearing less radius of the journal: half the difference of the diameters", "0.2 mm"
     )
     journal_radius: PositiveLength = required("of the pin", "10 mm")
-    restitution: Annotated[Fraction, AfterValidator(_restitution)] = optional(
+    restitution: _Restitution = optional(
         "speed after an impact over speed before, above 0 and at most 1", 0.9, default=0.9
     )
     friction: Fraction = optional("coefficient between journal and bearing", 0.1, default=0.0)
     law: Law = optional("of the damping in a contact", "flores", default="flores")
     elastic_modulus: Pressure = optional("of journal and bearing; steel if left out", "207 GPa", default=207e9)
-    poisson: Annotated[Fraction, AfterValidator(_poisson)] = optional(
-        "Poisson's ratio of journal and bearing", 0.3, default=0.3
-    )
+    poisson: _Poisson = optional("Poisson's ratio of journal and bearing", 0.3, default=0.3)

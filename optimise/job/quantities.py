@@ -95,6 +95,9 @@ class _Raw(Physical):
             raise InputError(f'must be a value with a unit, such as "1 mm", or a number in SI; got {shown(value)}')
         return value
 
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string"}, {"type": "number"}]}
+
 
 _RAW = Annotated[Any, _Raw(RATIO)]
 

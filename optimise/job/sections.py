@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator
-
-from ...model.errors import InputError
 from ...model.machine.strength import Criterion, Material, Strength
 from ..sizing.section_limits import SectionLimits
 from .values import (
     Checked,
     Density,
+    Limited,
     Part,
     PositiveLength,
     PositiveRange,
@@ -39,10 +37,10 @@ EXAMPLE = {
 _OF_STRENGTH = ("criterion", "eye_concentration", "wear_coefficient")
 
 
-def _raised(factor: float) -> float:
-    if factor < 1.0:
-        raise InputError(f"must be at least 1, the mean stress; got {factor:g}; a pin in an eye has about 2.5 to 4")
-    return factor
+_Raised = Annotated[
+    PositiveRatio, Limited("at least 1, the mean stress", "a pin in an eye has about 2.5 to 4", least=1.0)
+]
+_Safety = Annotated[PositiveRatio, Limited("at least 1", "below it the part fails", least=1.0)]
 
 
 class MaterialPart(Checked[Material]):
@@ -73,11 +71,11 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     pins: PinsPart = required("diameters", EXAMPLE["pins"])
     width: PositiveRange = optional("in the plane of motion: what can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2))
     depth: PositiveRange = optional("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
-    static_safety: PositiveRatio = optional("against yield", 2.0, default=2.0)
-    fatigue_safety: PositiveRatio = optional("against fatigue", 1.5, default=1.5)
-    buckling_safety: PositiveRatio = optional("against Euler's load", 3.0, default=3.0)
+    static_safety: _Safety = optional("against yield", 2.0, default=2.0)
+    fatigue_safety: _Safety = optional("against fatigue", 1.5, default=1.5)
+    buckling_safety: _Safety = optional("against Euler's load", 3.0, default=3.0)
     criterion: Criterion = optional("how mean stresses count in fatigue", "goodman", default="goodman")
-    eye_concentration: Annotated[PositiveRatio, AfterValidator(_raised)] = optional(
+    eye_concentration: _Raised = optional(
         "greatest over mean stress in the net section of an eye; a chart such as Shigley's fig. A-15-12 has it",
         2.5,
         default=1.0,

@@ -9,7 +9,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, create_model, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    create_model,
+    model_validator,
+)
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
@@ -127,11 +135,42 @@ class GasPressure(Physical):
         return pressure
 
 
+@dataclass(frozen=True)
+class Limited:
+    """Marks a number as one between limits, in the schema too. above: it is greater. rule, hint: of the refusal."""
+
+    rule: str
+    hint: str
+    least: float | None = None
+    above: float | None = None
+    most: float | None = None
+
+    def check(self, value: float) -> float:
+        """Return a value within the limits; raises InputError."""
+        low = (self.least is not None and value < self.least) or (self.above is not None and value <= self.above)
+        if low or (self.most is not None and value > self.most):
+            raise InputError(f"must be {self.rule}; got {value:g}; {self.hint}")
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found: dict[str, Any] = handler(schema)
+        given = {"minimum": self.least, "exclusiveMinimum": self.above, "maximum": self.most}
+        stated = {word: limit for word, limit in given.items() if limit is not None}
+        lower = {"minimum", "exclusiveMinimum"}
+        return {key: of for key, of in found.items() if not (key in lower and lower & set(stated))} | stated
+
+
 def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
     """Return the JSON Schema of a physical value: a number in SI, or a string with a unit."""
     number: dict[str, Any] = {"type": "number"}
-    if sign != "any":
+    if sign == "any":
+        number["minimum"] = -kind.limit
+    else:
         number["exclusiveMinimum" if sign == "positive" else "minimum"] = 0
+    number["maximum"] = kind.limit
     if not kind.unit:
         return {**number, "description": kind.name, "examples": [float(kind.example)]}
     text = f"{kind.name}, as a number and a unit in a string, or as a number in {kind.unit}"
@@ -190,6 +229,9 @@ class RangeOf(_Read):
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         one = described(kinds.LENGTH, self.sign)["anyOf"]
+        if self.sign == "positive":
+            number = {key: of for key, of in one[1].items() if key != "exclusiveMinimum"} | {"minimum": SHORTEST}
+            one = [one[0], number]
         pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
         choices = {
             "type": "object",
@@ -271,6 +313,10 @@ Volume = Annotated[float, Physical(kinds.VOLUME, "zero or more")]
 Number = Annotated[float, Physical(kinds.RATIO)]
 Fraction = Annotated[float, Physical(kinds.RATIO, "zero or more")]
 PositiveRatio = Annotated[float, Physical(kinds.RATIO, "positive")]
+GasExponent = Annotated[
+    PositiveRatio, Limited("from 0.2 to 10", "1 is isothermal, 1.4 adiabatic air", least=0.2, most=10.0)
+]
+CompressionRatio = Annotated[PositiveRatio, Limited("above 1", "6 to 20 are usual", above=1.0)]
 PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -158,8 +158,8 @@ HEAD = Entry(
     default="outer dead centre",
 )
 EXPONENTS = (
-    Entry("compression_exponent", "PositiveRatio", "n of p V^n = const in compression", 1.3, default=1.3),
-    Entry("expansion_exponent", "PositiveRatio", "n of p V^n = const in expansion", 1.3, default=1.3),
+    Entry("compression_exponent", "GasExponent", "n of p V^n = const in compression", 1.3, default=1.3),
+    Entry("expansion_exponent", "GasExponent", "n of p V^n = const in expansion", 1.3, default=1.3),
 )
 PRESSURES = (
     BORE,

@@ -264,7 +264,7 @@ Engine.tables = (
         "with both peak_pressure and heat at limited pressure.",
         (
             BORE,
-            Entry("compression_ratio", "PositiveRatio", "greatest volume over the least one", 8.0),
+            Entry("compression_ratio", "CompressionRatio", "greatest volume over the least one", 8.0),
             Entry("intake", "AbsolutePressure", "absolute pressure at the start of compression", "1 bar"),
             Entry(
                 "peak_pressure",
