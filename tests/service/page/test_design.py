@@ -6,6 +6,7 @@ import contextlib
 import csv
 import io
 import math
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -317,6 +318,8 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     assert page.locator("figure[data-key='torque_Nm'] .curve").count() == 3
     columns = page.get_by_role("region", name="All numbers").locator("thead th").all_inner_texts()
     assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change", "Unit"]
+    requirements = page.get_by_role("region", name="Requirements of the job")
+    assert requirements.evaluate("node => node.scrollWidth <= node.clientWidth")  # the whole width is theirs
     page.get_by_label("Take design 1 away").click()
     expect(page.locator(".machine .mechanism")).to_have_count(2)
     assert "beside=5" in page.url
@@ -418,6 +421,22 @@ def test_units_are_the_readers(opened: Opened) -> None:
     assert {name for name in asked if name.endswith("?units=inch")} == {
         f"{name}?units=inch" for name in ("report.html", "report.pdf", "design_3.png", "design_3.svg")
     }
+
+
+def test_rates_of_sensitivity_are_for_one_of_the_unit_that_is_shown(opened: Opened) -> None:
+    page = opened()
+    section = page.locator("section.sensitivity")
+    section.scroll_into_view_if_needed()
+    change = section.get_by_label("Change")
+    change.select_option(label="for 1 mm more of a dimension", timeout=30_000)
+    angle = section.locator(".tornados > *").filter(has_text="least transmission angle")
+    rate = re.compile(r"([+−][\d.]+) °")
+    metric = [float(one.replace("−", "-")) for one in rate.findall(angle.inner_text())]
+    page.get_by_label("Units").select_option("inch")
+    expect(change.locator("option:checked")).to_have_text("for 1 in more of a dimension")
+    inch = [float(one.replace("−", "-")) for one in rate.findall(angle.inner_text())]
+    assert len(metric) >= 3
+    assert inch == pytest.approx([25.4 * one for one in metric], rel=1e-2)
 
 
 def test_nothing_bars_the_way_of_anybody(opened: Opened, solved: Solved) -> None:

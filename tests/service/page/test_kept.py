@@ -43,6 +43,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     page.get_by_label("Note").fill("from stock")
     page.get_by_role("button", name="Keep", exact=True).click()
     expect(page.locator(".keeping")).to_contain_text("“Long rod” is kept")
+    expect(page.get_by_role("button", name="Keep", exact=True)).to_be_focused()  # keys go on from there
     page.get_by_role("link", name="beside the front").click()
     line = page.locator(".kept tbody tr")
     expect(line).to_contain_text("Long rod", timeout=30_000)

@@ -48,6 +48,19 @@ def start(page: Page) -> None:
     page.get_by_role("button", name="Start the search").click()
 
 
+def test_a_file_is_asked_for_only_where_the_job_names_one(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    file = page.locator("#f-mechanism-speed_profile-file-c")
+    expect(page.locator("#f-mechanism-speed_profile-speeds-c")).to_have_count(1)
+    expect(file).to_have_count(0)  # a service opens none
+    job = text_of(page)
+    job["mechanism"]["speed_profile"] = {"file": "speeds.csv"}
+    content = json.dumps(job).encode()
+    page.locator("#job-import").set_input_files({"name": "own.json", "mimeType": "application/json", "buffer": content})
+    expect(file).to_have_value("speeds.csv")
+
+
 def test_a_preset_with_another_stroke_becomes_one_job_of_exactly_these_tables_also_on_a_double_click(
     form: Open, store: Store, shipped: dict[str, Any]
 ) -> None:

@@ -18,7 +18,8 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
   const form = h("form", { onsubmit: (event) => { event.preventDefault(); keep(); } }, h("label", {}, "Name", name), h("label", {}, "Note", note), h("div", { class: "row" }, button), said);
 
   async function keep() {
-    button.disabled = true;
+    if (button.getAttribute("aria-busy")) return;
+    button.setAttribute("aria-busy", "true"); // not disabled, which would take the focus away
     try {
       const found = await post(`jobs/${job}/kept`, { design, dimensions: dimensions() ?? {}, name: name.value.trim(), note: note.value.trim() });
       fill(said, `“${found.name}” is kept `, h("a", { href: link(["jobs", job]) }, "beside the front"), found.outside.length > 0 && "; it is outside the job", ".");
@@ -26,7 +27,7 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
     } catch (error) {
       said.textContent = sentenceOf(error);
     } finally {
-      button.disabled = false;
+      button.removeAttribute("aria-busy");
     }
   }
   return h("div", { class: "row keep-or-search" }, h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),

@@ -27,7 +27,7 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
     : shown.map((group) => h("section", { class: "panel group" }, h("h3", {}, group.title), table(group.title, designs, [group], names)));
   const without = missing.length > 0 && h("section", { class: "panel group" }, h("details", {}, h("summary", {}, `${missing.length} quantities that this machine does not have`),
     table("Quantities without a value", designs, [{ title: "", columns: missing }], names)));
-  fill(place, h("h2", {}, "All numbers"), several && tables, h("div", { class: "groups" }, !several && tables, limits(designs, requirements, slow, names), quality(designs, columns), without));
+  fill(place, h("h2", {}, "All numbers"), several && tables, several && limits(designs, requirements, slow, names), h("div", { class: "groups" }, !several && tables, !several && limits(designs, requirements, slow, names), quality(designs, columns), without));
 }
 
 /** Return a link to the help of a column. @param {{ key: string, title: string }} column @param {Record<string, string>} names */
@@ -91,7 +91,7 @@ function limits(designs, requirements, slow, names) {
       designs.map(({ row, name }) => [cell(row[asked.column], column, { name }), h("td", {}, met(row, asked))]));
   });
   const head = h("tr", {}, h("th", { scope: "col" }, "Requirement"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
-  return h("section", { class: "panel group" }, h("h3", {}, "Requirements of the job"),
+  return h("section", { class: "panel group limits" }, h("h3", {}, "Requirements of the job"),
     requirements.length || slow
       ? scrolled("Requirements of the job", h("table", {}, h("caption", { class: "hidden" }, "Requirements of the job"), h("thead", {}, head), h("tbody", {}, ofStroke, rows)))
       : h("p", { class: "quiet" }, "The job sets none."));

@@ -2,13 +2,13 @@
 
 import { tornado } from "../charts/bars.js";
 import { fill, h } from "../lib/dom.js";
-import { inShown, unitOf } from "../lib/numbers.js";
+import { fromShown, inShown, unitOf } from "../lib/numbers.js";
 
 const DIMENSIONS = ["crank", "rod", "offset"];
 const MEASURES = [
-  { key: "percent", title: "% of the objective for 1 % more of a dimension" },
-  { key: "per_mm", title: "for 1 mm more of a dimension" },
-  { key: "tolerance", title: "for the tolerance of a dimension" },
+  { key: "percent", title: () => "% of the objective for 1 % more of a dimension" },
+  { key: "per_mm", title: () => `for 1 ${unitOf("mm")} more of a dimension` },
+  { key: "tolerance", title: () => "for the tolerance of a dimension" },
 ];
 
 /**
@@ -24,18 +24,20 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
   let all = false;
   const bars = h("div", { class: "tornados" });
   const choice = h("select", { onchange: (event) => { measure = measures[Number(event.currentTarget.value)]; draw(); } },
-    measures.map(({ title }, n) => h("option", { value: n }, title)));
-  const more = h("input", { type: "checkbox", onchange: () => { all = more.checked; draw(); } });
-  fill(place, h("div", { class: "row" }, h("label", {}, "Change ", choice), h("label", {}, more, " all quantities")), bars,
+    measures.map((_, n) => h("option", { value: n })));
+  const whole = h("input", { type: "checkbox", onchange: () => { all = whole.checked; draw(); } });
+  fill(place, h("div", { class: "row" }, h("label", {}, "Change ", choice), h("label", {}, whole, " all quantities")), bars,
     h("p", { class: "quiet hint" }, "To first order, the other dimensions as they are. The longest bar matters most. Below and above: at a kink, the derivatives on either side of the dimension."));
 
   function draw() {
     const shown = all ? [...own, ...rest] : own;
     const relative = measure.key === "percent";
+    const more = measure.key === "per_mm" ? fromShown(1, "mm") : 1; // of a dimension, that the rates are for
+    measures.forEach(({ title }, n) => (choice.options[n].textContent = title()));
     /** @param {Api.Sensitive} one @param {string} name @returns {number | null} */
-    const value = (one, name) => rateOf(one[`${name}_${measure.key}`]);
+    const value = (one, name) => rateOf(one[`${name}_${measure.key}`], more);
     /** @param {Api.Sensitive} one @param {string} name @returns {number | null} */
-    const below = (one, name) => rateOf(one[`${name}_${measure.key}_below`]) ?? value(one, name);
+    const below = (one, name) => rateOf(one[`${name}_${measure.key}_below`], more) ?? value(one, name);
     /** @param {Api.Sensitive} one @param {string} name */
     const size = (one, name) => Math.max(Math.abs(value(one, name) ?? 0), Math.abs(below(one, name) ?? 0));
     const common = Math.max(...own.flatMap((one) => DIMENSIONS.map((name) => size(one, name))));
@@ -64,9 +66,9 @@ export function sensitivity(place, { quantities }, { objectives, signal }) {
   window.addEventListener("units", draw, { signal });
 }
 
-/** Return a rate of the API; null for what is none. @type {(cell: Api.Row[string] | undefined) => number | null} */
-function rateOf(cell) {
-  return typeof cell === "number" ? cell : null;
+/** Return a rate of the API times the change that it is for; null for what is none. @param {Api.Row[string] | undefined} cell @param {number} change */
+function rateOf(cell, change) {
+  return typeof cell === "number" ? change * cell : null;
 }
 
 /** @param {number} number */

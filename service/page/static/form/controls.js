@@ -21,7 +21,8 @@ export function byschema(form, path, options = {}) {
   const label = options.label ?? words(path[path.length - 1]);
   const why = options.why ?? found.description;
   if (found.control === "table") {
-    const inner = (found.keys ?? []).map((key) => byschema(form, [...path, key]));
+    const keys = (found.keys ?? []).filter((key) => key !== "file" || form.at([...path, key]) !== undefined); // a service opens no files
+    const inner = keys.map((key) => byschema(form, [...path, key]));
     return h("fieldset", { class: "inner" }, h("legend", {}, label), h("div", { class: "fields" }, inner));
   }
   const make = MAKE[found.control];

@@ -3,7 +3,7 @@
 import { get, isAbort, post, sentenceOf } from "../lib/api.js";
 import { go } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
-import { inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { measured } from "../lib/measured.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -50,7 +50,7 @@ export function bindingPanel(explorer) {
     const { title, side, value, unit, wider, column, designs } = limit;
     const id = `wider-${limit.of}-${side}`;
     const count = designs.length;
-    const words = `${count} of ${data.count} designs ${count === 1 ? "rests" : "rest"} on ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
+    const words = `${count} of ${counted(data.count, "design")} ${count === 1 ? "rests" : "rest"} on ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
     const those = data.knows(column) && h("button", { type: "button", class: "linked", "aria-label": `Show the designs that rest on ${title} ${WORDS[side]} ${withUnit(value, unit)}`, onclick: () => {
       const near = REST * Math.abs(value);
       explorer.limit(column, side === "upper" ? { low: value - near, high: null } : { low: null, high: value + near });

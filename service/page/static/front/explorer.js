@@ -6,7 +6,7 @@ import { colours } from "../charts/scale.js";
 import { keep, link } from "../lib/address.js";
 import { isAbort } from "../lib/api.js";
 import { h } from "../lib/dom.js";
-import { grouped, withUnit } from "../lib/numbers.js";
+import { counted, grouped, withUnit } from "../lib/numbers.js";
 import { sayProblem } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
 import { behind } from "./behind.js";
@@ -213,7 +213,7 @@ export class Explorer {
     if (what === "all" || what === "chosen") {
       this.limits.apply();
       const { chosen } = this.limits;
-      this.count.textContent = `${grouped(chosen)} of ${grouped(this.data.count)} designs chosen`;
+      this.count.textContent = `${grouped(chosen)} of ${counted(this.data.count, "design")} chosen`;
       this.clearing.disabled = this.limits.open;
       this.saving.draw();
       this.scatterPanel.together.draw();

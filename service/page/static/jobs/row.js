@@ -3,7 +3,7 @@
 import { named } from "../front/columns.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
-import { grouped } from "../lib/numbers.js";
+import { counted, grouped } from "../lib/numbers.js";
 import { actions } from "./actions.js";
 import { badge } from "./states.js";
 import { moment } from "./times.js";
@@ -32,7 +32,7 @@ function standing(job) {
   if (job.summary?.designs) {
     const { designs, best } = job.summary;
     return [
-      h("div", {}, `${grouped(designs)} designs`),
+      h("div", {}, counted(designs, "design")),
       h("div", { class: "quiet" }, "best: ", Object.entries(best).map(([key, value]) => named(key, value)).join(" · ")),
     ];
   }

@@ -125,6 +125,11 @@ export function ends({ low, high }, unit, digits = 4) {
   return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
 }
 
+/** Return how many of something there are: "1 design", "2,000 designs". @param {number} count @param {string} one */
+export function counted(count, one) {
+  return `${grouped(count)} ${one}${count === 1 ? "" : "s"}`;
+}
+
 /** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. @param {number} count */
 export function grouped(count) {
   return String(count).replace(/\B(?=(\d{3})+$)/g, ",");

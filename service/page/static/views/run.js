@@ -6,7 +6,7 @@ import { ago, duration, moment } from "../jobs/times.js";
 import { get, isAbort, Problem, statusOf } from "../lib/api.js";
 import { go, link, read } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
-import { grouped } from "../lib/numbers.js";
+import { counted, grouped } from "../lib/numbers.js";
 
 export const title = "Run";
 
@@ -65,7 +65,7 @@ export async function show(place, { parts, signal }) {
   /** @param {Api.Job} job */
   function drawHead(job) {
     const { summary } = job;
-    const facts = [`run ${job.id}`, summary && `${grouped(summary.designs)} designs`, summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
+    const facts = [`run ${job.id}`, summary && counted(summary.designs, "design"), summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
       summary?.designs ? h("button", { type: "button", class: "skip", onclick: toTable }, "Skip to the table of designs") : null,
       h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
