@@ -17,6 +17,9 @@ PATHS = Layer("PATHS", "paths of the crank pin and of the slider pin", "phantom"
 AXES = Layer("AXES", "slider line, and its parallel through the crank pivot", "centre", MUTED, _GREY, 0.18)
 INNER = Layer("DEAD_CENTRE_INNER", "linkage at the inner dead centre", "dashed", MUTED, _GREY, 0.18)
 OUTER = Layer("DEAD_CENTRE_OUTER", "linkage at the outer dead centre", "dashed", MUTED, _GREY, 0.18)
+CYLINDER = Layer(
+    "CYLINDER", "bore and head of the cylinder whose piston is the slider", "continuous", INK, _BLACK, 0.35
+)
 START = Layer("SWING_START", "linkage at the start of the swing", "dashed", MUTED, _GREY, 0.18)
 END = Layer("SWING_END", "linkage at the end of the swing", "dashed", MUTED, _GREY, 0.18)
 ACTUATOR = Layer("ACTUATOR", "cylinder that drives the slider, for show", "continuous", INK, _BLACK, 0.35)
@@ -26,5 +29,7 @@ NOTES = Layer("NOTES", "title and notes", "continuous", INK, _BLACK, 0.25)
 
 LAYERS = (AXES, PATHS, INNER, OUTER, FRAME, SLIDER, ROD, CRANK, PINS, SKELETON, DIMENSIONS, NOTES)
 """All of those of a linkage that turns through, the ones drawn first first."""
+GAS_LAYERS = (AXES, PATHS, INNER, OUTER, FRAME, CYLINDER, SLIDER, ROD, CRANK, PINS, SKELETON, DIMENSIONS, NOTES)
+"""Those of one whose slider is the piston of a cylinder."""
 SWING_LAYERS = (AXES, PATHS, START, END, FRAME, ACTUATOR, SLIDER, ROD, CRANK, BODY, PINS, SKELETON, DIMENSIONS, NOTES)
 """Those of one that swings; `ACTUATOR` has something where the slider drives, `BODY` where the crank has a mass."""

@@ -39,7 +39,8 @@ def linkage_drawing(
         *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), height=TEXT * size),
     ]
     title = f"{name}, {design}" if design else name
-    return titled(on.LAYERS, shapes, look.extent, size, title, _notes(linkage, crank_angle, look))
+    layers = on.GAS_LAYERS if look.barrels else on.LAYERS
+    return titled(layers, shapes, look.extent, size, title, _notes(linkage, crank_angle, look))
 
 
 def _dimensions(
@@ -75,4 +76,5 @@ def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
         "True scale in millimetres; pivots are exact.",
         widths if look.own else "Widths of links, slider and pins are for show.",
+        *(["Bore and clearance of the cylinder are those of the job."] if look.barrels else []),
     )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from ...model.cycle.gas_cycle import cylinders
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.links import Bar, Link
@@ -17,12 +19,22 @@ _FEET = 200  # hatching lines of a rail at most
 
 
 @dataclass(frozen=True)
+class Barrel:
+    """A cylinder about the slider line, mm: its bore, and the places of its open end and of its head."""
+
+    bore: float
+    foot: float
+    head: float
+
+
+@dataclass(frozen=True)
 class Look:
     """A linkage as it is drawn, mm. crank, rod, offset: its dimensions.
 
     inner, outer: slider pins at the dead centres, or at the ends of a swing. reach: least and greatest place of the
     slider. extent: left, bottom, right and top of what moves, about. crank_width, rod_width: of the links. block:
-    height of the slider. pin: radius of pins. own: whether a link is described by its section, so that its width is
+    height of the slider; the bore where it is a piston. along: two thirds of its length. pin: radius of pins. barrels:
+    of cylinders. own: whether a link is described by its section, so that its width is
     true; everything else is for show.
     """
 
@@ -36,8 +48,10 @@ class Look:
     crank_width: float
     rod_width: float
     block: float
+    along: float
     pin: float
     own: bool
+    barrels: tuple[Barrel, ...] = ()
 
     @property
     def size(self) -> float:
@@ -50,7 +64,33 @@ def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
     """Return how a linkage of a machine is drawn. Raises `AssemblyError` for one that does not turn fully."""
     inner, outer = (_MM * float(x) for x in linkage.dead_centres)
     r = _MM * float(linkage.crank)
-    return look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
+    look = look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
+    return _with_cylinders(mechanism, look)
+
+
+def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
+    """Return a linkage whose slider is drawn as the piston of the cylinders of a machine.
+
+    Bore and clearance are true; the length of the piston is for show.
+    """
+    gas = [load for _, load in cylinders(mechanism)]
+    if not gas:
+        return look
+    half, barrels = 0.75 * look.along, []
+    for load in gas:
+        ends = (look.inner[0], look.outer[0])
+        foot, top = ends if load.head == "outer dead centre" else ends[::-1]
+        way = math.copysign(1.0, top - foot)
+        height = load.clearance * abs(top - foot) + _MM * load.clearance_volume / load.area
+        barrels.append(Barrel(_MM * load.bore, foot - way * half, top + way * (half + height)))
+    bore, (left, low, right, high) = max(of.bore for of in barrels), look.extent
+    extent = (
+        min(left, *(of.head for of in barrels)),
+        min(low, look.offset - 0.72 * bore),
+        max(right, *(of.head for of in barrels)),
+        max(high, look.offset + 0.72 * bore),
+    )
+    return replace(look, block=bore, barrels=tuple(barrels), extent=extent)
 
 
 def look_between(
@@ -77,7 +117,7 @@ def look_between(
         max(swept[3] + half, e + 0.72 * block),
     )
     own = any(isinstance(link, Bar) for link in described)
-    return Look(r, l, e, (ends[0], e), (ends[1], e), reach, extent, crank, rod, block, pin, own)
+    return Look(r, l, e, (ends[0], e), (ends[1], e), reach, extent, crank, rod, block, block, pin, own)
 
 
 def in_words(linkage: Linkage, digits: int) -> str:
@@ -117,7 +157,15 @@ def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
         pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
         ghosts += links((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
-    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, below=below)]
+    walls = [line for of in look.barrels for line in _barrel(of, look.offset)]
+    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, below=below), *walls]
+
+
+def _barrel(of: Barrel, offset: float) -> list[Shape]:
+    """Return bore and head of a cylinder."""
+    low, high = offset - 0.5 * of.bore, offset + 0.5 * of.bore
+    corners = ((of.foot, low), (of.head, low), (of.head, high), (of.foot, high))
+    return [Line(on.CYLINDER, start, end) for start, end in itertools.pairwise(corners)]
 
 
 def axes(look: Look) -> list[Shape]:
@@ -140,9 +188,9 @@ def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     return Outline(layer, corners, (0.0, 1.0, 0.0, 1.0))
 
 
-def block(layer: Layer, pin: Point, height: float) -> Outline:
+def block(layer: Layer, pin: Point, look: Look) -> Outline:
     """Return the outline of a slider about its pin."""
-    x, y = 0.75 * height, 0.5 * height
+    x, y = 0.75 * look.along, 0.5 * look.block
     corners = tuple((pin[0] + u * x, pin[1] + v * y) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
@@ -150,7 +198,7 @@ def block(layer: Layer, pin: Point, height: float) -> Outline:
 def links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank, each on its layer."""
     return [
-        block(layers[0], slider, look.block),
+        block(layers[0], slider, look),
         bar(layers[1], pin, slider, look.rod_width),
         bar(layers[2], (0.0, 0.0), pin, look.crank_width),
     ]
@@ -159,11 +207,11 @@ def links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: L
 def rails(look: Look) -> list[Shape]:
     """Return the guide of the slider, hatched."""
     shapes: list[Shape] = []
-    start, end = look.reach[0] - 0.95 * look.block, look.reach[1] + 0.95 * look.block
+    start, end = look.reach[0] - 0.95 * look.along, look.reach[1] + 0.95 * look.along
     for side in (-1.0, 1.0):
         y = look.offset + side * 0.52 * look.block
         shapes.append(Line(on.FRAME, (start, y), (end, y)))
-        pitch = max(0.2 * look.block, (end - start) / _FEET)
+        pitch = max(0.2 * look.along, (end - start) / _FEET)
         shapes += [
             Line(on.FRAME, (start + k * pitch, y), (start + (k - 1) * pitch, y + side * pitch))
             for k in range(1, int((end - start) / pitch) + 1)

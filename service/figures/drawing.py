@@ -90,7 +90,7 @@ def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide that is away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
-    y = e + side * (0.9 * look.block + 0.035 * size)
+    y = e + side * (0.9 * look.along + 0.5 * (look.block - look.along) + 0.035 * size)
     for x in (inner, outer):
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _arrow(axes, (inner, y), (outer, y))

@@ -103,7 +103,11 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
         moving=links_of(look),
         extent=look.extent,
         size=look.size,
-        words=_TURNS if turns == 1 else replace(_TURNS, over=f"{turns} turns of the crank"),
+        words=replace(
+            _TURNS,
+            over=_TURNS.over if turns == 1 else f"{turns} turns of the crank",
+            note=f"{_TURNS.note} Bore and clearance of the cylinder are exact." if look.barrels else _TURNS.note,
+        ),
         turns=turns,
     )
 
@@ -140,7 +144,7 @@ def links_of(look: Look) -> dict[str, list[Shape]]:
     """Return slider, rod, crank and pins, each in its own coordinates."""
     pin = (0.0, 0.0)
     return {
-        "slider": [block(on.SLIDER, pin, look.block)],
+        "slider": [block(on.SLIDER, pin, look)],
         "rod": [bar(on.ROD, pin, (look.rod, 0.0), look.rod_width)],
         "crank": [bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
         **{name: [Circle(on.PINS, pin, look.pin)] for name in ("pivot", "crank-pin", "slider-pin")},

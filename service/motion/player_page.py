@@ -22,7 +22,7 @@ from .swing_play import play_of_swing
 
 _PLAYER = Path(__file__).parent / "player"
 _STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a motion of one turn, and height
-_STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME)
+_STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME, on.CYLINDER)
 
 
 def player_page(
