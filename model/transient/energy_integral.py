@@ -31,7 +31,7 @@ _STOPS = 1e-12
 _NEAR = 1e-2
 """Share of the range of W within which several least values may each bring the crank close to stopping."""
 _ROUNDS, _SETTLED = 60, 1e-6
-"""Rounds of taking the viscous loads anew, and the change of speed, of the greatest, that ends them."""
+"""Rounds of taking viscous loads and friction anew, and the change of speed, of the greatest, that ends them."""
 _GRADES = 10
 """Panels on either side of a least value, each a quarter of the last: down to a millionth of a radian."""
 
@@ -40,8 +40,8 @@ _GRADES = 10
 class Coasting:
     """A turn by the energy integral.
 
-    load: C and the viscous loads on the nodes, N m. guess: where Newton's iteration starts; None if the viscous loads
-    do not settle. stops: the crank is slower than can be told even with the least K_least, which guess has then.
+    load: C, viscous loads and friction on the nodes, N m. guess: where Newton's iteration starts; None if these do not
+    settle. stops: the crank is slower than can be told even with the least K_least, which guess has then.
     """
 
     load: Array

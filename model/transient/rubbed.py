@@ -32,7 +32,7 @@ from ..dynamics.segments import load_on_slider
 from ..dynamics.torque import balance
 from ..errors import InputError
 from ..kernel.arithmetic import analytic, root
-from ..kernel.kernel import ComplexTable, Integers, Row, Table, kernel
+from ..kernel.kernel import ComplexTable, Integers, Row, Table, seldom_kernel
 from ..kinematics.position import Motion
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
@@ -113,7 +113,7 @@ def narrowed(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -
     return new + outside * (0.5 * (low + high) - new), low, high
 
 
-@kernel
+@seldom_kernel
 def _rubbed(
     stepped: ComplexTable,
     block: Table,

@@ -119,7 +119,7 @@ class Runner:
         """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
 
         The least is 0 where the crank all but stops: below a millionth of the greatest. inertia: see `constant`.
-        Raises `InputError` where viscous loads leave no steady running that is found.
+        Raises `InputError` where viscous loads or friction leave no steady running that is found.
         """
         try:
             running = self.constant(inertia)
