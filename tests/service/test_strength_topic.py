@@ -12,7 +12,8 @@ from rich.console import Console
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.links import Bar, Counterweight
+from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.bars import LINKS
 from slidercrank.objectives.quantity import Group
@@ -93,3 +94,14 @@ def test_the_text_tells_every_number_and_what_is_missing_is_said() -> None:
     for asked in (numbers, figure):
         with pytest.raises(InputError, match="material and pins"):
             asked(fronts.MACHINE, linkage)
+
+
+def test_a_sign_that_the_stress_of_a_bar_never_has_is_left_blank() -> None:
+    """A light rod that is pulled all the time has no greatest compression, but some tension."""
+    bar = Bar(width=0.03, depth=0.012, density=1.0)
+    pulled = Mechanism(
+        speed=1.0, crank=bar, rod=bar, loads=(StrokeForce(outward=500.0, inward=500.0),), strength=STRENGTH
+    )
+    rod = numbers(pulled, Linkage(0.05, 0.2))["bars"]["rod"]
+    assert rod["greatest_tension_MPa"] == pytest.approx(1e-6 * 500.0 / np.sqrt(1.0 - 0.0625) / (0.03 * 0.012), rel=1e-3)
+    assert [value for key, value in rod.items() if "compression" in key] == [None, None, None]

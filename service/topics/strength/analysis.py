@@ -46,7 +46,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     eyes = eye_stresses(mechanism, design)
     bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
     for name, bar in bars.items():
-        bar |= {f"eye_at_{pin}_MPa": plain(1e-6 * stress) for pin, stress in eyes[name].items()}
+        bar |= {f"eye_at_{pin}_MPa": 1e-6 * stress for pin, stress in eyes[name].items()}
     return found | {"bars": bars}
 
 
@@ -60,15 +60,19 @@ def _bars(mechanism: Mechanism) -> list[str]:
 
 
 def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
-    """Return the greatest stresses along a bar, its eyes apart, and where they are."""
+    """Return the greatest stresses along a bar, its eyes apart, and where; None of a sign that it never has."""
     found: dict[str, float | None] = {}
     cycle = 360.0 * cycle_turns(mechanism)
     for sign, criterion in zip(_SIGNS, STATIC, strict=True):
         along = (Along(LINKS[name].part),)
         (peak,) = stress_peaks(mechanism, along, row_of(linkage), np.array([criterion]), kept=1)
         share, _, *angles = peak.places[0, 0]
+        value = peak.values[0, 0]
+        if not value > 0.0:  # of the other sign all along and all the time
+            share, angles = math.nan, [math.nan, math.nan]
+            value = math.nan
         found |= {
-            f"greatest_{sign}_MPa": plain(1e-6 * peak.values[0, 0]),
+            f"greatest_{sign}_MPa": plain(1e-6 * value),
             f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angles[_SIGNS.index(sign)]) % cycle),
             f"greatest_{sign}_from_crank_pin_mm": plain(1e3 * share * float(getattr(linkage, name))),
         }
@@ -95,7 +99,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
 
 
 def _told(number: float | None) -> str:
-    return "undefined" if number is None else f"{number:.6g}"
+    return "–" if number is None else f"{number:.6g}"
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
