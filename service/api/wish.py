@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..designs.wishing import wished_record
+from ..designs.wishing import told_wishes, wished_record
 from ..store.wishes import note_wish, wishes_of
 from .fronts import Cells, ColumnModel, column_models
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
-from .stored_fronts import FrontDep, StoredFront
+from .stored_fronts import FrontDep
 from .throttle import SIMULATING
-
-if TYPE_CHECKING:
-    from ...optimise.questions.wishes import Wish
 
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
@@ -110,7 +106,7 @@ def make_wish(found: FrontDep, given: WishesGiven, store: StoreDep, units: Units
     with SIMULATING.turn():
         answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
         record: dict[str, Any] = wished_record(answer, units)
-    note_wish(store, found.job.id, _told(found, answer.wishes), given.design)
+    note_wish(store, found.job.id, told_wishes(found.front, answer.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=found.job.id, columns=columns, **record)
 
@@ -131,13 +127,3 @@ def list_wishes(found: FrontDep, store: StoreDep) -> WishesModel:
         for one in wishes_of(store, found.job.id)
     ]
     return WishesModel(job=found.job.id, made=made)
-
-
-def _told(found: StoredFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
-    """Return wishes by their objectives, free ones left out, with values in the units of these."""
-    told: dict[str, tuple[str, float | None]] = {}
-    for objective, wish in zip(found.front.objectives, wishes, strict=True):
-        factor = found.problem.quantity(objective.quantity).unit.factor
-        if wish.kind != "free":
-            told[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
-    return told

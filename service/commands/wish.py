@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...model.errors import InputError
+from ...model.errors import InputError, StoreError
 from ...objectives.kinds import System
 from ..designs.columns import find_column
 from ..designs.shown_units import row_in
-from ..designs.wishing import wished_record
+from ..designs.wishing import told_wishes, wished_record, words_of
+from ..jobs.made_wishes import keep_wish, made_wishes
 from ..runs.result import json_text, rows_of
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give, waiting
@@ -20,7 +24,9 @@ from .ending import end_without_design
 from .run_choice import front_of_run
 
 if TYPE_CHECKING:
+    from ...optimise.front.front import ParetoFront
     from ...optimise.questions.wished import Wished
+    from ..store.wishes import MadeWish
 
 _EXAMPLE = '--at "peak_torque=110 N m"'
 
@@ -28,16 +34,21 @@ _EXAMPLE = '--at "peak_torque=110 N m"'
 def wish(
     run: Run,
     at: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(metavar="WISH"),
         'An objective, =, and a value, which is no bound, such as "peak_torque=110 N m"; or one of improve, keep, '
         '"may worsen to 120 N m" and free. May be repeated.',
-    ],
+    ] = None,
     number: Annotated[
         int | None,
         typer.Argument(metavar="NO", show_default=False),
         "The design that improve, keep and worsen speak of: its number in `slidercrank front RUN`.",
     ] = None,
+    earlier: Annotated[
+        bool,
+        typer.Option("--list"),
+        "List the wishes that were made of the run, here and on the page, each with its answer.",
+    ] = False,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
@@ -46,20 +57,58 @@ def wish(
 
     Where all of it can be had, the design is better in all of it; otherwise what binds gives way by the same share of
     its range over the front. Objectives that are not named are free. The exit code is 3 where no design stays within
-    what may worsen. Nothing is saved.
+    what may worsen. The wish is noted among those of the run, which --list shows.
     """
     from ...optimise.questions.wish import wish as nearest
 
+    if earlier == bool(at):
+        raise InputError(f"either a wish or --list; got {'both' if at else 'neither'}; write it like {_EXAMPLE}")
     folder, result, front = front_of_run(run, runs, number)
-    wishes = _wishes(at)
+    if earlier:
+        _list(folder, result.name, front, units, json=json)
+        return
+    wishes = _wishes(at or [])
     with waiting("wishing"):
         answer = nearest(front, wishes, row=None if number is None else number - 1)
+    with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
+        keep_wish(folder, told_wishes(front, answer.wishes), number)
     if json:
         give(json_text({"run": str(folder), "wishes": wishes} | wished_record(answer, units)))
     elif len(answer):
         _show(result.name, wishes, answer, units)
     if not len(answer):
         end_without_design(answer.message)
+
+
+def _list(folder: Path, title: str, front: ParetoFront, units: System, *, json: bool) -> None:
+    """Write the wishes that were made of a run, the latest first, each solved again."""
+    from ...optimise.questions.wish import Wishes
+
+    made = made_wishes(folder)
+    with waiting("wishing"):
+        solver = Wishes(front) if made else None
+        found: list[tuple[MadeWish, dict[str, str], Wished]] = []
+        for one in made:
+            assert solver is not None
+            words = words_of(front, one.wishes)
+            found.append((one, words, solver.wish(words, row=None if one.design is None else one.design - 1)))
+    records = [{"at": one.at, "wishes": words} | wished_record(answer, units) for one, words, answer in found]
+    if json:
+        give(json_text({"run": str(folder), "made": records}))
+        return
+    screen = console()
+    if not made:
+        screen.print(f"{title}: no wish was made of it yet; make one with {_EXAMPLE}", soft_wrap=True)
+    for place, (one, words, answer) in enumerate(found):
+        asked = ", ".join(f"{name} {value}" for name, value in words.items())
+        from_ = "" if one.design is None else f", from design {one.design}"
+        screen.print(
+            f"{time.strftime('%Y-%m-%d %H:%M', time.localtime(one.at))}  {asked}{from_}", style="bold", soft_wrap=True
+        )
+        for sentence in answer.sentences(units):
+            screen.print(f"  {sentence}", soft_wrap=True)
+        if place < len(found) - 1:
+            screen.print()
 
 
 def _wishes(at: list[str]) -> dict[str, str]:

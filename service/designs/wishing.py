@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...objectives.kinds import System, shown_in
@@ -9,7 +10,9 @@ from ..runs.result import json_ready, rows_of
 from .shown_units import row_in
 
 if TYPE_CHECKING:
+    from ...optimise.front.front import ParetoFront
     from ...optimise.questions.wished import Outcome, Wished
+    from ...optimise.questions.wishes import Wish
 
 
 def wished_record(answer: Wished, units: System = "metric") -> dict[str, Any]:
@@ -28,6 +31,26 @@ def wished_record(answer: Wished, units: System = "metric") -> dict[str, Any]:
         "objectives": [_outcome(outcome, units) for outcome in answer.outcomes],
         "design": json_ready(row_in(rows[0], units)) if rows else None,
     }
+
+
+def told_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
+    """Return wishes by their objectives, free ones left out, with values in the metric units of these."""
+    told: dict[str, tuple[str, float | None]] = {}
+    for objective, wish in zip(front.objectives, wishes, strict=True):
+        factor = front.problem.quantity(objective.quantity).unit.factor
+        if wish.kind != "free":
+            told[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
+    return told
+
+
+def words_of(front: ParetoFront, told: Mapping[str, tuple[str, float | None]]) -> dict[str, str]:
+    """Return wishes of `told_wishes` as they are asked for: "110 N m", "improve", "may worsen to 40 deg"."""
+    words = {}
+    for name, (kind, value) in told.items():
+        unit = front.problem.quantity(name).unit.symbol
+        number = "" if value is None else f"{value!r} {unit}".rstrip()
+        words[name] = {"value": number, "limit": f"may worsen to {number}"}.get(kind, kind)
+    return words
 
 
 def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
+import httpx
+import numpy as np
 import pytest
 
 from slidercrank.optimise.questions.wish import wish
+from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.jobs.stores import open_store
 from slidercrank.service.runs.stored_runs import problem_of, read_run
+from tests.service.api.serving import serving
 from tests.service.conftest import Command
 
 ASKED = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
@@ -72,3 +78,57 @@ def test_wishes_that_make_no_sense_are_told_in_a_sentence(
     done = command("wish", "latest", *number, "--runs", kept, *options)
     assert (done.exit_code, len(done.stderr.strip().splitlines())) == (code, 1)
     assert words in done.stderr
+
+
+def test_wishes_are_listed_wherever_they_were_made_the_latest_first_and_each_once(
+    kept: Path, tmp_path: Path, command: Command
+) -> None:
+    place = tmp_path / "runs"
+    shutil.copytree(kept, place)
+    before = len(json.loads(command("wish", "latest", "--runs", place, "--list", "--json").stdout)["made"])
+    random, made = np.random.default_rng(41), []
+    front = json.loads(command("front", "latest", "--runs", place, "--json").stdout)["designs"]
+    for row in random.integers(1, len(front) - 1, 2).tolist():
+        ratio, angle = front[row]["time_ratio"], front[row]["least_transmission_angle_deg"]
+        made += [
+            ([], {"time_ratio": f"{ratio!r}", "transmission_angle": f"{angle + random.uniform(-2.0, 2.0)!r} deg"}),
+            ([row + 1], {"time_ratio": "improve", "transmission_angle": f"may worsen to {angle - 0.5!r} deg"}),
+        ]
+    made.append(made[0])
+    answers = []
+    for number, wishes in made:
+        done = command("wish", "latest", *number, "--runs", place, *at(wishes), "--json")
+        assert done.exit_code == 0, done.output
+        answers.append(json.loads(done.stdout))
+    listed = json.loads(command("wish", "latest", "--runs", place, "--list", "--json").stdout)["made"]
+    expected = answers[:0:-1]
+    assert len(listed) - before == len(expected) == len(made) - 1
+    for found, answer in zip(listed, expected, strict=False):
+        for key in ("number", "possible", "sentences"):
+            assert found[key] == answer[key]
+        assert found["achievement"] == pytest.approx(answer["achievement"], rel=1e-9, abs=1e-12)
+        for key in ("crank_mm", "rod_mm", "offset_mm"):
+            assert found["design"][key] == pytest.approx(answer["design"][key], rel=1e-7, abs=1e-6)
+    told = command("wish", "latest", "--runs", place, "--list")
+    assert told.exit_code == 0
+    assert told.stdout.count("time_ratio") >= len(listed)
+    with open_store(None, place) as store, serving(create_app(store)) as address:
+        of_the_page = httpx.get(f"{address}/api/v1/jobs/1/wishes").json()["made"]
+    assert [one["at"] for one in of_the_page] == [one["at"] for one in listed]
+
+
+def test_a_wish_and_the_list_at_once_or_neither_is_told(kept: Path, command: Command) -> None:
+    for options, got in (([], "neither"), ([*at(ASKED), "--list"], "both")):
+        done = command("wish", "latest", "--runs", kept, *options)
+        assert done.exit_code == 2
+        assert f"either a wish or --list; got {got}" in done.output
+
+
+def test_a_run_without_a_store_answers_and_has_no_list(kept: Path, tmp_path: Path, command: Command) -> None:
+    place = tmp_path / "runs"
+    shutil.copytree(kept, place)
+    for file in place.glob("slidercrank.db*"):
+        file.unlink()
+    (folder,) = (file.parent for file in place.glob("*/front.json"))
+    assert command("wish", folder, *at(ASKED), "--json").exit_code == 0
+    assert "no wish was made of it yet" in command("wish", folder, "--list").stdout
