@@ -87,7 +87,7 @@ def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -
         (JOB, ("--rod", "200 mm"), "sizing sections needs the table [sections]; got none"),
         (JOB + SECTIONS, (), "--rod is needed"),
         (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "endurance <= yield strength"),
-        (JOB + SECTIONS.replace("2.5", "0.5"), ("--rod", "200 mm"), "static_safety must be at least 1"),
+        (JOB + SECTIONS.replace("2.5", "0.5"), ("--rod", "200 mm"), "static_safety: must be at least 1"),
         (JOB.replace("120 rpm", "60000 rpm") + SECTIONS, ("--rod", "200 mm"), "no section within the ranges carries"),
     ],
 )
