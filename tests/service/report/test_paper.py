@@ -25,7 +25,7 @@ Image = NDArray[np.float64]
 
 DOTS = 144  # an inch
 _BLOCK = 8  # dots: text and lines of two programs differ by less
-_FINER = 3  # a screen rounds small letters to whole dots
+_FINER = 6  # a screen rounds small letters to whole dots
 
 
 @cache
@@ -49,7 +49,7 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
 
 
 def screen(figure: Figure, scale: float) -> Image:
-    """Return a figure as matplotlib draws it on a screen, (h, w, 3). Its dots are a third as large as the paper's."""
+    """Return a figure as matplotlib draws it on a screen, (h, w, 3). Its dots are a sixth as large as the paper's."""
     figure.set_dpi(_FINER * DOTS * scale)
     figure.canvas.draw()
     dots: Image = np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0  # type: ignore[attr-defined]
