@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import PINS
+from ..model.machine.numbers import PINS, of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.remembered import remembered_batch
 from ..model.machine.strength import Strength
@@ -170,9 +170,11 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
     return [Eye(own.part, pin != NEAR, own.width, PINS[pin], bent, outer) for outer in edges]
 
 
-def beside_pin(eye: Eye) -> Formula:
-    """Return the formula of the width that a pin leaves of an eye, w - D, m."""
-    return lambda number: number(eye.width) - number(eye.pin)
+def beside_pin(mechanism: Mechanism, designs: Array, place: Place, gradients: bool) -> tuple[Array, Array | None]:
+    """Return the factor that the stress of a place still has (`places`): w - D of an eye, m, and 1 along a link."""
+    if not isinstance(place, Eye):
+        return constant(1.0, designs, gradients)
+    return of_numbers(mechanism, designs, lambda number: number(place.width) - number(place.pin), gradients=gradients)
 
 
 def net_section(link: str, pin: str) -> Formula:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Along, Eye, Place
-from .bars import LINKS, NEAR, Formula, OfBars, Part, beside_pin, constant, eyes_of, strength_of, stresses
+from ..model.strength.places import Along, Place
+from .bars import LINKS, NEAR, Formula, OfBars, Part, beside_pin, eyes_of, strength_of, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
 from .quantity import Array
@@ -33,13 +33,11 @@ class FatigueSafety(OfBars):
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
         places: tuple[Place, ...] = (*(Along(LINKS[name].part) for name in bars), *eyes)
-        found = []
-        for place, part in zip(places, stresses(mechanism, designs, places, criteria, kept, gradients), strict=True):
-            rest = constant(1.0, designs, gradients)
-            if isinstance(place, Eye):
-                rest = of_numbers(mechanism, designs, beside_pin(place), gradients=gradients)
-            found.append(part.into(rest))
-        return found
+        found = stresses(mechanism, designs, places, criteria, kept, gradients)
+        return [
+            part.into(beside_pin(mechanism, designs, place, gradients))
+            for place, part in zip(places, found, strict=True)
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,14 +8,13 @@ from functools import partial
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Along, Eye, Place
+from ..model.strength.places import Along, Place
 from .bars import (
     LINKS,
     NEAR,
     OfBars,
     Part,
     beside_pin,
-    constant,
     eyes_of,
     net_section,
     over,
@@ -52,9 +51,7 @@ class LinkStress(OfBars):
         for (name, pin, place), part in zip(places, found, strict=True):
             if name not in bars:
                 continue
-            rest = constant(1.0, designs, gradients)
-            if isinstance(place, Eye):
-                rest = of_numbers(mechanism, designs, beside_pin(place), gradients=gradients)
+            rest = beside_pin(mechanism, designs, place, gradients)
             yield name, pin, part.into(_scaled(rest, own)) if self.least else over(part, rest)
         for name in bars:
             for pin in (NEAR, LINKS[name].far):
