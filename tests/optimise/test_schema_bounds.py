@@ -1,4 +1,4 @@
-"""Bounds of the JSON Schema: each is that of the model, at the bound itself and on both sides of it."""
+"""Bounds of the JSON Schema are those of the model, at the bound and on both sides of it."""
 
 from __future__ import annotations
 

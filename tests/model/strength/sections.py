@@ -105,7 +105,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
 
 
 def eye_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array) -> Array:
-    """Return the stress (n, m) at m edges of both eyes of a link: area and second moment without the hole."""
+    """Return the stress (n, m) at m edges of a link's eyes, from area and second moment without the hole."""
     bar: Any = getattr(mechanism, part)
     strength = mechanism.strength
     assert strength is not None

@@ -176,7 +176,7 @@ def test_every_chart_says_its_least_and_greatest_value(opened: Opened) -> None:
 def test_least_and_greatest_values_in_the_charts_are_those_of_the_extremes(
     opened: Opened, solved: Solved, service: str
 ) -> None:
-    """Found between the points of the curves too, to the digits shown; of a change they are about those of points."""
+    """To the digits shown, also between the points of the curves; of a change about those of its points."""
     for design in (3, 6):
         page = opened(design)
         found = httpx.get(f"{service}{solved.path}/designs/{design}/analysis", params={"show": "extremes"}).json()
