@@ -255,7 +255,8 @@ def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> 
     add(store)
     page = open_page(store, "#/help")
     asked = pictures_asked_for(page)
-    page.get_by_role("link", name="Runs").first.click()
+    with page.expect_response("**/front-points?*"):
+        page.get_by_role("link", name="Runs").first.click()
     with page.expect_response("**/api/v1/jobs?*"):  # the second look: nothing has changed
         expect(page.get_by_role("listitem").filter(has_text="Compare run")).to_have_count(3)
     expect(page.get_by_role("img", name="the front")).to_have_count(0)
