@@ -17,10 +17,8 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.quantity import Quantity
 from ..designs.columns import all_columns
 from ..designs.cycle_table import LEAST, MOST
-from ..designs.design_curves import design_curves
 from ..designs.holding import held
 from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
-from ..designs.stored_designs import StoredDesign
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_lengths
@@ -28,6 +26,7 @@ from ..runs.result import Row, json_ready
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing, undefined_of
 from ..topics.discovery import ALL, TOPICS, chosen_topics
+from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, column_models
 from .job_requests import given_problem
 from .models import UnitsAsked, Whole
@@ -62,30 +61,6 @@ class AnalysisModel(BaseModel):
 
 class StoredAnalysisModel(OfDesign, AnalysisModel):
     """All numbers of a design of a front."""
-
-
-class CycleModel(BaseModel):
-    """Curves over the cycle: a turn of the crank, two where a load repeats after 720 deg, or a swing.
-
-    columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
-    undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
-    and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
-    without a speed, and of a slow swing. slow_stroke: outward, inward or equal.
-    """
-
-    turns: int = Field(examples=[1])
-    seconds: float | None = Field(examples=[0.2])
-    inner_dead_centre_deg: float | None
-    outer_dead_centre_deg: float | None
-    slow_stroke: str | None = Field(examples=["inward"])
-    columns: list[ColumnModel]
-    curves: dict[str, list[float | None]] = Field(
-        examples=[{"crank_angle_deg": [0.0, 90.0, 180.0, 270.0], "slider_position_mm": [100.8, 60.8, 20.8, 22.4]}]
-    )
-
-
-class CurvesModel(OfDesign, CycleModel):
-    """Curves of a design of a front over its cycle."""
 
 
 class WhatIf(BaseModel, extra="forbid"):
@@ -274,22 +249,6 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
         dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],
         dominates_count=len(changed.dominates),
         cycle=cycle,
-    )
-
-
-def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
-    """Return the curves of a design as JSON has them."""
-    found = design_curves(of, angles)
-    inner, outer = found.centres or (None, None)
-    slow = None if inner is None else str(of.linkage.slow_stroke(direction=of.mechanism.speed or 1.0))
-    return CycleModel(
-        turns=found.turns,
-        seconds=found.seconds,
-        inner_dead_centre_deg=inner,
-        outer_dead_centre_deg=outer,
-        slow_stroke=slow,
-        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
-        curves={column.key: json_ready(column.values, gaps=True) for column in found.columns},
     )
 
 

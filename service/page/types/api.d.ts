@@ -44,6 +44,7 @@ declare global {
     type Columns = Schemas["ColumnsModel"];
     type Certificate = Schemas["CertificateModel"];
     type Cycle = Schemas["CycleModel"];
+    type Outlines = Schemas["OutlinesModel"];
     type Event = Schemas["EventShown"];
     type Example = Schemas["ExampleModel"];
     type Front = Schemas["FrontModel"];

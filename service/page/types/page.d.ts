@@ -80,6 +80,8 @@ declare namespace Page {
     turns: number;
     /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points. */
     exact?: Record<string, Ends>;
+    /** Of its drawings: piston, cylinders, actuator, body on the crank. */
+    outlines: Api.Outlines;
     /** Of the cycle; null where it has no speed. */
     seconds?: number | null;
   }

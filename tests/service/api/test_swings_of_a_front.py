@@ -13,6 +13,7 @@ import httpx
 import numpy as np
 import pytest
 
+from slidercrank.model.machine.links import Bar
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import API, client_of
@@ -117,3 +118,38 @@ def test_the_swing_of_the_job_is_what_is_asked_without_a_word(served: Served) ->
 @pytest.mark.parametrize("path", ["/topics/balance", "/topics/extremes", "/analysis?show=tolerances"])
 def test_an_analysis_of_a_full_turn_is_refused(served: Served, path: str) -> None:
     assert "is of a crank that turns through; got a job whose crank swings" in served.get(SLOW, path, 422).text
+
+
+def test_the_outlines_of_a_swing_have_body_and_actuator(served: Served) -> None:
+    """The mass centre is the job's; the actuator stands beyond the slider all over the swing."""
+    found = served.get(SLOW, "/curves", angles=72).json()
+    of, row = found["outlines"], served.get(SLOW, "").json()["design"]
+    crank = parse_job(support()).mechanism.crank
+    assert not isinstance(crank, Bar)
+    assert crank.centre is not None
+    assert of["body"]["along_mm"] == pytest.approx(1e3 * crank.centre)
+    assert of["body"]["across_mm"] == pytest.approx(1e3 * crank.centre_across)
+    assert of["body"]["side_mm"] == pytest.approx(0.3 * row["crank_mm"])
+    face = of["actuator"]["face_mm"]
+    assert face > max(found["curves"]["slider_position_mm"]) + 0.5 * of["slider_length_mm"]
+    left, low, right, high = of["extent_mm"]
+    assert right == of["actuator"]["foot_mm"]
+    assert low < row["offset_mm"] < high
+    assert left < 0.0
+    assert of["cylinders"] == []
+
+
+def test_the_outlines_of_an_engine_have_bore_and_clearance(served: Served) -> None:
+    """Between piston and head there is stroke / (compression ratio - 1) at the top; other lengths move it along."""
+    cycle, row = served.get(TURNS, "/curves", angles=720).json(), served.get(TURNS, "").json()["design"]
+    lengths = {name: row[name] for name in ("crank_mm", "rod_mm", "offset_mm")} | {"crank_mm": 40.0, "rod_mm": 130.0}
+    path = f"{API}/jobs/{served.jobs[TURNS]}/designs/1/what-if"
+    other = served.client.post(path, json={**lengths, "angles": 720}).json()["cycle"]
+    for found in (cycle, other):
+        of, positions = found["outlines"], found["curves"]["slider_position_mm"]
+        (barrel,) = of["cylinders"]
+        assert barrel["bore_mm"] == of["slider_height_mm"] == pytest.approx(86.0)
+        half, top, bottom = 0.5 * of["slider_length_mm"], max(positions), min(positions)
+        assert barrel["head_mm"] - (top + half) == pytest.approx((top - bottom) / 9.0, rel=1e-9)
+        assert barrel["foot_mm"] == pytest.approx(bottom - half, rel=1e-9)
+        assert of["body"] is of["actuator"] is None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -22,6 +24,11 @@ def service(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Itera
             solved_at_once(store, job)
         with watched(browser, store) as opened:
             yield opened
+
+
+LEFT = "node => node.getBBox().x + new DOMMatrix(getComputedStyle(node.parentNode).transform).e"
+RIGHT = f"{LEFT} + node.getBBox().width"
+"""Ends of an element in the units of its picture."""
 
 
 def put(page: Page, name: str, place: int) -> None:
@@ -57,6 +64,49 @@ def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str])
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     page.set_viewport_size({"width": 1280, "height": 900})
     assert findings(page) == []
+
+
+def test_the_stage_draws_the_body_and_the_actuator(service: tuple[Page, str]) -> None:
+    """The body's mass centre lies where the job says, on the crank; the rod reaches from the slider to the barrel."""
+    page, address = service
+    page.goto(f"{address}/#/jobs/1/designs/1")
+    crank = tomllib.loads(Path("runs/support.toml").read_text(encoding="utf-8"))["mechanism"]["crank"]
+    along = float(crank["centre"].split()[0]) * {"m": 1e3, "mm": 1.0}[crank["centre"].split()[1]]
+    long = float(page.locator('section.numbers [data-key="crank_mm"]').first.get_attribute("data-value") or "nan")
+    for place in (0, 180):
+        put(page, "Forth and back", place)
+        box = page.locator("section.stage g.body > rect").evaluate(
+            "node => [node.x, node.width].map(of => of.baseVal.value)"
+        )
+        pins = page.locator("section.stage svg.moving g:has(> path.crank) circle.pin").evaluate_all(
+            "nodes => nodes.map(node => node.cx.baseVal.value)"
+        )
+        assert (box[0] + 0.5 * box[1]) / (pins[1] - pins[0]) == pytest.approx(along / long, rel=1e-6)
+        rod = page.locator("section.stage svg.moving rect.actuator").evaluate(RIGHT)
+        barrel = page.locator("section.stage svg.still rect.actuator").evaluate(LEFT)
+        assert rod == pytest.approx(barrel, abs=0.02)
+
+
+def test_the_stage_draws_the_cylinder_to_scale(service: tuple[Page, str]) -> None:
+    """At the top the piston leaves a ninth of the stroke, of an engine that compresses ten times."""
+    page, address = service
+    page.goto(f"{address}/#/jobs/2/designs/1")
+    put(page, "Crank angle", 0)
+    expect(page.locator("output.angle")).to_have_text("0°")
+    piston = page.locator("section.stage svg.moving rect.slider")
+    (wall,) = page.locator("section.stage svg.still path.cylinder").all()
+    edges = wall.evaluate("node => { const box = node.getBBox(); return [box.x, box.x + box.width, box.height]; }")
+    right = {}
+    for at in (0, 90):  # a cycle is two turns
+        put(page, "Crank angle", at)
+        right[at] = piston.evaluate(RIGHT)
+        assert piston.evaluate("node => node.height.baseVal.value") == pytest.approx(edges[2], abs=0.1)
+    stroke = right[0] - right[90]
+    assert edges[1] - right[0] == pytest.approx(stroke / 9.0, abs=0.05)
+    assert edges[2] == pytest.approx(stroke, abs=0.1)  # 86 mm of bore and of stroke
+    page.set_viewport_size({"width": 390, "height": 900})
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.set_viewport_size({"width": 1280, "height": 900})
 
 
 def test_other_lengths_swing_too(service: tuple[Page, str]) -> None:

@@ -91,9 +91,9 @@ export function stage(place, strip, turning, turns) {
       fill(drawn, places);
       drawings = places.map((each, n) => draggable(drawing(each, { label: "" }), (at) => hold(placeOf(machines[n], at, turning.angle))));
     }
-    const frame = around(machines.map(({ row, curves }) => frameOf(lengthsOf(row), curves)));
+    const frame = around(machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)));
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
-    machines.forEach(({ name, series, row, curves, centres }, n) => {
+    machines.forEach(({ name, series, row, curves, centres, outlines }, n) => {
       const one = drawings[n];
       const holder = /** @type {HTMLElement} */ (one.node.parentElement);
       holder.dataset.series = String(series);
@@ -102,7 +102,7 @@ export function stage(place, strip, turning, turns) {
         const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
         title.textContent = name;
       }
-      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest, turns });
+      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest, turns, outlines });
       one.turn(turning.angle);
     });
     showForces();

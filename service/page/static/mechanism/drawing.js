@@ -4,12 +4,13 @@ import { between, crankAt } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
+import { attached } from "./attached.js";
 import { fitted, frameOf, reachOf } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
@@ -21,7 +22,8 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
  *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
- *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js).
+ *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js), outlines (of the API: piston,
+ *   cylinders, actuator, body on the crank).
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
@@ -45,14 +47,16 @@ export function drawing(place, { label }) {
     const width = Math.round(place.clientWidth);
     if (!shown || width < 60) return;
     const { linkage, motion, options } = shown;
-    const own = frameOf(linkage, motion);
+    const { outlines } = options;
+    const own = frameOf(linkage, motion, outlines);
+    const { block, tall } = own;
     view = fitted(options.frame ?? own, width, options.small);
     for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     const { turns = 1 } = options;
-    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block: own.block, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0 }));
+    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block, tall, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0, outlines }));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
-    parts.size({ linkage, view, block: own.block, link, written: !options.small, crossed: crossed(linkage, motion, turns) });
+    parts.size({ linkage, view, block, tall, outlines, link, written: !options.small, crossed: crossed(linkage, motion, turns) });
     parts.forces.size(motion, view, options.largest_force);
     // Where the slider drives, the angle that counts is between rod and crank: not the one that is marked.
     parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N));
@@ -128,7 +132,8 @@ function movingParts() {
   const [crank, rod, block] = [svg("path", { class: "link crank" }), svg("path", { class: "link rod" }), svg("rect", { class: "slider", rx: 2 })];
   const pins = [pin(), pin(), pin()];
   const length = svg("text", { class: "length", "text-anchor": "middle" });
-  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, pins[0], pins[1]), svg("g", {}, rod, pins[2], length), svg("g", {}, block)];
+  const more = attached();
+  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, more.body, pins[0], pins[1]), svg("g", {}, rod, pins[2], length), svg("g", {}, block)];
   const normal = svg("path", { class: "transmission normal" });
   const arc = svg("path", { class: "transmission" });
   const value = svg("text", { class: "transmission" });
@@ -138,15 +143,16 @@ function movingParts() {
   let told = 0; // when the value was written last
   let side = ""; // on which it stands
   return {
-    nodes: [sliderGroup, rodGroup, crankGroup, marked, forces.node],
+    nodes: [more.rod, sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
     marked,
-    /** @param {{ linkage: Page.Lengths, view: View, block: number, link: number, written: boolean, crossed: boolean }} given */
-    size({ linkage, view, block: height, link, written, crossed }) {
-      const size = height * view.unit;
+    /** @param {{ linkage: Page.Lengths, view: View, block: number, tall: number, outlines: Api.Outlines | undefined, link: number, written: boolean, crossed: boolean }} given */
+    size({ linkage, view, block: size, tall, outlines, link, written, crossed }) {
+      const [wide, high] = [1.5 * size * view.unit, tall * view.unit];
+      more.size(view, outlines, linkage.offset_mm);
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
-      measure(block, { x: -0.75 * size, y: -0.5 * size, width: 1.5 * size, height: size });
+      measure(block, { x: -wide / 2, y: -high / 2, width: wide, height: high });
       for (const one of pins) measure(one, { r: Math.max(2.5, 0.28 * link) });
       measure(pins[1], { cx: linkage.crank_mm * view.unit });
       measure(pins[2], { cx: linkage.rod_mm * view.unit });
@@ -169,6 +175,7 @@ function movingParts() {
       const there = `translate(${slider[0].toFixed(2)} ${slider[1].toFixed(2)})`;
       sliderGroup.setAttribute("transform", there);
       marked.setAttribute("transform", there);
+      more.move(slider[0]);
       angleBetween([crankPin[0] - slider[0], crankPin[1] - slider[1]], degrees, settled);
     },
   };

@@ -3,7 +3,7 @@
 import { extremes } from "../charts/cycle.js";
 
 /**
- * @typedef {{ left: number, right: number, low: number, high: number, block: number }} Frame
+ * @typedef {{ left: number, right: number, low: number, high: number, block: number, tall: number }} Frame
  * @typedef {ReturnType<typeof fitted>} View
  */
 
@@ -22,12 +22,17 @@ export function reachOf(motion) {
 }
 
 /**
- * Return {left, right, low, high, block}, mm, of a mechanism; block is the height of its slider.
- * @param {Page.Lengths} linkage @param {Api.Curves} motion @returns {Frame}
+ * Return {left, right, low, high, block, tall}, mm, of a mechanism; block is two thirds of the length of its slider, tall its height.
+ * outlines: of the API, of what else is drawn.
+ * @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Api.Outlines} [outlines] @returns {Frame}
  */
-export function frameOf(linkage, motion) {
+export function frameOf(linkage, motion, outlines) {
   const { low, high } = reachOf(motion);
-  return frameWithin(linkage, low.value, high.value);
+  const own = frameWithin(linkage, low.value, high.value);
+  if (!outlines) return own;
+  const [left, bottom, right, top] = outlines.extent_mm;
+  const [block, tall] = [outlines.slider_length_mm / 1.5, outlines.slider_height_mm];
+  return around([own, { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall }]);
 }
 
 /**
@@ -43,6 +48,7 @@ export function frameWithin({ crank_mm: r, offset_mm: e }, inner, outer) {
     low: Math.min(-r, e - 0.9 * block),
     high: Math.max(r, e + 0.9 * block),
     block,
+    tall: block,
   };
 }
 
@@ -55,6 +61,7 @@ export function around(frames) {
     low: Math.min(all.low, one.low),
     high: Math.max(all.high, one.high),
     block: Math.max(all.block, one.block),
+    tall: Math.max(all.tall, one.tall),
   }));
 }
 

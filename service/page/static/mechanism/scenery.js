@@ -2,6 +2,7 @@
 
 import { svg } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
+import { barrel, walls } from "./attached.js";
 
 /** @typedef {{ angle: number, position: number }} Centre A dead centre, deg and mm. */
 
@@ -12,10 +13,13 @@ const PITCH = 9; // pixels between the strokes of a hatching
 /**
  * Return the parts that stand still, as SVG elements.
  * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels; written: whether
- * the offset stands there in words; swings: whether the centres are the ends of a swing.
- * @param {{ linkage: Page.Lengths, centres: Centre[], view: View, block: number, link: number, direction: number, written: boolean, swings?: boolean }} given
+ * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API.
+ * @param {{
+ *   linkage: Page.Lengths, centres: Centre[], view: View, block: number, tall: number, link: number, direction: number, written: boolean,
+ *   swings?: boolean, outlines?: Api.Outlines,
+ * }} given
  */
-export function scenery({ linkage, centres, view, block, link, direction, written, swings = false }) {
+export function scenery({ linkage, centres, view, block, tall, link, direction, written, swings = false, outlines }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const ends = centres.map((centre) => centre.position);
@@ -28,11 +32,13 @@ export function scenery({ linkage, centres, view, block, link, direction, writte
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
     swings ? arcOf(view, r, centres) : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
     line("path", [x(ends[0]), y(e)], [x(ends[1]), y(e)]),
-    ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * block * view.unit, side)),
-    ...centres.map((centre) => ghost(centre, linkage, view, block, link)),
+    ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * tall * view.unit, side)),
+    ...centres.map((centre) => ghost(centre, linkage, view, block, tall, link)),
+    ...(outlines?.cylinders ?? []).map((cylinder) => walls(view, cylinder, e)),
+    outlines?.actuator ? barrel(view, outlines.actuator, e) : null,
     swings ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
-    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * block * view.unit + 16), swings),
+    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
     written && !swings && crankOf(view, r, e),
     bearing(x(0), y(0), link),
   ];
@@ -53,18 +59,18 @@ function guide(start, end, y, side) {
   return svg("path", { class: "guide", d: `M${start} ${y}H${end}${strokes.join("")}` });
 }
 
-/** @param {Centre} centre @param {Page.Lengths} linkage @param {View} view @param {number} block @param {number} link */
-function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, link) {
+/** @param {Centre} centre @param {Page.Lengths} linkage @param {View} view @param {number} block @param {number} tall @param {number} link */
+function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, tall, link) {
   const turn = (angle * Math.PI) / 180;
   const pin = /** @type {Page.Point} */ ([view.x(r * Math.cos(turn)), view.y(r * Math.sin(turn))]);
   const slider = /** @type {Page.Point} */ ([view.x(position), view.y(e)]);
-  const size = block * view.unit;
+  const [long, high] = [1.5 * block * view.unit, tall * view.unit];
   return svg(
     "g",
     { class: "ghost" },
     svg("path", { d: bar(Math.hypot(pin[0] - view.x(0), pin[1] - view.y(0)), link), transform: placed([view.x(0), view.y(0)], pin) }),
     svg("path", { d: bar(Math.hypot(slider[0] - pin[0], slider[1] - pin[1]), link), transform: placed(pin, slider) }),
-    svg("rect", { x: slider[0] - 0.75 * size, y: slider[1] - 0.5 * size, width: 1.5 * size, height: size, rx: 2 }),
+    svg("rect", { x: slider[0] - long / 2, y: slider[1] - high / 2, width: long, height: high, rx: 2 }),
   );
 }
 

@@ -1,0 +1,108 @@
+"""Curves of a design over its cycle, and what draws it, as JSON has them."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, Field
+
+from ..designs.design_curves import design_curves
+from ..designs.stored_designs import StoredDesign
+from ..drawings.outlines import outlines
+from ..runs.result import json_ready
+from .fronts import ColumnModel, OfDesign
+
+
+class BarrelModel(BaseModel):
+    """A cylinder about the slider line: places of its open end and of its head, the clearance included."""
+
+    bore_mm: float = Field(examples=[70.0])
+    foot_mm: float = Field(examples=[65.0])
+    head_mm: float = Field(examples=[148.0])
+
+
+class ActuatorModel(BaseModel):
+    """An actuator of the slider, for show: ends of its barrel, the face towards the slider."""
+
+    face_mm: float = Field(examples=[3900.0])
+    foot_mm: float = Field(examples=[6400.0])
+    width_mm: float = Field(examples=[240.0])
+
+
+class BodyModel(BaseModel):
+    """A body on the crank: its mass centre along it and across it, and the side of the square about that, for show."""
+
+    along_mm: float = Field(examples=[700.0])
+    across_mm: float = Field(examples=[0.0])
+    side_mm: float = Field(examples=[420.0])
+
+
+class OutlinesModel(BaseModel):
+    """Parts of a design as its drawings have them, mm; bore, clearance and mass centre are true, the rest is for show.
+
+    extent_mm: left, bottom, right and top of what stands or moves. slider_height_mm: the bore where it is a piston.
+    actuator, body: null where the machine has none.
+    """
+
+    extent_mm: tuple[float, float, float, float] = Field(examples=[(-43.0, -40.0, 150.0, 52.0)])
+    slider_length_mm: float = Field(examples=[24.0])
+    slider_height_mm: float = Field(examples=[16.0])
+    cylinders: list[BarrelModel]
+    actuator: ActuatorModel | None
+    body: BodyModel | None
+
+
+class CycleModel(BaseModel):
+    """Curves over the cycle: a turn of the crank, two where a load repeats after 720 deg, or a swing.
+
+    columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
+    undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
+    and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
+    without a speed, and of a slow swing. slow_stroke: outward, inward or equal. outlines: of what moves, to draw it.
+    """
+
+    turns: int = Field(examples=[1])
+    seconds: float | None = Field(examples=[0.2])
+    inner_dead_centre_deg: float | None
+    outer_dead_centre_deg: float | None
+    slow_stroke: str | None = Field(examples=["inward"])
+    outlines: OutlinesModel
+    columns: list[ColumnModel]
+    curves: dict[str, list[float | None]] = Field(
+        examples=[{"crank_angle_deg": [0.0, 90.0, 180.0, 270.0], "slider_position_mm": [100.8, 60.8, 20.8, 22.4]}]
+    )
+
+
+class CurvesModel(OfDesign, CycleModel):
+    """Curves of a design of a front over its cycle."""
+
+
+def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
+    """Return the curves of a design as JSON has them."""
+    found = design_curves(of, angles)
+    inner, outer = found.centres or (None, None)
+    slow = None if inner is None else str(of.linkage.slow_stroke(direction=of.mechanism.speed or 1.0))
+    return CycleModel(
+        turns=found.turns,
+        seconds=found.seconds,
+        inner_dead_centre_deg=inner,
+        outer_dead_centre_deg=outer,
+        slow_stroke=slow,
+        outlines=_outlines(of),
+        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
+        curves={column.key: json_ready(column.values, gaps=True) for column in found.columns},
+    )
+
+
+def _outlines(of: StoredDesign) -> OutlinesModel:
+    """Return the parts of a design as its drawings have them."""
+    drawn = outlines(of.mechanism, of.linkage, of.part.motion)
+    actuator, body = drawn.actuator, drawn.body
+    return OutlinesModel(
+        extent_mm=drawn.extent,
+        slider_length_mm=drawn.slider[0],
+        slider_height_mm=drawn.slider[1],
+        cylinders=[BarrelModel(bore_mm=each.bore, foot_mm=each.foot, head_mm=each.head) for each in drawn.barrels],
+        actuator=None
+        if actuator is None
+        else ActuatorModel(face_mm=actuator.face, foot_mm=actuator.foot, width_mm=actuator.width),
+        body=None if body is None else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=drawn.body_side),
+    )
