@@ -109,6 +109,9 @@ _DRAG = per("lbf s^2/in^2", _INCH**2 / _LBF), per("N s^2/m^2")
 QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
 _PRESSURE = face("psi", _INCH**2 / _LBF), face("MPa", 1e-6)
 PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
+_HEAT = face("ft lbf/in^3", _INCH**2 / (12.0 * _LBF)), face("MJ/m^3", 1e-6)
+_HEATS = "J/m^3, MJ/m^3, J/cm^3, kJ/L, ft lbf/in^3"
+HEAT_PER_VOLUME = _kind("a heat per volume", _HEATS, "1.2 MJ/m^3", 1e15, *_HEAT)
 _RUBBED = face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), face("MPa m/s", 1e-6)
 PRESSURE_SPEED = _kind(
     "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_RUBBED, "MPa m/s"

@@ -65,6 +65,7 @@ gradian = 3.14159265358979323846264338327950288 / 200 * radian = gon
 turn = 6.28318530717958647692528676655900577 * radian = rev = revolution
 rpm = turn / minute = RPM
 rps = turn / second
+litre = 0.001 * metre ** 3 = L = l = liter
 newton = kilogram * metre / second ** 2 = N
 newton_metre = newton * metre = Nm
 newton_centimetre = 0.01 * newton * metre = Ncm
@@ -114,6 +115,13 @@ _HINTS = {
     '"': "write inch",
     "'": "write foot",
 }
+
+_APART = (
+    ("N m", r"J\b", "an energy; a torque is given in N m"),
+    ("Pa", r"J\b", "a heat per volume"),
+    ("J/m^3", r"(Pa|bar|psi|ksi)\b|/\s*\w+?\^?2\b", "a pressure"),
+)
+"""Kinds of one dimension that are told apart: the SI unit of a kind, symbols of another one, and what that is."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 PATTERN = rf"^\s*{_NUMBER}\s*[^\d\s.+-].*$"
@@ -263,15 +271,17 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         factor, dimension = _unit(unit)
     except InputError as error:
         raise InputError(f"{rule}; got {shown(text)}: {error}; {write}") from None
-    if kind.unit == "N m" and re.search(r"J\b", unit):  # of the same dimension
-        raise InputError(f"{rule}; got {shown(text)}, which is an energy; {_HINTS['J']}; {write}")
     if dimension != _unit(kind.unit)[1]:
-        others = [other.name for other in (*KINDS, *_OTHERS) if _unit(other.unit)[1] == dimension]
-        which = f", which is {others[0]}" if others else ""
+        others = [other for other in (*KINDS, *_OTHERS) if _unit(other.unit)[1] == dimension]
+        energies = [other for other in others if ("J" in other.unit) == bool(re.search(r"J\b", unit))]
+        which = f", which is {(energies or others)[0].name}" if others else ""
         force = _WEIGHT.sub(r"\1f", unit)
         if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
             write = f'the force of a weight has the unit lbf, ozf or kgf: write "{match[1]} {force}"'
         raise InputError(f"{rule}; got {shown(text)}{which}; {write}")
+    for unit_of_kind, symbols, other in _APART:
+        if kind.unit == unit_of_kind and re.search(symbols, unit):
+            raise InputError(f"{rule}; got {shown(text)}, which is {other}; {write}")
     return number * factor
 
 

@@ -71,6 +71,11 @@ GOOD = [
     ("2 bar", kinds.PRESSURE, 2e5),
     ("1 psi", kinds.PRESSURE, 4.4482216152605 / 0.0254**2),
     ("1 ksi", kinds.PRESSURE, 1000 * 4.4482216152605 / 0.0254**2),
+    ("1.2 MJ/m^3", kinds.HEAT_PER_VOLUME, 1.2e6),
+    ("1.2 J/cm^3", kinds.HEAT_PER_VOLUME, 1.2e6),
+    *((f"1.2 {text}", kinds.HEAT_PER_VOLUME, 1.2e6) for text in ("kJ/L", "kJ/l", "kJ/litre", "kJ/dm^3", "kN m/dm^3")),
+    ("1 ft lbf/in^3", kinds.HEAT_PER_VOLUME, 12.0 * 4.4482216152605 / 0.0254**2),
+    ("250 mL", kinds.VOLUME, 250e-6),
     ("1 kip", kinds.FORCE, 4448.2216152605),
     ("1 lbf/in", kinds.STIFFNESS, 4.4482216152605 / 0.0254),
     ("1 lbf-s/in", kinds.DAMPING, 4.4482216152605 / 0.0254),
@@ -106,6 +111,15 @@ BAD = [
     ("300 1/min", kinds.ANGULAR_SPEED, ["one number and one unit", "300 rpm"]),
     ("5 /s", kinds.ANGULAR_SPEED, ["no unit", "300 rpm"]),
     ("3 mN", kinds.TORQUE, ["torque", "is a force", "25 N m"]),
+    ("3 J", kinds.TORQUE, ["torque", "is an energy", "25 N m"]),
+    ("3 J/s", kinds.TORQUE, ["torque", "is a power", "25 N m"]),
+    *(
+        (f"20 {text}", kinds.HEAT_PER_VOLUME, ["heat per volume", "is a pressure", '"1.2 MJ/m^3"'])
+        for text in ("MPa", "bar", "psi", "N/mm^2", "lbf/in^2")
+    ),
+    ("20 MJ/m^3", kinds.PRESSURE, ["pressure", "is a heat per volume", '"20 MPa"']),
+    ("20 J", kinds.PRESSURE, ["pressure", "is an energy", '"20 MPa"']),
+    ("20 MJ", kinds.HEAT_PER_VOLUME, ["heat per volume", "is an energy", "1.2 MJ/m^3"]),
     ("3 N/m", kinds.TORQUE, ["torque", "is a stiffness"]),
     ("3 ft-lb", kinds.TORQUE, ["torque", 'write "3 ft-lbf"']),
     ("3 kg m", kinds.TORQUE, ["torque", 'write "3 kgf m"']),

@@ -92,7 +92,7 @@ class LimitedPressure(Engine):
     heat_capacity_ratio: float = 1.4
 
     enters: ClassVar = Enters.BURNING_CYLINDER
-    slots: ClassVar = {**Cylinder.slots, "heat": (11, "Pa"), "heat_capacity_ratio": (12, "")}
+    slots: ClassVar = {**Cylinder.slots, "heat": (11, "J/m^3"), "heat_capacity_ratio": (12, "")}
     tables: ClassVar = ()
     _raised: ClassVar = "heat"
 
@@ -275,8 +275,8 @@ Engine.tables = (
             ),
             Entry(
                 "heat",
-                "EnergyDensity",
-                "heat set free per swept volume, J/m^3; at the top, or up to peak_pressure and then at it",
+                "HeatPerVolume",
+                "heat set free per swept volume; at the top, or up to peak_pressure and then at it",
                 "1.2 MJ/m^3",
                 default=0.0,
             ),
