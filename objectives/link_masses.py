@@ -47,7 +47,9 @@ def _moving(number: Numbers) -> Any:
     return _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
 
 
-_mass = partial(Mass, kind=MASS, group=Group.STRENGTH, section="22. Strength of crank and rod", plain=True)
+_mass = partial(
+    Mass, kind=MASS, group=Group.STRENGTH, section="22. Strength of crank and rod", plain=True, turning=False
+)
 CRANK_MASS = _mass(
     name="crank_mass",
     of=_crank,

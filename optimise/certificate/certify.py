@@ -46,17 +46,17 @@ def certify_designs(
     dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
     forces under friction, peaks that are not minimised; and for a swing, several cylinders and a speed profile.
     """
+    if problem.motion is not None:
+        raise InputError(
+            "a certificate is of a crank that turns through; got a swing; the residuals of the front tell how near its "
+            "designs are to optimal"
+        )
     listed = (f"the values of {item.name}" for item in problem.discrete)
     more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
     if more:
         raise InputError(
             f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "
             "the job and certify that"
-        )
-    if problem.motion is not None:
-        raise InputError(
-            "a certificate is of a crank that turns through; got a swing; the residuals of the front tell how near its "
-            "designs are to optimal"
         )
     for part in problem.parts():
         require_plain(part.mechanism, "a certificate")

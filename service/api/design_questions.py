@@ -96,9 +96,13 @@ def find_crank_angles(
     slider_acceleration_m_s2: Acceleration = None,
     units: UnitsAsked = "metric",
 ) -> InverseModel:
-    """Find every crank angle that puts the slider of a design at a position, with crank speed and acceleration."""
+    """Find every crank angle that puts the slider of a design at a position, with crank speed and acceleration.
+
+    Of a crank that swings they are those of its swing.
+    """
     motion = SliderMotion(slider_position_mm / LENGTH.metric.factor, slider_velocity_m_s, slider_acceleration_m_s2)
-    record = json_ready(inverse_record(found.design(design).linkage, motion))
+    stored = found.design(design)
+    record = json_ready(inverse_record(stored.mechanism, stored.linkage, stored.part.motion, motion))
     return InverseModel(job=found.job.id, number=design, inverse=record_in(record, units))
 
 

@@ -49,19 +49,20 @@ def inverse(
 
     Most positions have two, one on each stroke, named as for a crank that turns counter-clockwise. With the
     slider's velocity and acceleration, each has the crank speed and the crank acceleration that give them. Crank
-    angle, speed and acceleration are positive counter-clockwise. Linkages that do not turn fully are accepted.
-    Without JOB the branch is the open one. Dimensions that JOB fixes need not be repeated. With --design, a run
-    stands in place of JOB, and the design has its dimensions.
+    angle, speed and acceleration are positive counter-clockwise. Linkages that do not turn fully are accepted;
+    of a job whose crank swings, the crank angles are those of its swing. Without JOB the branch is the open one.
+    Dimensions that JOB fixes need not be repeated. With --design, a run stands in place of JOB, and the design
+    has its dimensions.
     """
     from ..designs.inverse import SliderMotion, inverse_record
 
-    linkage = machine_of("inverse", job, size, design, runs).linkage
+    mechanism, linkage, problem = machine_of("inverse", job, size, design, runs)
     motion = SliderMotion(
         value_of("--slider-position", position, LENGTH),
         given_value("--slider-velocity", velocity, SPEED),
         given_value("--slider-acceleration", acceleration, ACCELERATION),
     )
-    record = inverse_record(linkage, motion)
+    record = inverse_record(mechanism, linkage, None if problem is None else problem.motion, motion)
     answer(json, record_in(record, units), lambda screen: _show(screen, record, units))
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
@@ -16,7 +17,7 @@ from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, slowly
 from slidercrank.objectives.swing_quantity import SwingQuantity
-from slidercrank.objectives.tables.swinging import swing_facts, swing_quantities
+from slidercrank.objectives.tables.swinging import swing_facts, swing_quantities, swinging
 from tests.model.cases import Array
 from tests.model.swing.swings import Case, random_swings
 from tests.objectives.richardson import derivatives
@@ -167,3 +168,18 @@ def test_numbers_that_vary_change_nothing_but_the_count_of_derivatives() -> None
             up, down = (of.evaluate(free, design).values for design in (designs + step, designs - step))
             slope = (up - down) / 2e-3
             assert found.gradients[:, 3] == pytest.approx(slope, rel=1e-7, abs=1e-9 * abs(value[0])), of.name
+
+
+def test_masses_are_of_a_swing_too() -> None:
+    """A bar's mass follows its length; the exact slope is rho d w."""
+    rod = Bar(width=0.05, depth=0.02, density=7800.0)
+    machine = Mechanism(crank=RigidLink(mass=3.0), rod=rod, slider_mass=2.0)
+    swing = Swing(start=0.2, end=1.4, driver="slider")
+    names = {of.name: of for of in swinging(swing_quantities(swing))}
+    design = np.array([[0.4, 1.3, 0.05], [0.5, 0.9, -0.1]])
+    found = names["moving_mass"].evaluate(machine, design, gradients=True)
+    bar = 7800.0 * 0.02 * (0.05 * design[:, 1] + 0.25 * np.pi * 0.05**2)
+    assert names["crank_mass"].evaluate(machine, design).values == pytest.approx(3.0)
+    assert names["rod_mass"].evaluate(machine, design).values == pytest.approx(bar, rel=1e-14)
+    assert found.values == pytest.approx(5.0 + bar, rel=1e-14)
+    assert found.gradients == pytest.approx(np.array([[0.0, 7.8, 0.0]] * 2), rel=1e-14)

@@ -153,3 +153,35 @@ def test_the_outlines_of_an_engine_have_bore_and_clearance(served: Served) -> No
         assert barrel["head_mm"] - (top + half) == pytest.approx((top - bottom) / 9.0, rel=1e-9)
         assert barrel["foot_mm"] == pytest.approx(bottom - half, rel=1e-9)
         assert of["body"] is of["actuator"] is None
+
+
+def test_the_way_back_leads_into_the_swing(served: Served) -> None:
+    """A swing has no other crank angles; the job of a full turn has both."""
+    curves = served.get(SLOW, "/curves", angles=72).json()["curves"]
+    for place in (3, 17, 30):
+        at = curves["slider_position_mm"][place]
+        found = served.get(SLOW, "/inverse", slider_position_mm=at).json()["inverse"]
+        assert [each["crank_angle_deg"] for each in found["solutions"]] == pytest.approx(
+            [curves["crank_angle_deg"][place]], rel=1e-9
+        )
+        assert "outside of the swing from 11.16 to 101.16 deg" in found["note"]
+    beyond = 1.01 * max(curves["slider_position_mm"])
+    refused = served.get(SLOW, "/inverse", 422, slider_position_mm=beyond).json()["detail"]
+    assert refused.startswith("the slider stays between ") or "reaches" in refused
+    row = served.get(TURNS, "").json()["design"]
+    turning = served.get(TURNS, "/inverse", slider_position_mm=row["rod_mm"]).json()["inverse"]
+    assert (len(turning["solutions"]), turning["note"]) == (2, "")
+
+
+def test_questions_of_a_full_turn_are_refused(served: Served) -> None:
+    one = f"{API}/jobs/{served.jobs[SLOW]}"
+    measured = {"csv": "crank_angle_deg,slider_position_mm\n20,3000\n40,2500\n90,1500\n"}
+    lengths = {"crank": "1.4 m", "rod": "1.8 m", "offset": "-50 mm"}
+    answers = [
+        served.client.post(f"{one}/designs/1/measured", json=measured),
+        served.client.post(f"{API}/analyse", json={"job": support(), **lengths}),
+        served.client.get(f"{one}/certificate"),
+    ]
+    for answer in answers:
+        assert answer.status_code == 422
+        assert "is of a crank that turns through; got a" in answer.json()["detail"]
