@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.averages import average_torque
@@ -13,7 +12,6 @@ from .needs import DRIVEN, WORK
 from .quantity import Array, Group, Quantity, Values
 
 
-@dataclass(frozen=True, kw_only=True)
 class DeliveredWork(Quantity):
     """Minus the work of the drive torque over a turn in the sense of rotation."""
 

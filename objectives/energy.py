@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -61,7 +60,6 @@ def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array
     return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
 
 
-@dataclass(frozen=True, kw_only=True)
 class EnergyPerCycle(Quantity):
     """Work of the drive torque over a cycle in the sense of rotation; infinite where friction locks."""
 
@@ -76,7 +74,6 @@ class EnergyPerCycle(Quantity):
         return Values(np.where(locks, np.inf, factor * found.mean + 0.0), slopes)  # no negative zero
 
 
-@dataclass(frozen=True, kw_only=True)
 class FrictionLoss(Quantity):
     """Heat of all joints over a cycle; infinite where friction locks."""
 
@@ -88,7 +85,6 @@ class FrictionLoss(Quantity):
         return Values(turns * values, None if slopes is None else turns * slopes)
 
 
-@dataclass(frozen=True, kw_only=True)
 class Efficiency(Quantity):
     """U / (U + H), of the work U done against the loads and the friction heat H.
 

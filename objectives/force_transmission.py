@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..model.machine.dissipation import linkage_loaded, pushed
@@ -15,7 +13,6 @@ from .needs import Need
 from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 
 
-@dataclass(frozen=True, kw_only=True)
 class ForceTransmission(Quantity):
     """max |B_x| / max |B| over the cycle, for the force B between rod and slider.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,6 @@ from .quantity import Array
 _COMPRESSION = ((0.0, 1.0),)
 
 
-@dataclass(frozen=True, kw_only=True)
 class FatigueSafety(OfBars):
     """1 / (amplitude / S_e + mean / S_m), least of all points of the bars and their eyes."""
 
@@ -40,7 +38,6 @@ class FatigueSafety(OfBars):
         ]
 
 
-@dataclass(frozen=True, kw_only=True)
 class BucklingSafety(OfBars):
     """Critical stress over the greatest compression, least of bars and planes."""
 

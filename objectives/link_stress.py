@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from ..model.machine.mechanism import Mechanism
@@ -31,7 +31,6 @@ STATIC = ((1.0, 0.0), (0.0, 1.0))
 CRANK = "crank"
 
 
-@dataclass(frozen=True, kw_only=True)
 class LinkStress(OfBars):
     """The greatest stress along links and in the net sections of their eyes, or the yield strength over it."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..model.cycle.self_locking import varied_margin
@@ -14,7 +12,6 @@ from .quantity import Array, Domain, Group, Quantity, Values
 from .transmission_angle import TRANSMISSION_ANGLE
 
 
-@dataclass(frozen=True, kw_only=True)
 class ClosedFormMargin(Quantity):
     """The least transmission angle minus the angles of friction; -inf where the pins alone lock (no such angle)."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
@@ -13,7 +11,6 @@ from .needs import DRIVEN
 from .quantity import Array, Group, Quantity, Values
 
 
-@dataclass(frozen=True, kw_only=True)
 class TorqueFluctuation(Quantity):
     """sqrt(rms^2 - mean^2) of the drive torque; infinite where friction locks."""
 

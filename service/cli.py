@@ -10,6 +10,7 @@ modules: `--help`, which names all, stays quick.
 from __future__ import annotations
 
 import errno
+import gc
 import os
 import sys
 import tempfile
@@ -154,6 +155,8 @@ def main() -> None:
     """Run the command line and exit."""
     # Before NumPy is loaded: its other threads wait for matrices that are never large enough, at full speed.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else all installed packages are asked for some
+    gc.set_threshold(200_000, 20, 20)  # what imports leave is no garbage: a tenth of a short command
     guard_streams()
     try:
         app(prog_name="slidercrank")

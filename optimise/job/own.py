@@ -26,7 +26,7 @@ from ...objectives.own.quantity import (
     require_name,
 )
 from ...objectives.registry import FACTS
-from ...objectives.units import kind_for, per_si, shown
+from ...objectives.units import is_value, kind_for, per_si, shown
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .values import Part, Physical, optional, required
@@ -227,7 +227,8 @@ def _names(table: object) -> Iterator[str]:
     for key, value in table.items() if isinstance(table, Mapping) else ():
         yield from words_of(key)
         for bound in value.values() if isinstance(value, Mapping) else ():
-            yield from words_of(bound)
+            if not (isinstance(bound, str) and is_value(bound)):  # the words of a value are units
+                yield from words_of(bound)
 
 
 def folders_of(folder: Path | None) -> list[str]:

@@ -119,7 +119,6 @@ class Physical(_Read):
         return described(self.kind, self.sign)
 
 
-@dataclass(frozen=True)
 class GasPressure(Physical):
     """Marks the absolute pressure of a gas: one below vacuum is mostly that of a gauge."""
 

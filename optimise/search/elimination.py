@@ -36,7 +36,6 @@ ZERO = 1e-300
 """An offset of this size counts as zero."""
 
 
-@dataclass(frozen=True)
 class ClosedRule(Rule):
     """A rule of `_FORMULAS`."""
 
@@ -45,7 +44,6 @@ class ClosedRule(Rule):
         return _FORMULAS[self.origin, self.target][1](*self.wanted, *known)
 
 
-@dataclass(frozen=True)
 class LinearRule(Rule):
     """One of the rules that linear equalities give together. wanted: numbers of `linear_rules.solution`."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Literal
 
 from ...errors import InputError
@@ -12,7 +11,6 @@ from .load import Entry, Table
 Medium = Literal["gas", "liquid"]
 
 
-@dataclass(frozen=True, kw_only=True)
 class Compressor(Cylinder):
     """A cylinder that takes in at `low` and delivers at `high` pressure through valves that open without loss.
 
