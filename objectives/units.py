@@ -231,7 +231,8 @@ def shown(value: object) -> str:
         return json.dumps(value)
     if isinstance(value, str):
         text = value if len(value) <= _LONGEST else value[:_LONGEST] + "..."
-        return json.dumps(text, ensure_ascii=not text.isprintable())
+        quoted = json.dumps(text, ensure_ascii=False)
+        return "".join(one if one.isprintable() else json.dumps(one)[1:-1] for one in quoted)
     if isinstance(value, Mapping):
         return f"a table of {len(value)} keys" if value else "an empty table"
     if isinstance(value, list | tuple):

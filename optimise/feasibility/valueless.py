@@ -6,6 +6,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of
@@ -26,7 +27,7 @@ def valueless(part: Problem, designs: Array) -> str:
         if np.isfinite(of.evaluate(part.mechanism, designs).values).any():
             continue
         remedy = "correct the formula, or change the ranges" if isinstance(of, FormulaQuantity) else "change the ranges"
-        return f"{of.title} has no value for any of {len(designs)} designs of the ranges; {remedy}"
+        return f"{of.title} has no value for any of {counted(len(designs), 'design')} of the ranges; {remedy}"
     return ""
 
 

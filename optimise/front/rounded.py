@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
+from ...objectives.counted import counted
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -65,11 +66,12 @@ class Rounded:
     def message(self) -> str:
         """Result of the search, in words."""
         if not self.judged:
-            return f"no rounded design within {self.reach} steps turns fully; give smaller steps"
+            return f"no rounded design within {counted(self.reach, 'step')} turns fully; give smaller steps"
+        near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
-            return f"{self.kept} of {self.judged} rounded designs within {self.reach} steps {keep} every requirement"
-        none = f"none of {self.judged} rounded designs within {self.reach} steps"
+            return f"{self.kept} of {near} {keep} every requirement"
+        none = f"none of {near}"
         if not len(self):
             return f"{none} has every quantity that is required; give smaller steps"
         asked = {item.quantity for item in self.constraints if item.equality} & set(self.missed(0))

@@ -38,6 +38,9 @@ EXAMPLE = {
 }
 """Of the tables that name quantities."""
 
+LARGEST_SEED = 2**53 - 1
+"""So that no reader of JSON changes it: a browser keeps whole numbers as floats."""
+
 
 class _MethodName:
     """The name of a method, as an enumeration of all methods there are."""
@@ -66,7 +69,7 @@ class OptimiserPart(Built[Settings]):
     evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = optional(
         "how many designs a method other than auto may evaluate; its own budget if left out", 50_000
     )
-    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = optional(
+    seed: Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)] = optional(
         "of everything random: the same job with the same seed gives the same front", 1, default=1
     )
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask, Whole, distinct
 from ...model.kinematics.in_line import without_rounding
+from ...objectives.counted import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
@@ -62,7 +63,7 @@ def assemble(
     proven = (residual <= STATIONARY) & ~_torn(problem, variants, dimensions)
     columns[STATUS] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
-    message = f"{len(best)} design{'s' if len(best) != 1 else ''}, {evaluated} evaluated"
+    message = f"{counted(len(best), 'design')}, {evaluated} evaluated"
     if status == "cancelled":
         message = f"cancelled: {message}, the front may be incomplete"
     ideal = values.min(axis=0)

@@ -80,18 +80,21 @@ class UnitTable(BaseModel):
     """Units of values, as they are shown and as they are typed.
 
     inch: by the unit that the API speaks, the unit of US customary units; the others are the same there. suffixes: how
-    keys of values in a unit that the API speaks end, by that unit.
+    keys of values in a unit that the API speaks end, by that unit. titles: of quantities whose columns say other words.
     """
 
     kinds: list[KindModel]
     inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
     suffixes: dict[str, str] = Field(examples=[{"mm": "_mm", "m/s^2": "_m_s2"}])
+    titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque"}])
 
 
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
+    from ...objectives.registry import FACTS
     from ...objectives.units import per_si
+    from ..designs.columns import split_unit
 
     told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
     kinds = [
@@ -108,6 +111,7 @@ def list_units() -> UnitTable:
         kinds=kinds,
         inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told},
         suffixes={kind.metric.symbol: kind.metric.suffix for kind in (*SHOWN, TIME)},
+        titles={of.field: of.title for of in FACTS.values() if of.title != split_unit(of.field)[0].replace("_", " ")},
     )
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import typer
 
 from ...model.errors import NotFound, SlidercrankError
+from ...objectives.counted import counted
 from ..jobs.stores import Address, has_store, is_named, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
@@ -178,7 +179,7 @@ def _at_work(address: str, now: float) -> Iterator[Check]:
         text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
     waiting = counts.get("queued", 0) + len(expired)
     if waiting and not heard:
-        text += f"; {waiting} jobs wait for one; start slidercrank serve or slidercrank worker"
+        text += f"; {counted(waiting, 'job')} without one; start slidercrank serve or slidercrank worker"
     yield Check("workers", "problem" if waiting and not heard else "note" if silent else "ok", text)
     names = ", ".join(str(job.id) for job in expired[:5])
     text = f"those of jobs {names} have ended; the next free worker goes on with them" if expired else "none has ended"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...objectives.kinds import ANGLE, System
 from ..designs.selection import chosen_rows, none_meets, numbered, part_of
 from ..runs.result import csv_text, json_text
@@ -93,7 +94,7 @@ def export(
             give(text)
         elif target is not None:
             write_file(Path(target), text)
-            say(f"{target}: {len(chosen)} designs")
+            say(f"{target}: {counted(len(chosen), 'design')}")
     for file, content in made.items():
         write_file(file, content)
         say(f"{file}: design {number}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...optimise.front.progress import standing
 from ..designs.columns import split_unit
 from ..jobs.stores import Address, Name, find_job, has_store, store_address, store_that_is_there, tell_idle
@@ -99,9 +100,9 @@ def _standing(job: Job) -> str:
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []
         for column, value in job.summary["best"].items():
-            name, unit, _ = split_unit(column)
+            name, unit, _ = split_unit(column)  # titles of quantities would take their imports
             best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
-        return f"{job.summary['designs']} designs; best {', '.join(best)}"
+        return f"{counted(job.summary['designs'], 'design')}; best {', '.join(best)}"
     if job.state == "running" and job.progress is not None:
         return f"{standing(job.progress)}, {job.progress['feasible']:,} feasible"
     if job.state == "running":

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from ...objectives.counted import counted
 from ..designs.columns import find_columns, key_in
 from ..designs.selection import chosen_rows, none_meets, part_of
 from ..runs.result import json_text
@@ -75,7 +76,7 @@ def front(
     elif chosen:
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
-        screen.print(f"{result.name}: {count}{len(result.designs)} designs", style="bold", soft_wrap=True)
+        screen.print(f"{result.name}: {count}{counted(len(result.designs), 'design')}", style="bold", soft_wrap=True)
         show_front(screen, result, chosen, columns=shown, most=rows)
     if not chosen:
         end_without_design(none_meets(result, where or []))

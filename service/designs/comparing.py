@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...objectives.counted import counted
 from ...objectives.kinds import System, shown_in
 from ..runs.result import Result, Wanted
 from .picking_options import minimised_values
@@ -85,10 +86,10 @@ def _against(
     if count == 0:
         return [f"{other} matches or beats every design of {name}, {_TO}"]
     if count == total:
-        return [f"{other} matches none of the {total} designs of {name}, {_TO}"]
+        return [f"{other} matches none of the {counted(total, 'design')} of {name}, {_TO}"]
     where = [text for n, wanted in enumerate(shared) if (text := _where(result, free, wanted, own[:, n], system))]
     place = f": where {', '.join(where)}" if where else ", spread over the whole front"
-    return [f"{name} has {count} of {total} designs that {other} does not match, {_TO}{place}"]
+    return [f"{name} has {count} of {counted(total, 'design')} that {other} does not match, {_TO}{place}"]
 
 
 def unmatched(own: Array, others: Array) -> NDArray[np.bool_]:

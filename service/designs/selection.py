@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...objectives.kinds import Kind
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
@@ -195,7 +196,7 @@ def none_meets(result: Result, where: Collection[str]) -> str:
     conditions = " and ".join(text.strip() for text in where)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in where if rows)
     reasons = dict.fromkeys(reason for condition in parsed if (reason := _never(condition, rows)))
-    return "; ".join((f"none of the {len(rows)} designs meets {conditions}", *reasons))
+    return "; ".join((f"none of the {counted(len(rows), 'design')} meets {conditions}", *reasons))
 
 
 def _never(condition: Condition, rows: Sequence[Row]) -> str | None:

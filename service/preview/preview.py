@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...optimise.feasibility.relaxation import missed
 from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
@@ -131,7 +132,8 @@ def said(problem: Problem, found: Possible) -> list[str]:
             title = problem.quantity(found.hardest[0]).title
             hardest = f"; on its own, {title} is met by {_percent(found.hardest[1])} of those that turn"
         sentences.append(
-            f"none of {found.sampled} designs tried meets every requirement{hardest}; the search looks more closely"
+            f"none of {counted(found.sampled, 'design')} tried meets every requirement{hardest}; "
+            "the search looks more closely"
         )
     return sentences
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
 from ...objectives.tables.measured import Measured
 from ..designs.shown_units import record_in
@@ -43,7 +44,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
     )
     blocks: tuple[Block, ...] = (
         Table(
-            f"Measured minus computed, {found['rows']} rows",
+            f"Measured minus computed, {counted(found['rows'], 'row')}",
             ("curve", "samples", "RMS", "mean", "largest", "at, deg", "unit"),
             deviations,
             (0.32, 0.12, 0.12, 0.12, 0.12, 0.1, 0.1),

@@ -12,6 +12,7 @@ from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.varying import Varying
 from ...model.swing.ends import start_column
+from ...objectives.counted import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import varying_column
@@ -33,7 +34,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     sheet = sheets(problem)[0]
     free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
     settings = problem.settings
-    samples = f", {settings.samples} samples a round" if settings.samples else ""
+    samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
         "name": problem.name,
         "given": [*_motion(problem), *machine_in_words(problem, problem.mechanism), *_own(problem)],
@@ -55,7 +56,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
         "warnings": [*expected_warnings(problem), *idle_rules(problem), *idle_options(problem)],
-        "search": f"{settings.method}, at most {settings.designs} designs, seed {settings.seed}{samples}",
+        "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
     }
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
+from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
 from ..designs.columns import DIMENSIONS, Column, find_column, metric_key, split_unit
 from ..runs.result import Cell, Result, Row
@@ -48,7 +49,7 @@ def show_front(
     print_table(screen, _front_table(result, chosen, columns))
     notes = []
     if len(chosen) < len(rows):
-        notes.append(f"{len(chosen)} of {len(rows)} designs shown")
+        notes.append(f"{len(chosen)} of {counted(len(rows), 'design')} shown")
     if any(result.extremes[wanted.quantity] in chosen for wanted in result.objectives):
         notes.append("* best in an objective")
     if result.knee in chosen and len(result.objectives) > 1:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field, replace
 
 from ...model.errors import LeaseLost, StoreError
+from ...objectives.counted import counted
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result
 from ..store import NO_LIMITS, NOT_DONE, Claim, Limits
@@ -58,7 +59,7 @@ class Budget:
         if seconds is not None and time.monotonic() - self._began >= seconds:
             return f"its search took longer than its limit of {seconds:g} s"
         if evaluations is not None and self._evaluations >= evaluations:
-            return f"its search reached its limit of {evaluations} evaluations"
+            return f"its search reached its limit of {counted(evaluations, 'evaluation')}"
         return ""
 
 

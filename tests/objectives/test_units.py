@@ -239,6 +239,7 @@ def test_values_are_shown_as_in_a_job_file() -> None:
     assert shown([[1], [2]]) == "a list of 2"
     assert shown({"a": 1, "b": 2}) == "a table of 2 keys"
     assert len(shown("x" * 1000)) < 80
+    assert shown('5 Ω\n"\u200b') == '"5 Ω\\n\\"\\u200b"'  # escaped only where it cannot be printed
 
 
 def test_the_nearest_word_is_found_whatever_its_case() -> None:

@@ -214,3 +214,9 @@ def test_no_two_texts_of_a_sheet_overlap(name: str) -> None:
 def test_figures_are_written(name: str, tmp_path: Path) -> None:
     file = TOPICS[name].of(MACHINE, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("offset", [0.06, -0.06])
+def test_approximations_begin_at_an_offset_of_zero_without_a_sign(offset: float) -> None:
+    first = approximations_analysis.numbers(MACHINE, Linkage(0.14, 0.31, offset))["offset_mm"][0]
+    assert f"{first:g}" == "0"

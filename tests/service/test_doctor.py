@@ -66,7 +66,7 @@ def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Comm
         add(store)
     code, found = looked_at(command)
     assert (code, found["workers"][0]) == (1, "problem")
-    assert "1 jobs wait for one; start slidercrank serve or slidercrank worker" in found["workers"][1]
+    assert "1 job without one; start slidercrank serve or slidercrank worker" in found["workers"][1]
 
 
 def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) -> None:

@@ -1,6 +1,6 @@
 /** The shell: header, preferences, and the view that the address names. */
 
-import { isAbort, sentenceOf } from "./lib/api.js";
+import { isAbort } from "./lib/api.js";
 import { read } from "./lib/address.js";
 import { byId, fill, first, focused, h } from "./lib/dom.js";
 import { watchDownloads } from "./lib/download.js";
@@ -8,6 +8,7 @@ import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 import { readyKinds } from "./lib/units.js";
 import { keepPlaces, lookForPlace } from "./lib/place.js";
+import { sentenceOf } from "./lib/refusals.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,

@@ -50,7 +50,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "reciprocating_mass_kg": reciprocating,
         "exact_peak_acceleration_m_s2": float(np.abs(found.acceleration).max()),
         "exact_peak_torque_Nm": float(np.abs(found.torque).max()),
-        "offset_mm": (1e3 * offsets.offset).tolist(),
+        "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # of a negative offset the first one is -0.0
         "accelerations": [
             entry(name, curve, found.acceleration, offsets.accelerations[name], "acceleration_m_s2")
             for name, curve in found.accelerations.items()

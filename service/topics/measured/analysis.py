@@ -12,6 +12,7 @@ from rich.console import Console
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
+from ....objectives.counted import counted
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
@@ -67,7 +68,7 @@ def _entry(found: Deviation) -> dict[str, Any]:
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the deviation of each curve, then the shifts that fit best, and what was left out."""
     source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
-    console.print(f"Measured minus computed, {numbers['rows']} rows{source}", style="bold", soft_wrap=True)
+    console.print(f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}", style="bold", soft_wrap=True)
     rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at\ndeg", "unit", ruled=True)
     fits = table("curve", ">crank angle\ndeg", ">value", ">RMS left", "unit", ruled=True)
     for entry in numbers["curves"].values():

@@ -253,7 +253,7 @@ def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened:
     release(page)
     ranges = page.get_by_label("Rod", exact=True)
     ranges.fill("60")
-    expect(page.get_by_role("alert")).to_contain_text("rod must exceed crank + |offset| for full rotation")
+    expect(page.get_by_role("alert")).to_contain_text("Rod must exceed crank + |offset| for full rotation")
     expect(page.locator(".mechanism.faded .link.crank")).to_be_visible()
     page.get_by_role("button", name="Reset").click()
     expect(page.get_by_role("alert")).to_have_count(0)
@@ -345,6 +345,33 @@ def test_designs_are_walked_through_by_number(opened: Opened, solved: Solved) ->
     assert page.get_by_label("Previous design").count() == 0
     page.get_by_label("Next design").click()
     expect(page.get_by_role("heading", level=1)).to_have_text(f"Design 2 of {len(solved.result.designs)}")
+
+
+def test_designs_are_walked_through_by_the_enter_key_alone(opened: Opened) -> None:
+    page = opened(design=1)
+    page.get_by_label("Next design").focus()
+    for number in (2, 3, 4):
+        page.keyboard.press("Enter")
+        expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {number} of")
+        expect(page.get_by_label("Next design")).to_be_focused()
+
+
+@pytest.mark.parametrize(
+    ("lengths", "got"),
+    [
+        ("crank_mm=70&rod_mm=300", "no offset"),
+        ("crank_mm=abc&rod_mm=300&offset_mm=20", "“abc” as the crank"),
+        ("crank_mm=70&rod_mm=3x&offset_mm=20", "“3x” as the rod"),
+    ],
+)
+def test_a_link_that_gives_no_whole_design_is_answered_so(
+    opened: Opened, solved: Solved, lengths: str, got: str
+) -> None:
+    page = opened()
+    page.evaluate("view => { location.hash = view; }", f"{view(solved)}?{lengths}")
+    expect(page.locator(".what-if [role=alert]")).to_have_text(
+        f"The link gives crank, rod and offset, each as a number; got {got}. This is the design itself."
+    )
 
 
 def test_the_way_back_is_to_the_front_as_it_was_left(opened: Opened, solved: Solved) -> None:

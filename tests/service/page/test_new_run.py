@@ -79,6 +79,34 @@ def test_a_preset_with_another_stroke_becomes_one_job_of_exactly_these_tables_al
     expect(page.get_by_label("name", exact=True)).to_have_value("New slider-crank")  # the draft has become a job
 
 
+def test_back_from_a_started_run_leads_to_the_form_as_it_was_sent(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    page.get_by_label("stroke, exactly").fill("260")
+    page.get_by_text("Samples, budget, priority").click()
+    page.get_by_role("textbox", name="time limit (s)").fill("90")
+    ready(page)
+    start(page)
+    page.wait_for_url("**/#/jobs/1")
+    page.go_back()
+    ready(page)
+    expect(page.get_by_label("stroke, exactly")).to_have_value("260")
+    page.get_by_text("Samples, budget, priority").click()
+    expect(page.get_by_role("textbox", name="time limit (s)")).to_have_value("90")
+    assert text_of(page) == store.tables(1)
+
+
+def test_a_seed_that_a_browser_would_round_is_refused_as_it_was_typed(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    page.get_by_label("seed", exact=True).fill("12345678901234567890")
+    error = page.get_by_text("got 12345678901234567890; write a smaller one")
+    expect(error).to_be_visible()
+    page.get_by_label("seed", exact=True).fill("9007199254740991")
+    ready(page)
+    expect(error).to_be_hidden()
+    assert text_of(page)["optimiser"]["seed"] == 2**53 - 1
+
+
 def test_every_preset_and_a_copy_of_a_job_are_shown_whole_and_stay_as_they_are(
     form: Open, store: Store, shipped: dict[str, Any]
 ) -> None:

@@ -55,6 +55,8 @@ def test_round_numbers_are_those_of_the_api_and_can_be_applied(
 
 def test_wrong_steps_are_said_at_their_fields(page: Page) -> None:
     step = page.get_by_label("Crank, step")
+    step.press("Enter")
+    expect(page.get_by_role("table", name="Round numbers")).to_be_visible(timeout=30_000)
     for typed, sentence in (
         ("0", "is a length above 0"),
         ("-1", "is a length above 0"),
@@ -65,6 +67,7 @@ def test_wrong_steps_are_said_at_their_fields(page: Page) -> None:
         step.press("Enter")
         expect(page.locator("#step-crank_mm-wrong")).to_contain_text(sentence)
         expect(step).to_have_attribute("aria-invalid", "true")
+        expect(page.get_by_role("table", name="Round numbers")).to_have_count(0)  # that of another step
     for name in ("Crank, step", "Rod, step", "Offset, step"):
         page.get_by_label(name).fill("")
     step.press("Enter")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 import tomllib
+from dataclasses import replace
 from urllib.parse import parse_qs, urlsplit
 
 from playwright.sync_api import Page, Request, expect
 
 from slidercrank.service.jobs.submission import submit
+from slidercrank.service.runs.result import Wanted
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
@@ -46,12 +48,21 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
 
 
 def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
-    put_in(store, result(rows=[{**row, "rod_mm": 120.0, "offset_mm": 30.0} for row in ROWS]), TABLES)
+    found = result(rows=[{**row, "rod_mm": 120.0, "offset_mm": 30.0, "position_error_mm": 0.25} for row in ROWS])
+    error = Wanted(
+        quantity="position_error",
+        sense="minimise",
+        column="position_error_mm",
+        title="position error, worst case",
+        unit="mm",
+    )
+    extremes = {**found.extremes, "position_error": 0}
+    put_in(store, replace(found, objectives=(*found.objectives, error), extremes=extremes), TABLES)
     page = open_page(store)
     item = page.get_by_role("listitem")
     expect(item).to_contain_text("done")
     expect(item).to_contain_text("2 designs")
-    expect(item).to_contain_text("time ratio 1.25")
+    expect(item).to_contain_text("best: time ratio 1.25 · position error, worst case 0.25 mm")  # as at the run
     expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
     require_accessible(page)
     item.get_by_role("link", name="Feeder", exact=True).click()

@@ -13,9 +13,9 @@ from playwright.sync_api import expect
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.page.typeface import typeface
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import served
+from tests.service.api.fixed_front import Solved, served
 from tests.service.api.serving import TOKEN
-from tests.service.page.accessibility import findings
+from tests.service.page.accessibility import findings, require_accessible
 from tests.service.page.conftest import Open
 
 
@@ -85,13 +85,34 @@ def test_who_gives_the_token_comes_to_the_view_that_was_asked_for(open_page: Ope
     page.get_by_role("button", name="Open").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("peak torque", ignore_case=True)
     assert page.url.endswith("/#/help/peak_torque")
-    # Whoever loses the cookie, as when the service starts anew, is asked once more, and comes back.
+    # Whoever loses the cookie, as when the service starts anew, is asked once more, in front of the view.
     page.context.clear_cookies()
     page.evaluate("location.hash = '#/'")
-    expect(page.get_by_role("heading")).to_have_text("This service asks for its token")
-    page.get_by_label("Token").fill(TOKEN)
+    page.get_by_role("dialog", name="This service asks for its token").get_by_label("Token").fill(TOKEN)
     page.get_by_role("button", name="Open").click()
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
+
+
+def test_what_is_typed_as_the_token_is_lost_stays_and_is_answered(open_page: Open, solved: Solved) -> None:
+    view = f"#/jobs/{solved.number}/designs/3"
+    page = open_page(solved.store, view, settings=Settings(token=TOKEN), expected=("401",), reduced_motion="reduce")
+    page.get_by_label("Token").fill(TOKEN)
+    page.get_by_role("button", name="Open").click()
+    crank = page.locator("#what-if-crank_mm")
+    expect(crank).to_be_visible()
+    page.context.clear_cookies()
+    own = float(crank.input_value())
+    crank.fill(str(own - 1.0))
+    dialog = page.get_by_role("dialog", name="This service asks for its token")
+    dialog.get_by_label("Token").fill("wrong")
+    dialog.get_by_label("Token").press("Enter")
+    expect(dialog.get_by_role("alert")).to_have_text("That was not the token of this service.")
+    require_accessible(page)
+    dialog.get_by_label("Token").fill(TOKEN)
+    dialog.get_by_label("Token").press("Enter")
+    expect(dialog).to_have_count(0)
+    expect(page.get_by_role("table", name="Objectives before and after the change")).to_be_visible()
+    assert float(crank.input_value()) == own - 1.0
 
 
 def test_the_page_that_asks_for_the_token_is_for_everybody(open_page: Open, store: Store) -> None:

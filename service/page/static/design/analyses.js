@@ -1,12 +1,13 @@
 /** Analyses of a design, a tab each: every topic that the service has and the view does not draw itself, with text, tables and figure. */
 
-import { address, get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
+import { address, get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { beforePrinting } from "../lib/printing.js";
 import { capital, inWords } from "../lib/words.js";
 import { scrolled } from "./numbers.js";
 import { proof } from "./proof.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
@@ -95,7 +96,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
       const lacks = statusOf(error) === 422;
-      fill(panel, head, h("p", { class: lacks ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
+      fill(panel, head, h("p", { class: lacks ? "quiet" : "error" }, `${sentenceOf(error)}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
     }
   }
 

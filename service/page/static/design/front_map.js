@@ -1,7 +1,7 @@
 /** A small picture of the front: all designs in two objectives, the design of the view, and where a change takes it. */
 
 import { fill, h, svg } from "../lib/dom.js";
-import { inShown, withUnit } from "../lib/numbers.js";
+import { counted, inShown, withUnit } from "../lib/numbers.js";
 import { range, scale } from "../charts/scale.js";
 import { sense } from "./objectives.js";
 
@@ -59,7 +59,7 @@ export function frontMap(place, { objectives, front }) {
     fill(moving, drawn);
     /** @param {Api.Row | null} row */
     const at = (row) => [across, up].map((objective) => `${objective.title} ${withUnit(row?.[objective.column], objective.unit, 4)}`).join(", ");
-    picture.setAttribute("aria-label", `The front, ${front.length} designs. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`);
+    picture.setAttribute("aria-label", `The front, ${counted(front.length, "design")}. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`);
   }
 
   return {

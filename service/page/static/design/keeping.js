@@ -1,9 +1,10 @@
 /** Keep a design that is none of the list: with a name and a note, in the store. */
 
 import { go, link } from "../lib/address.js";
-import { post, sentenceOf } from "../lib/api.js";
+import { post } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /**
  * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(): it is.

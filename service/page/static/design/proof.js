@@ -1,8 +1,8 @@
 /** How far the front can be from the true one: asked for by a button, as `slidercrank certify` proves it. */
 
-import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { capital, inWords } from "../lib/words.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 const SHARE = 100; // percent
 const LONGEST = 20; // s, what the service gives a proof
@@ -24,7 +24,7 @@ export function proof({ job, signal }) {
       fill(answer, h("p", { class: found.proven ? "good" : "at-limit" }, first), others.map((sentence) => h("p", {}, sentence)));
     } catch (error) {
       if (isAbort(error)) return;
-      fill(answer, h("p", { class: "quiet" }, `${capital(inWords(sentenceOf(error)))}.`));
+      fill(answer, h("p", { class: "quiet" }, `${sentenceOf(error)}.`));
     } finally {
       button.disabled = false;
     }

@@ -1,12 +1,13 @@
 /** Round numbers for a design: a step for each length, the best rounded neighbours and what each of them costs. */
 
-import { isAbort, post, sentenceOf } from "../lib/api.js";
+import { isAbort, post } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { system, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { rankOf } from "./objectives.js";
 import { difference, scrolled } from "./numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
 const LENGTHS = [["crank_mm", "Crank"], ["rod_mm", "Rod"], ["offset_mm", "Offset"]];
@@ -82,6 +83,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
 
   async function ask() {
     const to = steps();
+    fill(answer);
     refuse(to?.length === 0 ? "No length has a step; write one of them." : "");
     if (!to?.length) return;
     const own = (turn += 1);
@@ -91,8 +93,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
       if (own === turn) tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
-      const sentence = sentenceOf(error);
-      refuse(`${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`);
+      refuse(`${sentenceOf(error)}.`);
       fill(answer);
     } finally {
       if (own === turn) button.disabled = false;

@@ -1,10 +1,11 @@
 /** The swing of a design: what drives it, its ends and energies, and the extremes of its curves. */
 
-import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { readySystem, text, unitOf, valueOf } from "../lib/numbers.js";
 import { extremeRows, HEADS, table } from "./extremes.js";
 import { scrolled } from "./numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {Record<string, string>} */
 const TITLES = { start_crank_angle: "crank angle at the start", end_crank_angle: "crank angle at the end", start_slider_position: "slider position at the start", end_slider_position: "slider position at the end" };

@@ -2,7 +2,16 @@
 
 import { beside as besideIn } from "../front/listed.js";
 import { left, link, read } from "../lib/address.js";
-import { h } from "../lib/dom.js";
+import { first, h } from "../lib/dom.js";
+
+let stepped = ""; // words of the step that was taken last
+
+/** Give the focus back to the step that led here, so that the next one is a key away. @param {HTMLElement} place */
+export function goOn(place) {
+  const words = stepped;
+  stepped = "";
+  if (words) first(place, `.design-head [aria-label="${words}"]`)?.focus({ preventScroll: true });
+}
 
 /** @typedef {{ job: string, number: number, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
@@ -19,7 +28,10 @@ export function top({ job, number, front, others }) {
   /** @param {number | null} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
     to !== null
-      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside }), "aria-label": words, title: words, onclick: ({ currentTarget }) => (currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() })) }, sign)
+      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside }), "aria-label": words, title: words, onclick: ({ currentTarget }) => {
+        stepped = words;
+        currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() });
+      } }, sign)
       : h("span", { class: "button off", "aria-hidden": "true" }, sign);
   return h(
     "header",

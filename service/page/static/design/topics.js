@@ -1,13 +1,13 @@
 /** Slow topics: extremes, sensitivity and tolerances of a design, computed when the reader comes to it. */
 
-import { isAbort, sentenceOf, statusOf } from "../lib/api.js";
+import { isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { beforePrinting } from "../lib/printing.js";
 import { readySystem } from "../lib/numbers.js";
-import { capital, inWords } from "../lib/words.js";
 import { extremes } from "./extremes.js";
 import { sensitivity } from "./sensitivity.js";
 import { tolerances } from "./tolerances.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /**
  * The topics; show draws what /analysis gives for the name of one.
@@ -45,7 +45,7 @@ export function topics(place, { analysis, objectives, requirements, signal }) {
         show(body, found[name], { objectives, signal });
       } catch (error) {
         if (isAbort(error)) return;
-        fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${capital(inWords(sentenceOf(error)))}.`));
+        fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${sentenceOf(error)}.`));
       }
     };
     const watcher = new IntersectionObserver((seen) => {

@@ -1,8 +1,9 @@
 /** Cost of one objective in the others at a design, in words. */
 
-import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem } from "../lib/numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /**
  * Put the trade-off rates into `place`, in the units that the reader prefers.

@@ -1,10 +1,11 @@
 /** The way back: crank angles, speeds and accelerations of a design that move its slider as given. */
 
-import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
 /** @type {[Key, string, string][]} */

@@ -1,6 +1,6 @@
 /** Sliders for other lengths ("What if?"), and where the change leaves the front. */
 
-import { isAbort, post, sentenceOf } from "../lib/api.js";
+import { isAbort, post } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
@@ -10,6 +10,7 @@ import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { keeping } from "./keeping.js";
 import { rankOf } from "./objectives.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
 const LENGTHS = [["crank_mm", "Crank"], ["rod_mm", "Rod"], ["offset_mm", "Offset"]];
@@ -18,16 +19,16 @@ const SAME = 1e-9; // relative
 
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
- * of the job; start: lengths to begin with, or null. changed(answer): the answer of the API that is drawn, null for the design
+ * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer): the answer of the API that is drawn, null for the design
  * itself; refused(sentence). Returns {draw()}: once more, in other units.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
- *   objectives: Api.Objective[], front: Api.Row[], start: Page.Lengths | null, signal: AbortSignal,
+ *   objectives: Api.Objective[], front: Api.Row[], start: Page.Lengths | null, wrong: string, signal: AbortSignal,
  *   changed: (answer: Api.WhatIf | null, lengths?: Page.Lengths) => void, refused: (sentence: string) => void,
  * }} given
  */
-export function whatIf(place, { job, path, base, ranges, requirements, objectives, front, start, changed, refused, signal }) {
+export function whatIf(place, { job, path, base, ranges, requirements, objectives, front, start, wrong: unread, changed, refused, signal }) {
   const own = lengthsOf(base);
   const lengths = { ...(start ?? own) };
   /** @type {ReturnType<typeof lengthRow>[]} */
@@ -64,6 +65,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
 
   /** One question at a time, the latest lengths next: questions that overtake each other would leave the slider without answer. */
   async function ask() {
+    unread = "";
     reset.disabled = !moved() && !wrong();
     if (busy) {
       again = true;
@@ -120,7 +122,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   function tell() {
     map.show(base, answer?.design ?? null);
     if (!answer) {
-      fill(verdict, h("p", { class: "quiet" }, "Move a length; everything is computed anew as you move it."));
+      fill(verdict, unread ? h("p", { class: "bad", role: "alert" }, unread) : h("p", { class: "quiet" }, "Move a length; everything is computed anew as you move it."));
       fill(results);
       return;
     }

@@ -1,11 +1,11 @@
 /** Choices between options, such as gearmotors of a catalogue: a table to paste, a row an option. */
 
-import { isAbort, post, sentenceOf } from "../lib/api.js";
+import { isAbort, post } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { plain } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { inWords } from "../lib/words.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 const WAIT = 400; // ms after the last letter until the table is read
 const SHOWN = 6; // names of options
@@ -71,7 +71,7 @@ function row(form, one, place, all) {
       form.redraw();
     } catch (problem) {
       if (isAbort(problem) || !text.isConnected) return;
-      text.dataset.wrong = inWords(sentenceOf(problem).replace(/^the table,? ?/, ""));
+      text.dataset.wrong = sentenceOf(problem).replace(/^The table,? ?/, "");
       form.put([...path, "option"], form.at([...path, "option"])); // so that it is said
     }
   };

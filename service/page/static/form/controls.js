@@ -118,8 +118,11 @@ export function changeUnit(select, inputs, kind) {
   select.dataset.from = select.value;
 }
 
-/** Return what a job holds for a number without a unit: a number if it is one. @param {HTMLInputElement} input */
+/** Return what a job holds for a number without a unit: a number if it is one that keeps all its digits. @param {HTMLInputElement} input */
 export function number(input) {
   const typed = taken(input);
-  return typed !== undefined && Number.isFinite(Number(typed)) ? Number(typed) : typed;
+  if (typed === undefined || !Number.isFinite(Number(typed))) return typed;
+  if (!/^\d+$/.test(String(typed)) || Number.isSafeInteger(Number(typed))) return Number(typed);
+  input.dataset.wrong = `A whole number goes up to ${Number.MAX_SAFE_INTEGER}; got ${typed}; write a smaller one.`;
+  return typed;
 }

@@ -1,9 +1,10 @@
 /** The job as a file: its text beside the form, in step with it; taken in from a file, given out as one. */
 
-import { address, get, post, Problem, sentenceOf } from "../lib/api.js";
+import { address, answered, get, post, Problem } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { download } from "../lib/download.js";
 import { say, sayProblem } from "../lib/notices.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 const WAIT = 300; // ms after the last letter until the text is taken into the form
 
@@ -97,7 +98,7 @@ async function jobOf(file) {
 
 /** @param {Form.Job} job */
 async function toml(job) {
-  const response = await fetch(address("toml"), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
+  const response = await answered("POST", address("toml"), { headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
   if (!response.ok) throw new Problem(response.status, (await response.json()).detail);
   return response.text();
 }

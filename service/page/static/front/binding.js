@@ -1,10 +1,11 @@
 /** Limits of the job on which designs of the front rest; a wider one runs again, by one click. */
 
-import { get, isAbort, post, sentenceOf } from "../lib/api.js";
+import { get, isAbort, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
 import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { measured } from "../lib/measured.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @import { Explorer } from "./explorer.js" */
 

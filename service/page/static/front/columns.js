@@ -1,7 +1,7 @@
 /** Titles of columns of a table of designs where the service does not give them. */
 
 import { link } from "../lib/address.js";
-import { unitOf, withUnit } from "../lib/numbers.js";
+import { titleOf, unitOf, withUnit } from "../lib/numbers.js";
 
 // How a key ends, and the unit that this means; the longer endings first.
 /** @type {[string, string][]} */
@@ -11,10 +11,10 @@ const ENDINGS = [
   ["_mm", "mm"], ["_deg", "deg"], ["_N", "N"], ["_W", "W"], ["_MPa", "MPa"],
 ];
 
-/** Return {key, title, unit} of a key such as "peak_torque_Nm". @param {string} key @returns {Api.Column} */
+/** Return {key, title, unit} of a key such as "peak_torque_Nm". Titles of the service need `readySystem`. @param {string} key @returns {Api.Column} */
 export function columnOf(key) {
   const [ending, unit] = ENDINGS.find(([ending]) => key.endsWith(ending)) ?? ["", ""];
-  return { key, title: key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
+  return { key, title: titleOf(key) ?? key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
 }
 
 /** Return the link to what a column means; the slack of a quantity is explained with it. @param {string} key */

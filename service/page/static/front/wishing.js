@@ -1,7 +1,7 @@
 /** Choosing by wishing: a class or a value for each objective, and the optimal design that comes nearest, solved anew. */
 
 import { link } from "../lib/address.js";
-import { get, isAbort, post, sentenceOf } from "../lib/api.js";
+import { get, isAbort, post } from "../lib/api.js";
 import { fill, first, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { measured } from "../lib/measured.js";
@@ -10,6 +10,7 @@ import { keeping } from "../design/keeping.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
@@ -141,7 +142,7 @@ export function wishingPanel(explorer) {
       if (own !== turn || isAbort(problem)) return;
       found = null;
       show();
-      tell([placed(sentenceOf(problem), objectives)]);
+      tell([{ ...placed(problem instanceof Error ? problem.message : "", objectives), text: `${sentenceOf(problem)}.` }]);
     } finally {
       if (own === turn) solve.removeAttribute("aria-busy");
     }

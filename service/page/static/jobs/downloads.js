@@ -1,9 +1,10 @@
 /** Downloads of a run. */
 
-import { address, get, sentenceOf } from "../lib/api.js";
+import { address, get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { apiSystem } from "../lib/numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {Record<string, string>} */
 const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs as Parquet" };

@@ -7,7 +7,7 @@ import { columnOf } from "../front/columns.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
-import { grouped, inShown, unitOf } from "../lib/numbers.js";
+import { counted, grouped, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { growth } from "./growth.js";
 import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
@@ -176,7 +176,7 @@ export function watch(place, job, { signal, changed }) {
       fill(pickers, pick("Across", "x"), pick("Up", "y"));
     }
     if (columns.length < 2) {
-      fill(front, h("p", {}, `Best ${columns[0].title} so far: ${found.points[0]?.[0] ?? "–"} ${columns[0].unit}`));
+      fill(front, h("p", {}, `Best ${columns[0].title} so far: ${withUnit(found.points[0]?.[0], columns[0].unit)}`));
       return;
     }
     const shown = found.points.map((point) => [point[axes.x], point[axes.y]]);
@@ -185,7 +185,7 @@ export function watch(place, job, { signal, changed }) {
       const { title, unit } = columns[axes[name]];
       return extent(`${title} ${unitOf(unit)}`, shown.map((point) => (typeof point[place] === "number" ? inShown(point[place], unit) : null)));
     };
-    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${shown.length} designs`, [held("x", 0), held("y", 1)]));
+    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${counted(shown.length, "design")}`, [held("x", 0), held("y", 1)]));
   }
 
   /** @param {string} state */
@@ -205,6 +205,7 @@ export function watch(place, job, { signal, changed }) {
   const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
   signal.addEventListener("abort", rest);
+  window.addEventListener("units", () => latest && drawFront(latest), { signal });
   noFront(job.state);
   if (job.progress) {
     course.told(job.progress);

@@ -3,6 +3,7 @@
 import { thumbnail } from "../charts/thumbnail.js";
 import { get } from "../lib/api.js";
 import { h } from "../lib/dom.js";
+import { counted } from "../lib/numbers.js";
 
 const MOST = 100; // runs that the service takes in one request
 
@@ -69,5 +70,5 @@ export function pictures(signal) {
 
 /** @param {Api.FrontPoints["points"]} points */
 function drawn(points) {
-  return points.length ? thumbnail(points, `the front: ${points.length} designs`) : h("span", { class: "thumbnail" });
+  return points.length ? thumbnail(points, `the front: ${counted(points.length, "design")}`) : h("span", { class: "thumbnail" });
 }

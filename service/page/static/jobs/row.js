@@ -41,7 +41,7 @@ function standing(job) {
     const [part, done, of] = steps ? ["", job.progress.step, steps] : ["round ", job.progress.round, job.progress.rounds];
     return [
       h("progress", { max: of, value: done, "aria-label": `run ${job.id}: ${part}${done} of ${of}` }),
-      h("div", { class: "quiet" }, `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${grouped(feasible)} feasible designs`),
+      h("div", { class: "quiet" }, `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`),
     ];
   }
   return h("div", { class: "quiet" }, job.reason || (job.state === "queued" ? "waits for a worker" : ""));

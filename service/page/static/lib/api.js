@@ -1,5 +1,7 @@
 /** The API of the service that this page came from. */
 
+import { letIn } from "./token.js";
+
 const PREFIX = "api/v1";
 
 /** Refusal of the service, in its own sentence; status 0 is no answer at all. */
@@ -14,11 +16,6 @@ export class Problem extends Error {
 /** Whether something was only given up. @type {(error: unknown) => boolean} */
 export function isAbort(error) {
   return error instanceof Error && error.name === "AbortError";
-}
-
-/** Return an error as a sentence. @type {(error: unknown) => string} */
-export function sentenceOf(error) {
-  return error instanceof Error ? error.message : String(error);
 }
 
 /** Return the status of the answer that is a problem; null of any other one. @type {(error: unknown) => number | null} */
@@ -121,8 +118,11 @@ function infinite(key, value) {
   return value === "inf" ? Infinity : -Infinity;
 }
 
-/** Return a response, of whatever status. @param {string} method @param {string} url @param {RequestInit} options */
-async function answered(method, url, options) {
+/**
+ * Return a response, of whatever status; where the token is missing the reader is asked for it, and the request is sent once more.
+ * @param {string} method @param {string} url @param {RequestInit} options @returns {Promise<Response>}
+ */
+export async function answered(method, url, options = {}) {
   let response;
   try {
     response = await fetch(url, { method, ...options });
@@ -130,6 +130,5 @@ async function answered(method, url, options) {
     if (isAbort(error)) throw error;
     throw new Problem(0, "The service does not answer; the page goes on when it is back.");
   }
-  if (response.status === 401) location.reload(); // the service asks for its token, and comes back to this view
-  return response;
+  return response.status === 401 && (await letIn()) ? answered(method, url, options) : response;
 }

@@ -1,6 +1,6 @@
 /** Files that the page makes itself, and those of the service, which say while they are made that they are. */
 
-import { Problem } from "./api.js";
+import { answered, Problem, statusOf } from "./api.js";
 import { h } from "./dom.js";
 import { say, sayProblem } from "./notices.js";
 
@@ -34,7 +34,7 @@ async function fetched(link) {
   const title = link.getAttribute("aria-label") ?? link.textContent ?? "";
   const told = setTimeout(() => say(`${title} is being made.`), SOON);
   try {
-    const response = await fetch(link.href);
+    const response = await answered("GET", link.href);
     if (!response.ok) {
       const problem = await response.json().catch(() => ({}));
       throw new Problem(response.status, problem.detail ?? `The service answered ${response.status}.`);
@@ -42,7 +42,7 @@ async function fetched(link) {
     const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
     save(await response.blob(), named?.[1] ?? (link.download || new URL(link.href).pathname.split("/").at(-1) || "file"));
   } catch (error) {
-    throw error instanceof TypeError ? new Problem(0, "The service does not answer; try again when it is back.") : error;
+    throw error instanceof TypeError || statusOf(error) === 0 ? new Problem(0, "The service does not answer; try again when it is back.") : error;
   } finally {
     clearTimeout(told);
     link.removeAttribute("aria-busy");

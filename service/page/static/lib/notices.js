@@ -1,7 +1,8 @@
 /** Short sentences at the edge of the page; screen readers read them out. */
 
-import { isAbort, sentenceOf } from "./api.js";
+import { isAbort } from "./api.js";
 import { byId, h } from "./dom.js";
+import { sentenceOf } from "./refusals.js";
 
 const SHOWN = 6000; // ms
 

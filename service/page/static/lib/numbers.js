@@ -7,6 +7,8 @@ const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the serv
 /** @type {[string, string][]} */
 let suffixes = []; // units of the API, and how keys of values in them end, the longest first
 /** @type {Record<string, string>} */
+let titles = {}; // of columns whose keys say others
+/** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
 
 /** The system of units that the reader chose: "si" or "inch". @returns {"si" | "inch"} */
@@ -36,7 +38,13 @@ export async function readySystem() {
   if (SYSTEMS.inch) return;
   const units = await unitTable();
   suffixes = Object.entries(units.suffixes).sort(([, one], [, other]) => other.length - one.length);
+  titles = units.titles;
   SYSTEMS.inch = units.inch;
+}
+
+/** Return the title of a column of a quantity where its key says another one. Needs `readySystem`. @param {string} key */
+export function titleOf(key) {
+  return titles[key];
 }
 
 /**
@@ -50,6 +58,25 @@ export function valueOf(record, name) {
     if (typeof value === "number" || value === null) return { value, unit };
   }
   return { value: null, unit: "" };
+}
+
+/** Return {name, unit} of a key of the API: "crank" and "mm" of crank_mm. Needs `readySystem`. @param {string} key */
+export function keyOf(key) {
+  const [unit, suffix] = suffixes.find(([, end]) => end && key.endsWith(end) && key.length > end.length) ?? ["", ""];
+  return { name: key.slice(0, key.length - suffix.length), unit };
+}
+
+/**
+ * Return a sentence of the service with its values in the units that are shown, five digits of them; what is quoted was typed by
+ * somebody, and stays.
+ * @param {string} sentence
+ */
+export function inShownUnits(sentence) {
+  const units = Object.keys(SYSTEMS[system()] ?? {}).sort((one, other) => other.length - one.length);
+  if (!units.length) return sentence;
+  const number = "[-−]?\\d[\\d.]*(?:e[-+]?\\d+)?";
+  const values = new RegExp(`(?<!["“\\w.^])((?:${number}(?:, | to | and | or ))*${number}) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`, "g");
+  return sentence.replace(values, (_, given, unit) => `${given.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`);
 }
 
 /** Choose a system; everything that shows numbers is drawn again (event "units" of the window). @param {string} name */

@@ -1,5 +1,7 @@
 /** Sentences of the service in the words of the page: its messages name the keys of a job file, which the page has no need of. */
 
+import { inShownUnits } from "./numbers.js";
+
 /** Titles of the parts of the form, by the tables of a job. @type {Record<string, string>} */
 const PARTS = {
   mechanism: "Masses and loads",
@@ -62,9 +64,9 @@ const SAID = [
 /** Names of bounds, in words. @type {Record<string, string>} */
 export const WORDS = { min: "at least", max: "at most", equals: "exactly", target: "to come near to", step: "by" };
 
-/** Return a sentence of the service in the words of the page. @param {string} sentence */
+/** Return a sentence of the service in the words and units of the page. @param {string} sentence */
 export function inWords(sentence) {
-  return SAID.reduce((text, [found, said]) => text.replace(found, /** @type {string} */ (said)), sentence);
+  return inShownUnits(SAID.reduce((text, [found, said]) => text.replace(found, /** @type {string} */ (said)), sentence));
 }
 
 /** Return a sentence with a capital at its beginning. @param {string} sentence */

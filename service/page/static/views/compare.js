@@ -2,11 +2,12 @@ import { points, sign } from "../charts/points.js";
 import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
 import { go, keep, link } from "../lib/address.js";
-import { get, isAbort, sentenceOf, statusOf } from "../lib/api.js";
+import { get, isAbort, statusOf } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "Compare runs";
 

@@ -12,7 +12,7 @@ import { swinging } from "../design/swinging.js";
 import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
 import { DRAWN, topics } from "../design/topics.js";
-import { top } from "../design/top.js";
+import { goOn, top } from "../design/top.js";
 import { tradeOffs } from "../design/trade_offs.js";
 import { turning } from "../mechanism/turning.js";
 import { wayBack } from "../design/way_back.js";
@@ -69,8 +69,9 @@ export async function show(place, { parts, query, signal }) {
   let changed = null; // the answer to "what if"
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
+  const linked = startOf(query);
   /** @type {Page.Lengths | null} */
-  let kept = startOf(query); // of the changed design
+  let kept = linked.lengths ?? null; // of the changed design
   const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept });
   const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
   /** @type {Page.Machine[]} */
@@ -90,7 +91,7 @@ export async function show(place, { parts, query, signal }) {
   };
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
-    start: startOf(query),
+    start: linked.lengths ?? null, wrong: linked.wrong ?? "",
     /** @param {Api.WhatIf | null} answer @param {Page.Lengths} [lengths] */
     changed(answer, lengths) {
       changed = answer;
@@ -122,12 +123,17 @@ export async function show(place, { parts, query, signal }) {
   } else swinging(places.topics, shared);
   window.addEventListener("units", () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()), { signal });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
+  goOn(place);
 }
 
-/** @param {URLSearchParams} query @returns {Page.Lengths | null} */
+/** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Lengths, wrong?: string }} */
 function startOf(query) {
-  const lengths = LENGTHS.map((key) => [key, Number.parseFloat(query.get(key) ?? "")]);
-  return lengths.every(([, value]) => Number.isFinite(value)) ? Object.fromEntries(lengths) : null;
+  const given = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
+  if (given.every(([, text]) => text === null)) return {};
+  const bad = given.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
+  if (!bad) return { lengths: /** @type {Page.Lengths} */ (/** @type {unknown} */ (Object.fromEntries(given.map(([key, text]) => [key, Number(text)])))) };
+  const [name, text] = [bad[0].replace("_mm", ""), bad[1]];
+  return { wrong: `The link gives crank, rod and offset, each as a number; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. This is the design itself.` };
 }
 
 /** @param {HTMLElement} place @param {{ series: number | string, name: string }[]} series */

@@ -12,9 +12,10 @@ import { readyKinds } from "../lib/units.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob } from "../form/start.js";
 import { go, keep } from "../lib/address.js";
-import { get, post, sentenceOf, statusOf } from "../lib/api.js";
+import { get, post, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { system } from "../lib/numbers.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "New run";
 
@@ -36,7 +37,7 @@ async function first(query, shipped, signal) {
   const source = preset ? `preset ${preset}` : from ? `job ${from}` : null;
   const before = kept();
   if (before && (source === null || before.source === source)) return before;
-  if (from) return begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`);
+  if (from) return { ...begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`), submission: history.state?.submission ?? {} };
   if (!preset) return begin(firstJob(system()), "");
   const found = shipped.find(({ name }) => name === preset);
   if (!found) throw new Error(`No shipped job is called "${preset}".`);
@@ -193,10 +194,13 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     try {
       const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits, origin: from ? Number(from) : null }, { headers: { "Idempotency-Key": draft.key } });
       keepDraft(null);
+      if (signal.aborted) return;
+      history.replaceState({ ...history.state, submission: form.submission }, ""); // back leads to the form as it was sent
+      keep({ from: job.id });
       go(["jobs", String(job.id)]);
     } catch (error) {
       start.disabled = false;
-      const lines = sentenceOf(error).split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
+      const lines = (error instanceof Error ? error.message : "").split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
       const wrong = lines.flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []]).filter((found) => found.length);
       const { first: marked, elsewhere } = statusOf(error) === 422
         ? showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })))

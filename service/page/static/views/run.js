@@ -6,7 +6,7 @@ import { ago, duration, moment } from "../jobs/times.js";
 import { get, isAbort, Problem, statusOf } from "../lib/api.js";
 import { go, link, read } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
-import { counted, grouped } from "../lib/numbers.js";
+import { counted, grouped, readySystem } from "../lib/numbers.js";
 
 export const title = "Run";
 
@@ -48,7 +48,7 @@ export async function show(place, { parts, signal }) {
     if (held) first(head, "button:not(.skip), summary, a")?.focus();
     if (watched) return;
     if (live) {
-      const { watch } = await import("../jobs/live.js");
+      const [{ watch }] = await Promise.all([import("../jobs/live.js"), readySystem()]);
       if (!own.aborted) watch(body, job, { signal: own, changed: stand });
     } else await ended(job, asked, own);
   }

@@ -1,10 +1,12 @@
-import { get, isAbort, sentenceOf } from "../lib/api.js";
+import { get, isAbort } from "../lib/api.js";
 import { keep, link } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { gallery } from "../jobs/gallery.js";
 import { STATES, stateWord } from "../jobs/states.js";
 import { pictures } from "../jobs/pictures.js";
+import { readySystem } from "../lib/numbers.js";
 import { runRow } from "../jobs/row.js";
+import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "Runs";
 
@@ -68,7 +70,7 @@ export async function show(place, { query, signal }) {
     clearTimeout(timer);
     const before = asked.before || null;
     try {
-      const page = await get("jobs", { limit: PAGE, state: asked.state || null, name: asked.name || null, before }, signal);
+      const [page] = await Promise.all([get("jobs", { limit: PAGE, state: asked.state || null, name: asked.name || null, before }, signal), readySystem()]);
       if (before !== (asked.before || null)) return;
       shown = page;
       draw(page);

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { inWords } from "../../../../../service/page/static/lib/words.js";
+globalThis.localStorage = { getItem: () => null };
+const { inWords } = await import("../../../../../service/page/static/lib/words.js");
 
 const SAID = [
   ["with a least transmission angle of 40 deg it is at most 1.2862; got equals 1.5; lower it to that, or lower constraints.transmission_angle to 27.4576 deg at most",

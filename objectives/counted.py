@@ -1,0 +1,8 @@
+"""Counts in messages, with their noun in singular or plural."""
+
+from __future__ import annotations
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a count with its noun: "1 design", "20 designs". The plural adds an s."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,27 @@
+/** Refusals of the service in the words of the page: fields by their titles, with values in the units that are shown. */
+
+import { Problem } from "./api.js";
+import { keyOf, withUnit } from "./numbers.js";
+import { capital, inWords } from "./words.js";
+
+const OF_A_FIELD = /^(?:body|query|path) ([\w.]+): (.+)$/s;
+const VALUE = /\b(at least|at most|above|below|got) "?(-?\d[\d.]*(?:e[+-]?\d+)?)"?(?=;|$)/g;
+
+/** Return an error as a sentence, a refusal of the service in the words of the page. @type {(error: unknown) => string} */
+export function sentenceOf(error) {
+  return error instanceof Problem ? refusalInWords(error.message) : error instanceof Error ? error.message : String(error);
+}
+
+/** Return a refusal in words, each of its lines a sentence. @param {string} detail */
+export function refusalInWords(detail) {
+  return detail.split("\n").map((line) => capital(inWords(ofField(line.trim())))).join(". ");
+}
+
+/** @param {string} line */
+function ofField(line) {
+  const found = OF_A_FIELD.exec(line);
+  if (!found) return line;
+  const { name, unit } = keyOf(found[1]);
+  const rule = found[2].replace(VALUE, (_, word, value) => `${word} ${withUnit(Number(value), unit, 7)}`);
+  return `${name.replaceAll("_", " ").replaceAll(".", ", ")}${/^(?:must|is) /.test(rule) ? "" : ":"} ${rule}`;
+}

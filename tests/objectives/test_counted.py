@@ -1,0 +1,9 @@
+"""Counts in messages."""
+
+from __future__ import annotations
+
+from slidercrank.objectives.counted import counted
+
+
+def test_only_one_of_something_is_in_the_singular() -> None:
+    assert [counted(count, "design") for count in (0, 1, 2)] == ["0 designs", "1 design", "2 designs"]
