@@ -35,7 +35,7 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
     machines = page.get_by_role("navigation", name="Shipped machines").get_by_role("link")
     expect(machines).to_have_count(5)
     require_accessible(page)
-    rods = page.locator(".machine-picture .moving g:nth-child(2)")
+    rods = page.locator(".machine-picture .moving g:has(> path.rod)")
     turned = "nodes => nodes.map(node => node.getAttribute('transform'))"
     before = rods.evaluate_all(turned)
     page.wait_for_timeout(300)
