@@ -13,6 +13,11 @@ from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
 from ...model.linkage.values import DIMENSIONS
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.members import is_shaft
+from ...model.machine.two_turns import cycle_turns, halves
+from ...model.signals.of_shaft import apart
+from ...model.signals.signals import Signal
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
@@ -32,7 +37,8 @@ _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range 
 def covered(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
-    Bounded are all closed forms, and from below the peaks over the cycle of machines without friction.
+    Bounded are all closed forms, and from below the peaks over the cycle of machines without friction; of several
+    cylinders those of one alone, and with a speed profile those that the speed does not matter to.
     """
     quantity = problem.quantity(objective.quantity)
     if isinstance(quantity, ClosedFormQuantity):
@@ -41,9 +47,25 @@ def covered(problem: Problem, objective: Objective) -> str:
         return f"{quantity.title} has no bound over a range of designs"
     if quantity.signal.needs_forces and problem.mechanism.friction.acts:
         return f"{quantity.title} has no bound over a range of designs where there is friction"
+    if not cranks_of(problem.mechanism, quantity.signal):
+        shaft = (
+            "with a speed profile" if problem.mechanism.speed_profile is not None else "of several cylinders together"
+        )
+        return f"{quantity.title} {shaft} has no bound over a range of designs"
     if objective.sense != "minimise":
         return f"{quantity.title} is bounded from below only, so it can be certified as minimised, not otherwise"
     return ""
+
+
+def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
+    """Return machines of one crank at constant speed whose highest peak of a signal is that of a machine, if any.
+
+    Of a cycle of two turns each turn is one.
+    """
+    single = apart(mechanism, signal) if is_shaft(mechanism) else (mechanism,)
+    if not signal.needs_forces:
+        return single
+    return tuple(half for one in single for half in (halves(one) if cycle_turns(one) > 1 else (one,)))
 
 
 def usable(problem: Problem, constraint: Constraint) -> bool:
@@ -84,7 +106,10 @@ class Boxes:
         for objective in self.objectives:
             reason = covered(problem, objective)
             if reason:
-                raise InputError(f"no certificate for this job: {reason}; leave this objective out")
+                raise InputError(
+                    f"no certificate for this job: {reason}; leave this objective out; the residuals of the front tell "
+                    "how near its designs are to optimal"
+                )
         least = next(c.lower for c in constraints_of(problem) if c.quantity == TRANSMISSION_ANGLE.name)
         self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
         used = [c for c in constraints_of(problem) if usable(problem, c)]
@@ -92,7 +117,11 @@ class Boxes:
         self.costly = [c for c in used if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
         peaks = [problem.quantity(name) for name in names]
-        self.curves = {peak.name: Curve(problem.mechanism, peak) for peak in peaks if isinstance(peak, CyclePeak)}
+        self.curves = {
+            peak.name: [Curve(one, peak) for one in cranks_of(problem.mechanism, peak.signal)]
+            for peak in peaks
+            if isinstance(peak, CyclePeak)
+        }
 
     def bound(self, lower: Array, upper: Array) -> Bounded:
         """Return the bounds that hold for boxes lower to upper (n, k)."""
@@ -106,9 +135,7 @@ class Boxes:
             rows = np.flatnonzero(limits.alive)
             middle, angles = self._angles(rows, lower, upper)
             part = [_rows(x, rows) for x in (r, l, e)]
-            curves = {
-                name: _spread(curve.over(part, angles[name], middle), rows, n) for name, curve in self.curves.items()
-            }
+            curves = {name: _spread(_over(of, part, angles[name], middle), rows, n) for name, of in self.curves.items()}
             for constraint in self.costly:
                 curve = curves[constraint.quantity]
                 limits.hold(Constraint(quantity=constraint.quantity, upper=constraint.upper), curve, None, None)
@@ -184,16 +211,26 @@ class Boxes:
         least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
 
-    def _angles(self, rows: Whole, lower: Array, upper: Array) -> tuple[Array, dict[str, Array]]:
-        """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn."""
+    def _angles(self, rows: Whole, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
+        """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn.
+
+        The angles are those of each curve of a quantity.
+        """
         middle = self.sheet.dimensions(0.5 * (lower[rows] + upper[rows]))
         turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
         found = {}
-        for name, curve in self.curves.items():
-            found[name] = np.full(len(rows), 0.5 * np.pi)
-            if turns.any():
-                found[name][turns] = best_angles(curve.peak, self.problem.mechanism, middle[turns])
+        for name, curves in self.curves.items():
+            found[name] = [np.full(len(rows), 0.5 * np.pi) for _ in curves]
+            for angles, curve in zip(found[name], curves, strict=True):
+                if turns.any():
+                    angles[turns] = best_angles(curve.peak, curve.mechanism, middle[turns])
         return middle, found
+
+
+def _over(curves: list[Curve], part: list[Enclosure], angles: list[Array], middle: Array) -> Enclosure:
+    """Return the curves of a quantity side by side, of which the greatest bounds its peak."""
+    found = [curve.over(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
+    return reduce(beside, found)
 
 
 def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:

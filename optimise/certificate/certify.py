@@ -21,7 +21,6 @@ from collections.abc import Callable
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...model.machine.members import require_plain
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .search import Search
@@ -44,7 +43,8 @@ def certify_designs(
     objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
     rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
     dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
-    forces under friction, peaks that are not minimised; and for a swing, several cylinders and a speed profile.
+    forces under friction, peaks that are not minimised, sums of several cylinders, and with a speed profile all that
+    the speed matters to; and for a swing.
     """
     if problem.motion is not None:
         raise InputError(
@@ -58,8 +58,6 @@ def certify_designs(
             f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "
             "the job and certify that"
         )
-    for part in problem.parts():
-        require_plain(part.mechanism, "a certificate")
     if not len(dimensions):
         raise InputError("an empty front cannot be certified; its message says why nothing is feasible")
     if not 0.0 < epsilon < 1.0:

@@ -9,16 +9,20 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
-from slidercrank.model.machine.loads.engine import LimitedPressure
+from slidercrank.model.machine.loads.engine import FourStroke, LimitedPressure
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances, Window
+from slidercrank.model.machine.speed_profile import Harmonics
+from slidercrank.model.signals.of_shaft import SUMS
+from slidercrank.objectives.cycle_peak import CyclePeak
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes
 from slidercrank.optimise.problem.problem import Problem
@@ -57,7 +61,17 @@ BURNING = LimitedPressure(
     expansion_exponent=1.25,
     heat=2.5e6,
 )
+FOUR_STROKES = FourStroke(
+    bore=0.08,
+    low=1e5,
+    high=4e6,
+    clearance=0.1,
+    compression_exponent=1.3,
+    expansion_exponent=1.25,
+    exhaust=1.6e5,
+)
 AIR = Compressor(bore=0.1, low=1e5, high=5e5, clearance=0.08, compression_exponent=1.3, expansion_exponent=1.2)
+INNER: Any = "inner dead centre"
 MACHINES: dict[str, Mechanism] = {
     "bars": MACHINE,
     "all loads": LOADED,
@@ -77,6 +91,15 @@ MACHINES: dict[str, Mechanism] = {
             MACHINE.tolerances,
             window=Window(during="inward stroke", start=0.2, end=0.9),
             clearances=Clearances(crank_pin=2e-5, guide=1e-5),
+        ),
+    ),
+    "four strokes": replace(MACHINE, loads=(FOUR_STROKES,)),
+    "two turns": replace(
+        MACHINE,
+        loads=(
+            FOUR_STROKES,
+            AngleTable(angles=(1.0, 5.0, 9.0), forces=(90.0, -700.0, 200.0), datum=INNER, cycle="720 deg"),
+            AngleTable(angles=(0.3, 2.0, 4.0), forces=(0.0, 200.0, -100.0)),
         ),
     ),
     "outer part": replace(MACHINE, tolerances=replace(MACHINE.tolerances, window=Window(start=0.4))),
@@ -155,6 +178,46 @@ def test_a_box_of_one_design_is_bounded_by_the_design_itself(machine: str) -> No
         close = np.isclose(found.corner[:, column], exact, rtol=1e-6, atol=0.0)
         # A jump of a load at the peak's own angle leaves the side open; there are few of them.
         assert close.mean() > (0.8 if MACHINES[machine].loads != MACHINE.loads else 0.99), name
+
+
+V = Arrangement(phases=(0.0, 1.0, 2.5), banks=(-0.5, 0.5, 0.5), places=(0.0, 0.1, 0.2))
+UNEVEN = Harmonics(cosines=(0.0, 0.2), sines=(0.1,))
+
+
+@pytest.mark.parametrize("machine", ["bars", "all loads", "two turns"])
+@pytest.mark.parametrize("width", [0.1, 0.004])
+def test_no_sample_of_several_cylinders_is_better_than_its_box(machine: str, width: float) -> None:
+    """Banks turn gravity, which each cylinder feels its own way; what does not add up is that of the worst one."""
+    whole = [name for name in PEAKS if isinstance(of := QUANTITIES[name], CyclePeak) and of.signal in SUMS]
+    wishes: Any = dict.fromkeys(set(CLOSED) | set(PEAKS) - set(whole), "minimise")
+    several = replace(MACHINES[machine], arrangement=V)
+    given = problem(wishes, FREE, offset=(-0.1, 0.15), mechanism=several)
+    assert check(given, width, count=50, inside=6) > 40
+
+
+def test_sums_of_cylinders_and_an_uneven_speed_are_refused_and_rule_nothing_out() -> None:
+    """One cylinder's torque is far above what two at a right angle leave: it may prove nothing about them."""
+    two, uneven = replace(MACHINE, arrangement=Arrangement(phases=(0.0, 1.5))), replace(MACHINE, speed_profile=UNEVEN)
+    for wishes, machine, reason in (
+        ({"peak_torque": "minimise"}, two, "peak torque of several cylinders together has no bound over a range"),
+        ({"peak_torque": "minimise"}, uneven, "peak torque with a speed profile has no bound over a range"),
+        (
+            {"peak_crank_pin_force": "minimise"},
+            uneven,
+            "force with a speed profile has no bound over a range",
+        ),
+    ):
+        given = problem(wishes, {"stroke": 0.2}, mechanism=machine)  # type: ignore[arg-type]
+        with pytest.raises(InputError, match=reason):
+            Boxes(Evaluator(given, sheets(given)[0]), np.ones(1))
+    for machine in (two, uneven):
+        closed: Any = {"time_ratio": "maximise", "position_error": "minimise"}
+        held: dict[str, Bounds] = {"stroke": 0.2, "peak_torque": (None, 1e-3)}
+        given = problem(closed, held, mechanism=machine)
+        assert (
+            Boxes(Evaluator(given, sheets(given)[0]), np.ones(2)).bound(np.zeros((1, 2)), np.ones((1, 2))).alive.all()
+        )
+        assert check(problem(closed, {"stroke": 0.2}, mechanism=machine), 0.05, count=200) > 100
 
 
 def test_what_cannot_be_bounded_is_refused_by_name() -> None:

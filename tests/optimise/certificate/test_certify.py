@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
@@ -19,6 +21,7 @@ from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
+from tests.optimise.certificate.test_boxes import MACHINES, V
 from tests.optimise.problems import degrees, problem, shipped_front
 
 HELD = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
@@ -68,6 +71,23 @@ def test_10_000_random_feasible_designs_do_not_beat_the_bound(of: str) -> None:
     assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
     assert beats(values, front.values, found.span) <= found.delivered + ROUNDED
     assert found.gap <= found.delivered <= found.gap + found.epsilon + ROUNDED
+
+
+@pytest.mark.parametrize(
+    ("machine", "force"),
+    [
+        (replace(MACHINES["four strokes"], slider_mass=0.5), "peak_torque"),
+        (replace(MACHINES["bars"], arrangement=V), "peak_guide_force"),
+    ],
+    ids=["four strokes", "three cylinders"],
+)
+def test_two_turns_and_several_cylinders_are_proven_too(machine: Mechanism, force: str) -> None:
+    given = problem({force: "minimise", "footprint": "minimise"}, HELD, mechanism=machine, designs=12)  # type: ignore[arg-type]
+    front = solve(given)
+    found = certify_designs(given, front.dimensions, epsilon=0.2, seconds=60.0)
+    assert found.proven
+    values = feasible(given, 2000)
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
 
 
 def test_added_designs_are_feasible_and_have_the_values_told() -> None:
