@@ -202,7 +202,24 @@ def _call(node: Call, given: list[Interval]) -> Interval:
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (one.lower, one.upper))
         return Interval(ends[0], ends[1], one.apart and function == "sqrt")
-    return ANY if function == "tan" else _TRIG
+    return _turned(function, one)
+
+
+def _turned(function: str, angle: Interval) -> Interval:
+    """Return the bounds of sine, cosine or tangent between two angles."""
+    # Within half a turn of zero sine and tangent are zero at zero alone.
+    apart = angle.apart and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi
+    if not math.isfinite(angle.upper - angle.lower):
+        return ANY if function == "tan" else _TRIG
+    of = {"sin": math.sin, "cos": math.cos, "tan": math.tan}[function]
+    low, high = sorted((of(angle.lower), of(angle.upper)))
+    # The quarter turns at which sine and cosine are greatest and least, and the tangent has no end.
+    quarters = {"sin": (1, 3), "cos": (0, 2), "tan": (1, 3)}[function]
+    first, last = angle.lower / (0.5 * math.pi), angle.upper / (0.5 * math.pi)
+    top, bottom = (math.floor((last - place) / 4.0) >= math.ceil((first - place) / 4.0) for place in quarters)
+    if function == "tan":
+        return Interval(-math.inf, math.inf, apart) if top or bottom else Interval(low, high, apart)
+    return Interval(-1.0 if bottom else low, 1.0 if top else high, apart)
 
 
 def _sum(one: Interval, other: Interval) -> Interval:

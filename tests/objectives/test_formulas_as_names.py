@@ -11,6 +11,8 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
+from slidercrank.objectives.formula.expression import Call, Name
+from slidercrank.objectives.formula.ranges import Interval, Ranges
 from slidercrank.objectives.tables.sweep import Axis, sweep
 from tests import random_formulas
 from tests.random_formulas import MACHINE, designs
@@ -92,6 +94,36 @@ def test_a_formula_that_divides_by_zero_has_no_value_there_and_one_elsewhere() -
     found = PROBLEM.evaluate([[0.04, 0.2, 0.0], [0.04, 0.2, 0.02]], ["crank / offset - crank / offset"])[:, 0]
     assert np.isnan(found[0])
     assert found[1] == 0.0
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["crank / offset", "min(crank / offset, 3)", "atan(crank / offset)", "(offset / crank)**-1", "1 / (rod / offset)"],
+)
+def test_no_function_makes_a_number_of_a_division_by_zero(formula: str) -> None:
+    designs = [[0.04, 0.2, 0.0], [0.04, 0.2, 0.02]]
+    found = PROBLEM.evaluate(designs, [formula])[:, 0]
+    assert np.isfinite(found).tolist() == [False, True]
+    assert np.isnan(PROBLEM.analyse(designs[0])[formula])
+
+
+def test_sine_cosine_and_tangent_divide_where_their_angles_keep_them_off_zero() -> None:
+    random = np.random.default_rng(7)
+    for _ in range(400):
+        low, high = np.sort(random.uniform(-9.0, 9.0, 2))
+        inside = np.linspace(low, high, 4001)
+        for function in ("sin", "cos", "tan"):
+            node = Call(function, (Name("angle"),))
+            found = Ranges({"angle": Interval(low, high)}, {}, {}).of(node)
+            values = getattr(np, function)(inside)
+            assert (found.lower <= values.min() + 1e-12) and (values.max() <= found.upper + 1e-12)
+            if function != "tan" or math.isfinite(found.upper):
+                assert found.lower >= values.min() - 1e-4
+                assert found.upper <= values.max() + 1e-4 * max(1.0, found.upper**2)
+    for divisor in ("sin(transmission_angle)", "tan(transmission_angle)", "cos(crank / rod * 1 rad)"):
+        replace(PROBLEM, constraints=(sc.Constraint(quantity=f"1 / {divisor}", upper=9.0),))
+    with pytest.raises(InputError, match="may be zero within the ranges"):
+        replace(PROBLEM, constraints=(sc.Constraint(quantity="1 / sin(offset / rod * 1 rad)", upper=9.0),))
 
 
 def test_constraints_and_objectives_of_python_may_be_formulas() -> None:
