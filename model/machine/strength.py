@@ -38,7 +38,8 @@ class Material:
         if not self.endurance <= self.yield_strength <= self.ultimate_strength:
             raise InputError(
                 "a material needs endurance <= yield strength <= ultimate strength; got "
-                f"{self.endurance:g}, {self.yield_strength:g} and {self.ultimate_strength:g} Pa; check the three"
+                f"{1e-6 * self.endurance:g}, {1e-6 * self.yield_strength:g} and {1e-6 * self.ultimate_strength:g} MPa; "
+                "exchange those that stand in each other's place, or take the lower one for both"
             )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from ...model.machine.strength import Criterion, Material, Strength
+from ...objectives.kinds import PRESSURE
 from ..sizing.section_limits import SectionLimits
 from .values import (
     Checked,
@@ -14,8 +15,8 @@ from .values import (
     PositiveLength,
     PositiveRange,
     PositiveRatio,
-    Pressure,
     WearCoefficient,
+    Within,
     optional,
     required,
 )
@@ -43,17 +44,49 @@ _Raised = Annotated[
 _Safety = Annotated[PositiveRatio, Limited("at least 1", "below it the part fails", least=1.0)]
 
 
+_CORRECT = "correct the number or its unit"
+_Elasticity = Annotated[
+    float,
+    Within(
+        PRESSURE, "positive", rule="from 10 MPa to 2 TPa", hint=f"steel has 207 GPa; {_CORRECT}", least=1e7, most=2e12
+    ),
+]
+_Strength = Annotated[
+    float,
+    Within(
+        PRESSURE,
+        "positive",
+        rule="from 1 MPa to 20 GPa",
+        hint=f"steels have 200 to 2,000 MPa; {_CORRECT}",
+        least=1e6,
+        most=2e10,
+    ),
+]
+_Bearing = Annotated[
+    float,
+    Within(
+        PRESSURE,
+        "positive",
+        rule="from 10 kPa to 5 GPa",
+        hint=f"bushes bear 1 to 100 MPa; {_CORRECT}",
+        least=1e4,
+        most=5e9,
+    ),
+]
+"""Solid bars of any material, from soft plastics to fibres, lie far within: what does not has another unit."""
+
+
 class MaterialPart(Checked[Material]):
     """Material of crank and rod."""
 
     makes = Material
 
     density: Density = required("of the material", "7850 kg/m^3")
-    elasticity: Pressure = required("Young's modulus", "207 GPa")
-    yield_strength: Pressure = required("in tension and compression", "350 MPa")
-    ultimate_strength: Pressure = required("in tension", "520 MPa")
-    endurance: Pressure = required("fully reversed strength of the finished bar, without eye_concentration", "150 MPa")
-    bearing_pressure: Pressure = required("permissible at the pins, on their projected area", "20 MPa")
+    elasticity: _Elasticity = required("Young's modulus", "207 GPa")
+    yield_strength: _Strength = required("in tension and compression", "350 MPa")
+    ultimate_strength: _Strength = required("in tension", "520 MPa")
+    endurance: _Strength = required("fully reversed strength of the finished bar, without eye_concentration", "150 MPa")
+    bearing_pressure: _Bearing = required("permissible at the pins, on their projected area", "20 MPa")
 
 
 class PinsPart(Part):

@@ -134,6 +134,28 @@ class GasPressure(Physical):
         return pressure
 
 
+@dataclass(frozen=True, kw_only=True)
+class Within(Physical):
+    """Marks a physical value between limits, SI: beyond them its unit has slipped. rule, hint: of the refusal."""
+
+    rule: str
+    hint: str
+    least: float
+    most: float
+
+    def read(self, value: object) -> float:
+        """Return the value in SI; raises InputError."""
+        found = super().read(value)
+        if not self.least <= found <= self.most:
+            raise InputError(f"must be {self.rule}; got {shown(value)}; {self.hint}")
+        return found
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        found = super().__get_pydantic_json_schema__(schema, handler)
+        number = {"type": "number", "minimum": self.least, "maximum": self.most}
+        return found | {"anyOf": [number if of.get("type") == "number" else of for of in found["anyOf"]]}
+
+
 @dataclass(frozen=True)
 class Limited:
     """Marks a number as one between limits, in the schema too. above: it is greater. rule, hint: of the refusal."""

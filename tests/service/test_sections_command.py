@@ -86,7 +86,22 @@ def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -
     [
         (JOB, ("--rod", "200 mm"), "sizing sections needs the table [sections]; got none"),
         (JOB + SECTIONS, (), "--rod is needed"),
-        (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "endurance <= yield strength"),
+        (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "got 450, 350 and 520 MPa; exchange those"),
+        (
+            JOB + SECTIONS.replace('"350 MPa"', '"350 Pa"'),
+            ("--rod", "200 mm"),
+            'yield_strength: must be from 1 MPa to 20 GPa; got "350 Pa"; steels have',
+        ),
+        (
+            JOB + SECTIONS.replace('"207 GPa"', "207"),
+            ("--rod", "200 mm"),
+            "elasticity: must be from 10 MPa to 2 TPa; got 207;",
+        ),
+        (
+            JOB + SECTIONS.replace('"20 MPa"', "20e12"),
+            ("--rod", "200 mm"),
+            "bearing_pressure: must be from 10 kPa to 5 GPa",
+        ),
         (JOB + SECTIONS.replace("2.5", "0.5"), ("--rod", "200 mm"), "static_safety: must be at least 1"),
         (JOB.replace("120 rpm", "60000 rpm") + SECTIONS, ("--rod", "200 mm"), "no section within the ranges carries"),
     ],
