@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
 from ..model.strength.places import Along, Place
+from ..model.strength.stress_cycle import stress_peaks
 from .bars import (
     LINKS,
     NEAR,
@@ -62,14 +66,29 @@ class LinkStress(OfBars):
                     yield name, pin, over(force, area, strength.eye_concentration)
 
 
-def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, float]]:
-    """Return the greatest stress in the eyes of each bar of one design (1, 3 + k), Pa, by bar and pin."""
-    found: dict[str, dict[str, float]] = {}
+def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
+    """Return greatest stress, Pa, and its crank angle, rad, in the eyes of each bar of a design (1, 3 + k), by pin.
+
+    The angle is NaN where the stress is not finite.
+    """
+    found: dict[str, dict[str, tuple[float, float]]] = {}
+    angles = iter([_angle_of(mechanism, place, design) for _, pin, place in _places(mechanism) if pin])
     for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).told_parts(mechanism, design, 1, False):
-        if pin:
+        if pin:  # those that are bent come first; the label of a force is its angle
+            value, angle = float(part.values[0, 0]), next(angles, float(part.labels[0, 0]))
+            told = (value, angle if math.isfinite(value) else math.nan)
             eyes = found.setdefault(name, {})
-            eyes[pin] = max(eyes.get(pin, 0.0), float(part.values[0, 0]))
+            eyes[pin] = max(eyes.get(pin, told), told, key=lambda one: one[0])
     return found
+
+
+def _angle_of(mechanism: Mechanism, place: Place, design: Array) -> float:
+    """Return the crank angle of the greatest stress of a place, tension or compression."""
+    ends = []
+    for which, criterion in enumerate(STATIC):
+        (peak,) = stress_peaks(mechanism, (place,), design, np.array([criterion]), kept=1)
+        ends.append((float(peak.values[0, 0]), float(peak.places[0, 0, 2 + which])))
+    return max(ends)[1]
 
 
 def _places(mechanism: Mechanism) -> list[tuple[str, str, Place]]:

@@ -116,7 +116,8 @@ def test_sine_cosine_and_tangent_divide_where_their_angles_keep_them_off_zero() 
             node = Call(function, (Name("angle"),))
             found = Ranges({"angle": Interval(low, high)}, {}, {}).of(node)
             values = getattr(np, function)(inside)
-            assert (found.lower <= values.min() + 1e-12) and (values.max() <= found.upper + 1e-12)
+            assert found.lower <= values.min() + 1e-12
+            assert values.max() <= found.upper + 1e-12
             if function != "tan" or math.isfinite(found.upper):
                 assert found.lower >= values.min() - 1e-4
                 assert found.upper <= values.max() + 1e-4 * max(1.0, found.upper**2)

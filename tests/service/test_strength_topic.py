@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar, Counterweight
@@ -59,6 +60,14 @@ def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_st
                 net = (own_link.width - getattr(STRENGTH, pin)) * own_link.depth
                 assert 1e6 * stress >= 2.5 * force / net * (1.0 - 1e-9)
                 assert pin == "crank_pivot" or 1e6 * stress == pytest.approx(2.5 * force / net, rel=1e-9)
+                at = np.radians(bar[f"eye_at_{pin}_at_crank_angle_deg"])
+                sides = np.array([at - 1e-8, at + 1e-8])  # it may be on one side of a jump
+                cycle = sc.analyse(machine, design[0]).cycle(sides)
+                pin_name = pin.removeprefix("crank_") if pin == "crank_pivot" else pin
+                ends = [2.5 * np.hypot(cycle[f"{pin_name}_x_N"], cycle[f"{pin_name}_y_N"]).max() / net]
+                if pin == "crank_pivot":
+                    ends.append(abs(eye_rows(machine, name, linkage, sides)[:, 2:]).max())
+                assert 1e6 * stress == pytest.approx(max(ends), rel=1e-5)
             for sign, word in ((1.0, "tension"), (-1.0, "compression")):
                 at = np.radians(bar[f"greatest_{word}_at_crank_angle_deg"])
                 share = 1e-3 * bar[f"greatest_{word}_from_crank_pin_mm"] / float(getattr(linkage, name))

@@ -32,9 +32,9 @@ _SIGNS = ("tension", "compression")
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
 
-    With the crank angle, the place along the bar from the crank pin and the side; and of each eye the greatest. None: a
-    quantity without a value; the safety of what is not compressed is infinite. Raises `InputError` for a machine
-    without material and pins.
+    With the crank angle and the place along the bar from the crank pin; and of each eye the greatest stress with its
+    crank angle. None: a quantity without a value; the safety of what is not compressed is infinite. Raises
+    `InputError` for a machine without material and pins.
     """
     _require(mechanism)
     design = row_of(linkage)
@@ -46,7 +46,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     eyes = eye_stresses(mechanism, design)
     bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
     for name, bar in bars.items():
-        bar |= {f"eye_at_{pin}_MPa": 1e-6 * stress for pin, stress in eyes[name].items()}
+        for pin, (stress, angle) in eyes[name].items():
+            bar[f"eye_at_{pin}_MPa"] = 1e-6 * stress
+            bar[f"eye_at_{pin}_at_crank_angle_deg"] = plain(math.degrees(angle) % (360.0 * cycle_turns(mechanism)))
     return found | {"bars": bars}
 
 
@@ -94,7 +96,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
             rows.add_row(f"along the {name}, {sign}", *(_told(one) for one in places))
     for name, bar in numbers["bars"].items():
         for pin in (NEAR, LINKS[name].far):
-            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", _told(bar[f"eye_at_{pin}_MPa"]))
+            places = (bar[f"eye_at_{pin}_{key}"] for key in ("MPa", "at_crank_angle_deg"))
+            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", *(_told(one) for one in places))
     text.print_table(console, rows)
 
 
