@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Path, Response
+from fastapi import APIRouter, Depends, Path, Query, Response
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
-from ...model.errors import NotFound
+from ...model.errors import InputError, NotFound
+from ...objectives.kinds import System
+from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
 from ..runs.result import json_ready
 from ..topics.discovery import TOPICS
@@ -17,6 +20,7 @@ from .analysis import LONGEST_TOPICS, over
 from .exports import SEALED, of_type
 from .figures import require_figures
 from .fronts import OfDesign
+from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import ShownDep, ShownDesign
 from .throttle import DRAWING, SIMULATING
@@ -57,11 +61,43 @@ class BlockModel(BaseModel):
 
 
 class ToldTopic(OfDesign):
-    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text, in metric units."""
+    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text."""
 
     name: str = Field(examples=["balance"])
     numbers: dict[str, Any] = Field(examples=[{"peak_shaking_force_N": 12.5}])
     told: list[BlockModel]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How a topic is asked for. fluctuation: that the flywheel is for, usual if None."""
+
+    units: System
+    fluctuation: float | None
+
+    def of(self, topic: Topic, shown: ShownDesign) -> TopicOfDesign:
+        """Return the topic of a design. Raises `InputError` for a swing, and for an option of another topic."""
+        require_turning(shown.design.part, f"the analysis {topic.name}")
+        if self.fluctuation is not None and topic.name != "flywheel":
+            raise InputError(f"a fluctuation is for the topic flywheel; got {topic.name}; leave the fluctuation out")
+        options = {} if self.fluctuation is None else {"fluctuation": self.fluctuation}
+        return topic.of(shown.design.mechanism, shown.design.linkage, options)
+
+    def kind(self, topic: Topic, what: str) -> str:
+        """Return the name under which what is made of a topic is kept."""
+        return f"topic {topic.name} {what} {self.units} {self.fluctuation}"
+
+
+def _asked(
+    units: UnitsAsked = "metric",
+    fluctuation: Annotated[
+        float | None, Query(gt=0.0, lt=1.0, description="of the speed, that the flywheel is for", examples=[0.02])
+    ] = None,
+) -> Asked:
+    return Asked(units, fluctuation)
+
+
+AskedDep = Annotated[Asked, Depends(_asked)]
 
 
 @router.get("/topics")
@@ -76,10 +112,10 @@ def list_topics() -> TopicList:
     dependencies=[Depends(require_figures)],
     **of_type("image/svg+xml"),
 )
-def draw_topic_svg(shown: ShownDep, topic: Name) -> Response:
+def draw_topic_svg(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
     """Draw the figure of one topic of a design, as found or with other lengths."""
     headers = {"Content-Security-Policy": SEALED}
-    return Response(_drawn(shown, topic, "svg"), media_type="image/svg+xml", headers=headers)
+    return Response(_drawn(shown, topic, "svg", asked), media_type="image/svg+xml", headers=headers)
 
 
 @router.get(
@@ -87,45 +123,39 @@ def draw_topic_svg(shown: ShownDep, topic: Name) -> Response:
     dependencies=[Depends(require_figures)],
     **of_type("image/png"),
 )
-def draw_topic_png(shown: ShownDep, topic: Name) -> Response:
+def draw_topic_png(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
     """Draw the figure of one topic of a design, as found or with other lengths."""
-    return Response(_drawn(shown, topic, "png"), media_type="image/png")
+    return Response(_drawn(shown, topic, "png", asked), media_type="image/png")
 
 
 @router.get("/jobs/{number}/designs/{design}/topics/{topic}", response_model=ToldTopic)
-def tell_topic(shown: ShownDep, topic: Name) -> Response:
+def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
     """Give the numbers of one topic of a design, as found or with other lengths, and its text."""
     of = _topic(topic)
 
     def make() -> tuple[tuple[str], bytes]:
         from ..topics.told import told
 
-        asked = _of(of, shown)
-        numbers = asked.numbers(over(LONGEST_TOPICS))
-        blocks = [BlockModel(**vars(block)) for block in told(asked, numbers)]
-        answer = ToldTopic(
-            job=shown.found.job.id, number=shown.number, name=topic, numbers=json_ready(numbers), told=blocks
-        )
+        found = asked.of(of, shown)
+        numbers = found.numbers(over(LONGEST_TOPICS))
+        blocks = [BlockModel(**vars(block)) for block in told(found, numbers, asked.units)]
+        record = record_in(json_ready(numbers), asked.units)
+        answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
         return (shown.key,), to_json(answer)
 
-    content = shown.found.made(shown.key, f"topic {topic}", make, SIMULATING)
+    content = shown.found.made(shown.key, asked.kind(of, "told"), make, SIMULATING)
     return Response(content, media_type="application/json")
 
 
-def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"]) -> bytes:
+def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"], asked: Asked) -> bytes:
     topic = _topic(name)
 
     def make() -> tuple[tuple[str], bytes]:
         from ..figures.style import image
 
-        return (shown.key,), image(_of(topic, shown).figure(over(LONGEST_TOPICS)), kind)
+        return (shown.key,), image(asked.of(topic, shown).figure(over(LONGEST_TOPICS), asked.units), kind)
 
-    return shown.found.made(shown.key, f"topic {name} {kind}", make, DRAWING)
-
-
-def _of(topic: Topic, shown: ShownDesign) -> TopicOfDesign:
-    require_turning(shown.design.part, f"the analysis {topic.name}")
-    return topic.of(shown.design.mechanism, shown.design.linkage)
+    return shown.found.made(shown.key, asked.kind(topic, kind), make, DRAWING)
 
 
 def _topic(name: str) -> Topic:

@@ -111,6 +111,8 @@ def analyse(
         record = record_in(found.record(), units)
         give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
+        from ..topics.told import show_in
+
         screen = console()
         show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
         reasons = (found.undefined or {}).items()
@@ -118,11 +120,9 @@ def analyse(
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
-        if found.topics and units != "metric":
-            screen.print("\nTopics are told in metric units; --json has them in those asked for.", style="dim")
         for topic in found.topics:
             screen.print()
-            topic.show(screen, found.found[topic.name])
+            show_in(screen, topic, found.found[topic.name], units)
     for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
     if figures is not None and not interruption.asked():
@@ -175,7 +175,7 @@ def _draw(
         folder.mkdir(parents=True, exist_ok=True)
         sheet = design_sheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
         save(sheet, folder / "design.png")
-        files = [folder / "design.png", *(topic.draw(folder) for topic in topics)]
+        files = [folder / "design.png", *(topic.draw(folder, units) for topic in topics)]
     for file in files:
         say(f"figure: {file}")
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..designs.proof import certificate_record, infeasible_record, sentences_of, sizes_of
+from ..designs.shown_units import record_in
 from ..runs.result import Result, csv_text, json_text, rows_of
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import Json, Run, Runs
+from ..text.options import Json, Run, Runs, Units
 from ..text.screen import answer, waiting
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
 from .run_choice import run_of
@@ -20,6 +21,7 @@ from .run_choice import run_of
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ...objectives.kinds import System
     from ...optimise.certificate.certificate import Certificate, Step
     from ...optimise.problem.problem import Problem
 
@@ -29,6 +31,7 @@ def certify(
     epsilon: Annotated[float, "Distance to be proven, as a share of each objective's range over the front."] = 0.01,
     seconds: Annotated[float, "Stop after so long with what is proven by then."] = 60.0,
     runs: Runs = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Prove how far the front of a run can be from the true one.
@@ -56,7 +59,7 @@ def certify(
     record = certificate_record(found, problem, str(folder), rows)
     write_file(folder / "certificate.json", json_text(record))
     write_file(folder / "certificate.csv", csv_text(rows))
-    answer(json, record, lambda screen: _show(screen, found, result, folder))
+    answer(json, record_in(record, units), lambda screen: _show(screen, found, result, folder, units))
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if found.proven else NOT_PROVEN)
@@ -71,8 +74,11 @@ def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json:
     raise typer.Exit(0 if proven else NOT_PROVEN)
 
 
-def _show(screen: Console, found: Certificate, result: Result, folder: Path) -> None:
-    first, *lines = sentences_of(found, result)
+def _show(screen: Console, found: Certificate, result: Result, folder: Path, units: System) -> None:
+    from ..topics.inches import sentence_in_inches
+
+    sentences = sentences_of(found, result)
+    first, *lines = map(sentence_in_inches, sentences) if units == "inch" else sentences
     screen.print(first, style="bold", soft_wrap=True)
     lines.append(f"Files: {folder / 'certificate.json'}")
     if len(found.added):

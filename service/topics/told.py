@@ -4,32 +4,19 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from .block import Block
+
 if TYPE_CHECKING:
+    from ...objectives.kinds import System
     from .topic import TopicOfDesign
 
 _WIDE = 10_000  # no line is broken
-
-
-@dataclass(frozen=True)
-class Block:
-    """A sentence, or a table where there are rows.
-
-    heading: whether the sentence heads what follows. heads: of the columns, empty ones where they have none. right:
-    whether a column is aligned to the right, as numbers are. rows: the texts of the cells.
-    """
-
-    sentence: str = ""
-    heading: bool = False
-    heads: tuple[str, ...] = ()
-    right: tuple[bool, ...] = ()
-    rows: tuple[tuple[str, ...], ...] = ()
 
 
 class _Collecting(Console):
@@ -48,11 +35,33 @@ class _Collecting(Console):
                 self.blocks.append(Block(" ".join(str(item).split()), heading=style == "bold"))
 
 
-def told(topic: TopicOfDesign, numbers: dict[str, Any]) -> Sequence[Block]:
-    """Return the text of a topic on its numbers, as sentences and tables."""
+def told(topic: TopicOfDesign, numbers: dict[str, Any], units: System = "metric") -> Sequence[Block]:
+    """Return the text of a topic on its numbers, metric as they are, as sentences and tables in units."""
     screen = _Collecting()
     topic.show(screen, numbers)
-    return screen.blocks
+    if units == "metric":
+        return screen.blocks
+    from .inches import block_in_inches
+
+    return [block_in_inches(block) for block in screen.blocks]
+
+
+def show_in(screen: Console, topic: TopicOfDesign, numbers: dict[str, Any], units: System) -> None:
+    """Write a topic on a screen in a system of units."""
+    from ..text.tables import print_table, table
+
+    if units == "metric":
+        topic.show(screen, numbers)
+        return
+    for block in told(topic, numbers, units):
+        if not block.rows:
+            screen.print(block.sentence, style="bold" if block.heading else None, soft_wrap=True)
+            continue
+        heads = [f"{'>' if right else ''}{head}" for head, right in zip(block.heads, block.right, strict=True)]
+        rows = table(*heads, ruled=any(block.heads))
+        for cells in block.rows:
+            rows.add_row(*cells)
+        print_table(screen, rows)
 
 
 def _table_block(table: Table) -> Block:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...objectives.kinds import System
     from ..figures.sheets import Sheet
 
 
@@ -65,31 +66,36 @@ class TopicOfDesign:
         return found
 
     def show(self, screen: Console, numbers: dict[str, Any]) -> None:
-        """Write the topic's numbers for people."""
+        """Write the topic's numbers, metric as they are, for people."""
         self._analysis.show(screen, numbers)
 
-    def draw(self, folder: Path) -> Path:
+    def draw(self, folder: Path, units: System = "metric") -> Path:
         """Write the topic's figure into a folder, after its numbers; return the file."""
         from ..figures.panels import save_sheet
 
         file = folder / f"{self.name}.png"
-        save_sheet(self._drawn(), file)
+        save_sheet(self._drawn(units), file)
         return file
 
-    def figure(self, cancelled: Callable[[], bool]) -> Figure:
+    def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
         """Return the topic's figure, its numbers not asked for before. Raises `InputError` where there is none."""
         from ..figures.panels import figure_of
 
         self._prepare(cancelled)
-        return figure_of(self._drawn())
+        return figure_of(self._drawn(units))
 
     def _prepare(self, cancelled: Callable[[], bool]) -> None:
         if hasattr(self._analysis, "prepare"):
             self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
 
-    def _drawn(self) -> Sheet | Figure:
+    def _drawn(self, units: System) -> Sheet | Figure:
         options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
         found: Sheet | Figure = self._analysis.figure(self.mechanism, self.linkage, **options)
+        if units == "inch":
+            from ..figures.sheets import Sheet
+            from .inches import sheet_in_inches
+
+            return sheet_in_inches(found) if isinstance(found, Sheet) else found
         return found
 
     @property

@@ -70,17 +70,17 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write one line for each approximation."""
     console.print("Approximate models, inertia alone, at constant speed", style="bold", soft_wrap=True)
     others = [f">e = {offset:.4g} mm" for offset in numbers["offset_mm"]]
-    rows = table("model", ">peak", ">error", *others, ruled=True)
+    rows = table("model", ">peak", "unit", ">error", *others, ruled=True)
     for what, unit, key, exact in (
         ("slider acceleration", "m/s^2", "accelerations", "exact_peak_acceleration_m_s2"),
         ("inertia torque", "N m", "torques", "exact_peak_torque_Nm"),
     ):
-        rows.add_row(f"{what}, {unit}, exact", f"{numbers[exact]:.5g}", style="bold")
+        rows.add_row(f"{what}, exact", f"{numbers[exact]:.5g}", unit, style="bold")
         for entry in numbers[key]:
             peak = next(value for name, value in entry.items() if name.startswith("peak_"))
             errors = (entry["error_percent"], *entry["error_over_offset_percent"])
             cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
-            rows.add_row(f"  {entry['name']}", f"{peak:.5g}", *cells)
+            rows.add_row(f"  {entry['name']}", f"{peak:.5g}", unit, *cells)
     print_table(console, rows)
     console.print("Errors: greatest over the cycle, share of the exact peak; right: with other offsets.", style="dim")
 

@@ -69,7 +69,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         without = f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
     for sentence in (
         f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
-        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g}); without one {without}."
+        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g} kg m²); without one {without}."
         if inertia
         else f"No flywheel is needed for a speed fluctuation of {wanted:g}: without one {without}.",
         "Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time.",

@@ -82,6 +82,37 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     expect(page).to_have_url(re.compile(r"designs/3\?tab=motor"))
 
 
+def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_is_typed(
+    opened: tuple[Page, str], solved: Solved
+) -> None:
+    page, address = opened
+    page.goto(f"{address}/#/help")
+    page.get_by_label("Units").select_option("inch")
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2?tab=flywheel")
+    panel = page.get_by_role("tabpanel")
+    panel.scroll_into_view_if_needed(timeout=30_000)
+    path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/flywheel"
+
+    def first(**asked: float) -> str:
+        answer = httpx.get(path, params={"units": "inch", **asked}, timeout=60.0).json()
+        return str(answer["told"][0]["sentence"])
+
+    assert re.search(r"speed fluctuation of 0\.02: [\d.]+ lb in² ", first())
+    expect(panel).to_contain_text(first(), timeout=30_000)
+    field = panel.get_by_label("Speed fluctuation, at most")
+    field.fill("0,05")
+    field.press("Enter")
+    expect(panel).to_contain_text(first(fluctuation=0.05), timeout=30_000)
+    expect(field).to_be_focused()
+    expect(panel.locator("img")).to_have_attribute("src", re.compile("units=inch&fluctuation=0.05"))
+    field.fill("2")
+    field.press("Enter")
+    expect(panel).to_contain_text("Fluctuation must be below 1; got 2; correct it", timeout=30_000)
+    refused = httpx.get(path.replace("flywheel", "motor"), params={"fluctuation": 0.05}, timeout=60.0)
+    assert (refused.status_code, "is for the topic flywheel" in refused.text) == (422, True)
+    page.evaluate("localStorage.clear()")
+
+
 def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> None:
     page, address = opened
     page.goto(f"{address}/#/help")

@@ -150,9 +150,9 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
         claim.tell(progress(2), FRONT)
         with served(store, port=int(urlsplit(address).port or 0)):
             expect(page.get_by_text("2 of 9")).to_be_visible(timeout=PATIENCE)
-            page.get_by_role("button", name="Finish now run 1").press("Enter")
+            page.get_by_role("button", name="Pause run 1").press("Enter")
             claim.finish(replace(solved.result, status="cancelled"))
-            expect(page.get_by_role("heading", name="Finished early")).to_be_visible(timeout=PATIENCE)
+            expect(page.get_by_role("heading", name="Stopped early")).to_be_visible(timeout=PATIENCE)
             page.get_by_role("button", name="Resume run 1").press("Enter")
             expect(page.get_by_role("heading", name="Front so far")).to_be_visible(timeout=PATIENCE)
             again = taken(store)

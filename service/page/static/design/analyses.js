@@ -1,8 +1,10 @@
 /** Analyses of a design, a tab each: every topic that the service has and the view does not draw itself, with text, tables and figure. */
 
 import { address, get, isAbort, statusOf } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, focused, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
+import { measured } from "../lib/measured.js";
+import { apiSystem } from "../lib/numbers.js";
 import { beforePrinting } from "../lib/printing.js";
 import { capital, inWords } from "../lib/words.js";
 import { scrolled } from "./numbers.js";
@@ -12,6 +14,7 @@ import { sentenceOf } from "../lib/refusals.js";
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 const NEAR = "200px"; // before they are in sight
+const FLYWHEEL = "flywheel"; // the topic that has an option
 const CERTIFY = { name: "certify", title: "Certify", shows: "how far the front can be from the true one" };
 
 /**
@@ -30,6 +33,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   /** @type {Page.Lengths | null} */
   let lengths = null;
   let turn = 0;
+  const wanted = h("input", { type: "text", inputmode: "decimal", class: "short number", name: "fluctuation", autocomplete: "off", placeholder: "0.02" });
 
   /** @type {Promise<void> | null} */
   let begun = null;
@@ -84,22 +88,38 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
     }
     const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
-    const head = h("p", { class: "quiet hint" }, `${capital(inWords(shows))}${lengths ? "; of the changed design" : ""}. In metric units, as `, h("code", {}, `analyse --show ${chosen}`), " tells it.");
-    fill(panel, head, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
+    const head = [
+      h("p", { class: "quiet hint" }, `${capital(inWords(shows))}${lengths ? "; of the changed design" : ""}. As `, h("code", {}, `analyse --show ${chosen}`), " tells it."),
+      chosen === FLYWHEEL && sizing,
+    ];
+    const held = focused(sizing);
+    const options = { ...lengths, units: apiSystem(), fluctuation: chosen === FLYWHEEL ? fluctuation() : null };
+    const answer = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
+    fill(panel, head, answer);
+    held?.focus();
     try {
-      const found = await get(path, { ...lengths }, signal);
+      const found = await get(path, options, signal);
       if (own !== turn || !found) return;
       const { told: blocks } = found;
-      const file = address(`${path}.svg`, { ...lengths });
+      const file = address(`${path}.svg`, options);
       const picture = h("img", { src: file, alt: `Figure: ${title}`, onerror: ({ currentTarget }) => currentTarget.remove() });
-      fill(panel, head, h("div", { class: "analysis-columns" }, h("div", {}, blocks.map(block)), picture));
+      fill(answer, h("div", { class: "analysis-columns" }, h("div", {}, blocks.map(block)), picture));
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
       const lacks = statusOf(error) === 422;
-      fill(panel, head, h("p", { class: lacks ? "quiet" : "error" }, `${sentenceOf(error)}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
+      fill(answer, h("p", { class: lacks ? "quiet" : "error" }, `${sentenceOf(error)}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
     }
   }
 
+  const sizing = h("form", { class: "row", novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, h("label", {}, "Speed fluctuation, at most ", wanted), h("button", {}, "Size the flywheel"));
+
+  /** Return the fluctuation that was typed, as a number where it is one; null for the usual one. */
+  function fluctuation() {
+    const typed = measured(wanted.value, "");
+    return typed.empty ? null : typed.value ?? wanted.value.trim();
+  }
+
+  window.addEventListener("units", () => begun && chosen !== CERTIFY.name && ask(), { signal });
   return {
     /** @param {Page.Lengths | null} now */
     show(now) {

@@ -2,6 +2,7 @@
 
 import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { inShownUnits } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 const SHARE = 100; // percent
@@ -21,7 +22,7 @@ export function proof({ job, signal }) {
       const query = { epsilon: epsilon.valueAsNumber / SHARE, seconds: seconds.valueAsNumber };
       const found = await get(`jobs/${job}/certificate`, query, signal);
       const [first, ...others] = found.sentences;
-      fill(answer, h("p", { class: found.proven ? "good" : "at-limit" }, first), others.map((sentence) => h("p", {}, sentence)));
+      fill(answer, h("p", { class: found.proven ? "good" : "at-limit" }, inShownUnits(first)), others.map((sentence) => h("p", {}, inShownUnits(sentence))));
     } catch (error) {
       if (isAbort(error)) return;
       fill(answer, h("p", { class: "quiet" }, `${sentenceOf(error)}.`));

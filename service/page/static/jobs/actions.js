@@ -8,15 +8,16 @@ import { say, sayProblem } from "../lib/notices.js";
 import { ENDED } from "./states.js";
 
 /**
- * Return the buttons of a job. A search that runs is finished with what it has found, and can go on later. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
+ * Return the buttons of a job. A search that runs is finished with what it has found, and can go on later: in its own
+ * view it is paused as well, which is the same under the name that one looks for. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
  * whoever deleted it.
  * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed @param {{ primary?: boolean }} looks primary: of the view of this job
  */
 export function actions(job, changed, { primary = false } = {}) {
   const of = `run ${job.id}, ${job.name}`;
-  /** @param {string} label @param {"cancel" | "resume"} path @param {string} told */
-  const act = (label, path, told) =>
-    h("button", { type: "button", class: primary ? "primary" : null, "data-act": path, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
+  /** @param {string} label @param {"cancel" | "resume"} path @param {string} told @param {string} name */
+  const act = (label, path, told, name = path) =>
+    h("button", { type: "button", class: primary && name === path ? "primary" : null, "data-act": name, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
       const now = await post(`jobs/${job.id}/${path}`);
       say(told);
       changed(now);
@@ -50,6 +51,7 @@ export function actions(job, changed, { primary = false } = {}) {
   };
   const ended = ENDED.includes(job.state);
   return [
+    primary && job.state === "running" && !job.cancel_asked && act("Pause", "cancel", `Run ${job.id} pauses after its round; Resume goes on from there.`, "pause"),
     !ended && !job.cancel_asked && (job.state === "running"
       ? act("Finish now", "cancel", `Run ${job.id} ends with what it has found; it can go on from there later.`)
       : act("Cancel", "cancel", `Run ${job.id} does not begin.`)),

@@ -15,7 +15,7 @@ export function outcome(job) {
     return said("The run stopped with an error", job.reason, ["Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ", again]);
   }
   if (job.state === "cancelled" && found) {
-    return said("Finished early", `What it had found by then is below; a longer search finds better designs. ${job.reason}`, ["Resume it, above, to go on from where it was."]);
+    return said("Stopped early", `What it had found by then is below; a longer search finds better designs. ${job.reason}`, ["Resume it, above, to go on from where it was."]);
   }
   if (job.state === "cancelled") {
     return said("The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);

@@ -1,0 +1,103 @@
+"""Analyses in inch units: sentences, tables and figures have the metric values, changed, and no metric unit."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.objectives.kinds import SHOWN, unit_text
+from slidercrank.service.figures.sheets import Line, Panel, Sheet
+from slidercrank.service.topics.block import Block
+from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.inches import block_in_inches, sentence_in_inches, sheet_in_inches
+from slidercrank.service.topics.told import told
+from tests.service import fronts
+from tests.service.conftest import Command
+
+LBF_IN = 4.4482216152605 * 0.0254
+METRIC = "|".join(
+    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
+)
+QUICK = [name for name in TOPICS if name not in ("clearance", "start_up", "tolerances")]
+
+
+@pytest.mark.parametrize(
+    ("metric", "inch"),
+    [
+        ("greatest rod force 44.482 N at 228.08 deg", "greatest rod force 10 lbf at 228.08 deg"),
+        ("crank from 25.4 to 50.8 mm, rod 254 mm", "crank from 1 to 2 in, rod 10 in"),
+        ("0.7 mm; 0 mm; -2.54e-05 mm", "0.02756 in; 0 in; -1e-06 in"),
+        ("50 % within 0.0254 mm at 300 rpm", "50 % within 0.001 in at 300 rpm"),
+        ('got "60 mm"; 2 N m is possible', 'got "60 mm"; 17.7 lbf in is possible'),
+        ("1 MPa m/s, 8 bar, 3 kg m²", "28551 psi ft/min, 116 psi, 10252 lb in²"),
+        ("Nm of 3 N/mm, 7 Nails", "Nm of 3 N/mm, 7 Nails"),
+    ],
+)
+def test_every_value_of_a_sentence_is_changed_but_for_what_somebody_typed(metric: str, inch: str) -> None:
+    assert sentence_in_inches(metric) == inch
+
+
+def test_numbers_of_a_table_have_the_unit_of_their_column_or_of_their_row() -> None:
+    block = Block(
+        heads=("curve", "least", "at deg", "slider mm", "e = 25.4 mm", "unit"),
+        right=(False,) * 6,
+        rows=(("torque", "1", "90.00", "25.4", "7 %", "N m"), ("ratio", "1.5", "30", "50.8 / 76.2", "", "")),
+    )
+    found = block_in_inches(block)
+    assert found.heads == ("curve", "least", "at deg", "slider in", "e = 1 in", "unit")
+    assert found.rows == (
+        ("torque", f"{1 / LBF_IN:.4g}", "90.00", "1", "7 %", "lbf in"),
+        ("ratio", "1.5", "30", "2 / 3", "", ""),
+    )
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_no_topic_tells_a_metric_unit(name: str) -> None:
+    topic = TOPICS[name].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
+    try:
+        numbers = topic.numbers(lambda: False)
+    except InputError:
+        return  # this machine has none
+    text: list[str] = []
+    for metric, inch in zip(told(topic, numbers), told(topic, numbers, "inch"), strict=True):
+        assert len(inch.rows) == len(metric.rows)
+        text += [inch.sentence, *inch.heads, *(cell for row in inch.rows for cell in row)]
+    assert [one for one in text if re.search(rf"(?:^|\s)(?:{METRIC})(?![\w^/²³])", one)] == []
+
+
+def test_a_motor_in_inches_has_the_numbers_of_its_json() -> None:
+    topic = TOPICS["motor"].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
+    numbers = topic.numbers(lambda: False)
+    rows = {row[0]: row for block in told(topic, numbers, "inch") for row in block.rows}
+    assert float(rows["peak torque"][1]) == pytest.approx(numbers["peak_torque_Nm"] / LBF_IN, rel=1e-5)
+    assert rows["peak torque"][2] == "lbf in"
+    assert float(rows["mean power"][1]) == pytest.approx(numbers["mean_power_W"] / 745.69987158227, rel=1e-5)
+
+
+def test_axes_of_a_figure_are_changed_with_all_that_is_drawn() -> None:
+    x = np.array([0.0, 25.4])
+    line = Line("at 50.8 mm", x, np.array([0.0, LBF_IN]))
+    panel = Panel("torque at 25.4 mm, N m", "offset, mm", (line,), names=(("A", 25.4, LBF_IN),), level=("RMS", LBF_IN))
+    around = replace(panel, title="rod angle, deg", across="crank angle, deg", level=None)
+    one, other = sheet_in_inches(Sheet("Motor", "stroke 254 mm", (panel, around))).panels
+    assert (one.title, one.across) == ("torque at 1 in, lbf in", "offset, in")
+    assert one.lines[0].label == "at 2 in"
+    np.testing.assert_allclose([one.lines[0].x, one.lines[0].y], [[0.0, 1.0], [0.0, 1.0]])
+    assert one.level is not None
+    np.testing.assert_allclose([*one.names[0][1:], one.level[1]], 1.0)
+    np.testing.assert_array_equal(other.lines[0].x, x)
+
+
+def test_the_command_line_tells_a_topic_in_the_units_that_are_asked_for(tmp_path: Any, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    given = ("analyse", job, "--crank", "120 mm", "--rod", "350 mm", "--offset", "80 mm", "--show", "motor")
+    found = command(*given, "--units", "inch").stdout
+    assert re.search(r"peak torque +[\d.]+ +lbf in +at ", found)
+    assert "metric units" not in found
+    assert re.search(r"peak torque +[\d.]+ +N m +at ", command(*given).stdout)
