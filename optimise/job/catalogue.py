@@ -20,10 +20,12 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import JobError
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.units import shown
 from .beside import beside
 from .catalogue_columns import Column, columns_of
 from .messages import key_of
+from .paths import unknown_path, with_number
 
 LARGEST = 10_000_000
 """Bytes of a file."""
@@ -49,16 +51,16 @@ def with_catalogues(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if catalogues(data):
         own = data.get("quantity")
         names = frozenset(own) if isinstance(own, Mapping) else frozenset()
-        job["choice"] = [_filled(part, place, folder, names) for place, part in enumerate(job["choice"])]
+        job["choice"] = [_filled(part, place, folder, names, data) for place, part in enumerate(job["choice"])]
     return job
 
 
-def _filled(part: Any, place: int, folder: Path, own: frozenset[str]) -> Any:
+def _filled(part: Any, place: int, folder: Path, own: frozenset[str], tables: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
     if not isinstance(file, str) or "option" in part:  # the model refuses both
         return part
     path, name = beside(folder, key_of(["choice", place, "file"]), file)
-    options, rows = options_of(_text(path, name), name, own)
+    options, rows = options_of(_text(path, name), name, own, tables)
     return {name: value for name, value in part.items() if name != "file"} | {"option": options, "rows": rows}
 
 
@@ -81,17 +83,21 @@ def _text(path: Path, name: str) -> str:
         raise JobError(f"{name} must be UTF-8 text; got other bytes; save it as CSV in UTF-8") from None
 
 
-def options_of(text: str, name: str, own: frozenset[str] = frozenset()) -> tuple[list[dict[str, Any]], int]:
+def options_of(
+    text: str, name: str, own: frozenset[str] = frozenset(), tables: Mapping[str, Any] | None = None
+) -> tuple[list[dict[str, Any]], int]:
     """Return the options of a catalogue's text that no other one beats, and how many rows it has.
 
-    name: of the file, for messages. own: names of the job's own quantities. Raises JobError, naming row, column and
-    remedy.
+    name: of the file, for messages. own: names of the job's own quantities. tables: of the job, which give the numbers
+    that columns set. Raises JobError, naming row, column and remedy.
     """
     lines = _lines(text, name)
     first = next(lines, None)
     if first is None:
         raise JobError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
     columns = columns_of(first[1], name, own)
+    if tables is not None:
+        _require_given(columns, name, tables)
     labels: dict[str, int] = {}
     rows: list[list[str]] = []
     for number, cells in lines:
@@ -101,7 +107,8 @@ def options_of(text: str, name: str, own: frozenset[str] = frozenset()) -> tuple
         label = cells[0]
         if not label or label.startswith(_FORMULA) or len(label) > _LONGEST or not label.isprintable():
             raise JobError(
-                f"{where}, column name: must be a name of 1 to {_LONGEST} characters; got {shown(label)}; write it out"
+                f"{where}, column name: must be a name of 1 to {_LONGEST} characters on one line, none of = + @ first; "
+                f"got {shown(label)}; write it out"
             )
         if label in labels:
             raise JobError(
@@ -136,6 +143,16 @@ def _lines(text: str, name: str) -> Iterator[tuple[int, list[str]]]:
                 yield reader.line_num, [cell.strip() for cell in cells]
     except csv.Error as error:
         raise JobError(f"{name}, row {reader.line_num}: must be a line of CSV; got: {error}; save it as CSV") from None
+
+
+def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
+    """Refuse a column that sets a number which the job does not give."""
+    for column in columns:
+        if column.word is None and column.name not in DIMENSIONS:
+            try:
+                with_number(tables, column.name, 0.0)
+            except LookupError:
+                raise JobError(f"{name}, column {shown(column.header)}: {unknown_path(column.name, tables)}") from None
 
 
 def _require_number(cell: str, where: str) -> None:

@@ -260,10 +260,12 @@ else:
     ConstraintsPart, ObjectivesPart = tables({})
 
 
-def constraints_of(part: ConstraintsPart, formulas: Formulas | None = None) -> Iterator[Constraint]:
+def constraints_of(
+    part: ConstraintsPart, formulas: Formulas | None = None, key: str = "constraints."
+) -> Iterator[Constraint]:
     """Return the constraints of a job as the problem has them. formulas: of the job; without, its tables have none.
 
-    Raises JobError for a wrong formula, and for bounds of it that leave nothing.
+    key: where they stand, for messages. Raises JobError for a wrong formula, and for bounds of it that leave nothing.
     """
     for name, bounds in _entries(part):
         if name == SLOW_STROKE:
@@ -272,7 +274,7 @@ def constraints_of(part: ConstraintsPart, formulas: Formulas | None = None) -> I
         if all(isinstance(value, float) for value in given.values()) and name in FACTS:
             yield Constraint(quantity=name, **_ends(given))
         elif formulas is not None:
-            yield from _bounded(f"constraints.{key_of([name])}", name, given, formulas)
+            yield from _bounded(f"{key}{key_of([name])}", name, given, formulas)
 
 
 def _bounded(key: str, name: str, given: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:

@@ -9,10 +9,12 @@ from ...model.errors import InputError, JobError
 from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swinging import swing_quantities
+from ...objectives.units import shown
 from ..discrete.meetable import require_meetable
 from ..methods.registry import require_fit
-from ..problem.problem import Problem
+from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
 from .contradictions import require_consistent
 from .messages import key_of
@@ -49,6 +51,8 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     choices, variants = variants_of(job, formulas)
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
+    for variant in variants:
+        _require_joint(constraints, variant, (*own, *formulas.made.values()))
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
@@ -85,14 +89,32 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
         try:
             (found[name],) = merged((found.get(name, constraint), constraint))
         except InputError:
-            face = formulas.made[name].unit
-            asked = " and ".join(
-                f"{word} {bound * face.factor:.6g} {face.symbol}".rstrip()
-                for item in (found[name], constraint)
-                for word, bound in item.sides
-            )
+            asked = _asked((found[name], constraint), formulas.made[name])
             raise JobError(
                 f"{key_of(['constraints', name])}: requirements on one formula must leave something; got {asked}; "
                 "leave out one of them"
             ) from None
     return tuple(found.values())
+
+
+def _require_joint(constraints: tuple[Constraint, ...], variant: Variant, own: Iterable[Quantity]) -> None:
+    """Refuse an option whose limit leaves nothing of a constraint of the job."""
+    known = QUANTITIES | {of.name: of for of in own}
+    given = {of.quantity: of for of in constraints}
+    for limit in variant.limits:
+        name = limit.quantity
+        both = (given.get(name, limit), limit)
+        try:
+            (given[name],) = merged(both)
+        except InputError:
+            raise JobError(
+                f"choice {', '.join(map(shown, variant.labels))}: {name}: must leave something of the job's own "
+                f"constraint, and of options chosen with it; got {_asked(both, known[name])}; leave out the option, or "
+                "one of the limits"
+            ) from None
+
+
+def _asked(constraints: Iterable[Constraint], of: Quantity) -> str:
+    """Return in words what constraints ask of a quantity."""
+    sides = (side for item in constraints for side in item.sides)
+    return " and ".join(f"{word} {bound * of.unit.factor:.6g} {of.unit.symbol}".rstrip() for word, bound in sides)

@@ -22,17 +22,18 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
-from ...objectives.formula.formulas import ROOTS, Formulas
-from ...objectives.units import closest, shown
+from ...objectives.formula.formulas import Formulas
+from ...objectives.units import shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
+from .paths import stated, unknown_path, with_number
 from .quantities import constraints_of, slow_stroke_of
 from .schema import schema_of
-from .values import Choices, Part, RangeOf, ToleranceOf
+from .values import Choices, RangeOf, ToleranceOf
 
 MOST = 200
 """Combinations of choices that are enumerated."""
@@ -132,8 +133,13 @@ def reach_of(job: Job) -> dict[str, Range]:
     """Return where each dimension may lie, whatever is chosen."""
     found = {}
     for name in DIMENSIONS:
-        options = [option.paths[name] for part in job.choice for option in part.option if name in option.paths]
-        ranges = [ends_of(getattr(job.variables, name)), *(ends_of(_length(name, value)) for value in options)]
+        options = [
+            _length(name, option.paths[name], f"choice {shown(part.name)}, option {shown(option.name)}")
+            for part in job.choice
+            for option in part.option
+            if name in option.paths
+        ]
+        ranges = [ends_of(getattr(job.variables, name)), *map(ends_of, options)]
         found[name] = Range(lower=min(of.lower for of in ranges), upper=max(of.upper for of in ranges))
     return found
 
@@ -160,7 +166,12 @@ def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
             yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
     for part in job.choice:
         options = [
-            _Option(o.name, o.paths, tuple(constraints_of(o.constraints, formulas)), slow_stroke_of(o.constraints))
+            _Option(
+                o.name,
+                o.paths,
+                tuple(constraints_of(o.constraints, formulas, f"choice {shown(part.name)}, option {shown(o.name)}: ")),
+                slow_stroke_of(o.constraints),
+            )
             for o in part.option
         ]
         yield part.name, options
@@ -176,8 +187,15 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
             values[path] = value
     for name in DIMENSIONS:
         if name in values:
-            ranges[name] = _length(name, values.pop(name))
-    other = with_values(job, values, "choice") if values else job
+            ranges[name] = _length(name, values.pop(name), "choice")
+    try:
+        other = with_values(job, values, "choice") if values else job
+    except JobError:
+        for name, option in zip(names, chosen, strict=True):  # one that is wrong by itself is named
+            single = next(iter(_single(name, option)), None)
+            own = f"variables.{single}" if single else f"choice {shown(name)}, option {shown(option.label)}"
+            with_values(job, {path: value for path, value in option.values.items() if path in values}, own)
+        raise
     return Variant(
         labels=tuple(option.label for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS),
         mechanism=varying_machine(other),
@@ -204,14 +222,14 @@ def _single(name: str, option: _Option) -> tuple[str, ...]:
     return paths if len(paths) == 1 and paths[0].removeprefix("mechanism.") == name else ()
 
 
-def _length(name: str, value: Any) -> tuple[float, float] | Choices:
+def _length(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
     try:
         found = RangeOf("any" if name == "offset" else "positive").read(value)
         if isinstance(found, Grid):
             raise InputError(f"of an option is a value or a range; got {shown(value)}; say the values in [variables]")
         return found
     except InputError as error:
-        raise JobError(f"choice: {name} {error}") from None
+        raise JobError(f"{key}: {name} {error}") from None
 
 
 def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
@@ -264,18 +282,12 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
     key: where the values come from, for messages. Raises JobError.
     """
-    data: dict[str, Any] = _stated(job)
+    data: dict[str, Any] = stated(job)
     for path, value in values.items():
-        root = path.partition(".")[0]
         try:
-            if root not in ROOTS:
-                raise LookupError(root)
-            data = _with(data, path.split("."), value)
+            data = with_number(data, path, value)
         except LookupError:
-            known = [path for path, value in _given(job.model_dump(exclude_unset=True), "") if _is_plain(value)]
-            near = closest(path, known)
-            hint = f"did you mean {near}?" if near else "give it there, as the value that single designs have"
-            raise JobError(f"{key}: must name a number that the job gives; got {path}; {hint}") from None
+            raise JobError(f"{key}: {unknown_path(path, job.model_dump(exclude_unset=True))}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
@@ -284,54 +296,6 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         for path in values:
             sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
         raise JobError(f"{key}: {sentence}") from None
-
-
-def _stated(part: Any) -> dict[str, Any]:
-    """Return the values that a part of a job states, by key; nested parts stay as read."""
-    return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
-
-
-def _with(part: Any, steps: list[str], value: Any) -> Any:
-    """Return a part of a job with one plain value replaced; whatever the path passes stays as read.
-
-    Raises `LookupError` where the job has no number or text.
-    """
-    step, *rest = steps
-    table: Any
-    place: Any
-    if isinstance(part, list | tuple):
-        table, place = list(part), next((n for n in range(len(part)) if step == str(n + 1)), None)
-        if place is None or not rest:
-            raise LookupError(step)
-    elif isinstance(part, Part | Mapping):
-        table, place = _stated(part), step
-    else:
-        raise LookupError(step)
-    if rest:
-        table[place] = _with(table[place], rest, value)
-    elif _is_plain(table[place]):
-        table[place] = value
-    else:
-        raise LookupError(step)
-    return table
-
-
-def _is_plain(value: object) -> bool:
-    return isinstance(value, int | float | str)
-
-
-def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:
-    """Yield path and value of everything in a job that is no table; places in lists count from 1."""
-    if isinstance(data, Mapping):
-        for name, item in data.items():
-            if root or name in ROOTS:
-                yield from _given(item, f"{root}.{name}" if root else str(name))
-    elif isinstance(data, list | tuple):
-        for place, item in enumerate(data):
-            if isinstance(item, Mapping):
-                yield from _given(item, f"{root}.{place + 1}")
-    else:
-        yield root, data
 
 
 def _number(job: Job, path: str, key: str) -> float:

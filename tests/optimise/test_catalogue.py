@@ -160,6 +160,12 @@ ROW = "A,10,5,1"
         ("motor,stroke max (mm)\nA,1", 'must have the column name first; got "motor"'),
         ('name,stroke max (mm)\n"A,1', "must be a line of CSV"),
         ("name,stroke max (mm)\nA\0,1", "got a byte 0"),
+        (
+            "name,mechanism.slider.mas (kg)\nA,1",
+            'column "mechanism.slider.mas (kg)": must name a number that the job gives; got mechanism.slider.mas; did ',
+        ),
+        ("name,sections.pins.crank_pin (mm)\nA,1", "got sections.pins.crank_pin; give it in [sections] first"),
+        (f"{HEADER}\n=A1,10,5,1", "1 to 60 characters on one line, none of = + @ first"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str, words: str, tmp_path: Path) -> None:
@@ -167,6 +173,33 @@ def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str,
         load_job(written(tmp_path, text))
     assert 'choice #1.file: "gearmotors.csv"' in str(told.value)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "name,mechanism.slider.mass (kg)\nA,1\nB,-1",
+            'choice "gearmotor", option "B": mechanism.slider.mass: must be zero or more; got "-1 kg"',
+        ),
+        ("name,crank (mm)\nA,30\nB,-20", 'choice "gearmotor", option "B": crank must be positive; got "-20 mm"'),
+        (
+            "name,crank max (mm),crank min (mm)\nA,20,30",
+            'choice "gearmotor", option "A": crank: min must not exceed max; got min "30 mm" and max "20 mm"',
+        ),
+        (
+            "name,stroke equals (mm)\nA,90\nB,80",
+            'choice "A": stroke: must leave something of the job\'s own constraint, and of options chosen with it; got '
+            "equals 80 mm and equals 90 mm; leave out the option",
+        ),
+    ],
+)
+def test_what_a_job_refuses_of_a_row_is_told_with_its_name(text: str, words: str, tmp_path: Path) -> None:
+    job = written(tmp_path, text)
+    ranges = JOB.replace('{ choices = ["40 mm", "50 mm", "60 mm"] }', '["30 mm", "60 mm"]')
+    job.write_text(ranges + '[constraints]\nstroke = { equals = "80 mm" }\n')
+    with pytest.raises(JobError, match=re.escape(words)):
+        load_job(job)
 
 
 def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:

@@ -194,7 +194,11 @@ def test_choices_become_every_combination() -> None:
     ("variables", "more", "words"),
     [
         ("", CHOICE.replace("25 x 12", "30 x 10"), ["different names", "30 x 10"]),
-        ("", CHOICE.replace("rod.depth", "rod.deepth"), ["choice: must name", "did you mean mechanism.rod.depth"]),
+        (
+            "",
+            CHOICE.replace("rod.depth", "rod.deepth"),
+            ["option", "must name a number", "did you mean mechanism.rod.depth"],
+        ),
         ("", CHOICE.replace('"12 mm"', '"12 kg"'), ["choice", "must be a length"]),
         ("mechanism.rod.width = [0.02, 0.03]", CHOICE, ["mechanism.rod.width is set twice"]),
         ("", CHOICE.replace("40 N m", "40 N"), ["constraints.peak_torque.max", "must be a torque"]),

@@ -1,0 +1,75 @@
+"""Paths of numbers in the tables of a job: `mechanism.slider.mass`, `load.1.force`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ...objectives.formula.formulas import ROOTS
+from ...objectives.units import closest
+from .values import Part
+
+
+def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[str, Any]:
+    """Return a job, or its tables, with a value put at a path; whatever the path passes stays as read.
+
+    Raises `LookupError` where the job gives no number or text.
+    """
+    root, *rest = path.split(".")
+    if root not in ROOTS:
+        raise LookupError(root)
+    found: dict[str, Any] = _with(job, [root, *rest], value)
+    return found
+
+
+def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
+    """Return in words that the tables of a job give no number at a path."""
+    near = closest(path, [known for known, value in _given(tables, "") if _is_plain(value)])
+    hint = (
+        f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
+    )
+    return f"must name a number that the job gives; got {path}; {hint}"
+
+
+def stated(part: Any) -> dict[str, Any]:
+    """Return the values that a part of a job states, by key; nested parts stay as read."""
+    return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
+
+
+def _with(part: Any, steps: list[str], value: Any) -> Any:
+    step, *rest = steps
+    table: Any
+    place: Any
+    if isinstance(part, list | tuple):
+        table, place = list(part), next((n for n in range(len(part)) if step == str(n + 1)), None)
+        if place is None or not rest:
+            raise LookupError(step)
+    elif isinstance(part, Part | Mapping):
+        table, place = stated(part), step
+    else:
+        raise LookupError(step)
+    if rest:
+        table[place] = _with(table[place], rest, value)
+    elif _is_plain(table[place]):
+        table[place] = value
+    else:
+        raise LookupError(step)
+    return table
+
+
+def _is_plain(value: object) -> bool:
+    return isinstance(value, int | float | str)
+
+
+def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:
+    """Yield path and value of everything in a job that is no table; places in lists count from 1."""
+    if isinstance(data, Mapping):
+        for name, item in data.items():
+            if root or name in ROOTS:
+                yield from _given(item, f"{root}.{name}" if root else str(name))
+    elif isinstance(data, list | tuple):
+        for place, item in enumerate(data):
+            if isinstance(item, Mapping):
+                yield from _given(item, f"{root}.{place + 1}")
+    else:
+        yield root, data
