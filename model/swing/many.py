@@ -15,6 +15,7 @@ import numpy as np
 from ..arrays import Array, Mask, Whole
 from ..dynamics.rubbing import drives
 from ..kernel.arithmetic import STEP
+from ..kernel.batches import in_chunks
 from ..kinematics.position import motion
 from ..machine.derived import derived
 from ..machine.design import design_at
@@ -274,4 +275,18 @@ def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
         theta = np.linspace(ends.start, ends.end, 361, axis=1)
         r, l, e = (designs[found, i : i + 1] for i in range(3))
         found[found] = (sign * motion(np.sin(theta), np.cos(theta), r, l, e, sign).x > 0.0).all(axis=1)
+    return found
+
+
+def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) can swing as asked, and are not locked by friction on the way."""
+    found = able(mechanism, swing, designs)
+    if mechanism.fullest.friction.acts:
+        rows = np.flatnonzero(found)
+
+        def work(begin: int, end: int) -> None:
+            own = rows[begin:end]
+            found[own] = ~Many(mechanism, swing, designs[own], slopes=False).locked()
+
+        in_chunks(len(rows), work)
     return found

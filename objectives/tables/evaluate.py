@@ -12,7 +12,7 @@ from ...model.arrays import Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
-from ...model.swing.many import able
+from ...model.swing.many import able, driven
 from ...model.swing.swing import Swing
 from ..cycle_peak import screened
 from ..formula.meant import meant
@@ -106,6 +106,11 @@ def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
+
+
+def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) turn fully; with a swing, which can make it in spite of friction."""
+    return moving(mechanism, None, designs) if swing is None else driven(mechanism, swing, designs)
 
 
 def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]]:

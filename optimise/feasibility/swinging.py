@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.errors import InputError
+from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import closes, passes
 from ...model.swing.ends import start_column
-from ...model.swing.many import Many
+from ...model.swing.many import driven
+from ...model.swing.swing import Swing
 from ...objectives.tables.evaluate import moving
 from ..problem.problem import Problem
 from ..search.elimination import sheets
 from ..search.sampling import first_samples
 
 _SAMPLES = 4096
+_HALVINGS = 10  # of the share of the friction: three digits
 
 
 def require_swinging(problem: Problem) -> None:
@@ -29,7 +34,8 @@ def unswung(problem: Problem) -> str:
     """Return why no design of the ranges swings as asked, in words; "" if one of many does."""
     motion = problem.motion
     assert motion is not None
-    closing = passing = running = 0
+    closing = passing = 0
+    stuck: list[tuple[Mechanism, Array]] = []
     for index, sheet in enumerate(sheets(problem)):
         part = problem.part(sheet.variant)
         machine = part.mechanism
@@ -38,10 +44,9 @@ def unswung(problem: Problem) -> str:
         closing += int(closes(machine, motion, designs).sum())
         passing += int(passes(machine, motion, designs).sum())
         able = designs[moving(machine, motion, designs)]
-        if len(able):
-            running += int((~Many(machine, motion, able, slopes=False).locked()).sum())
-        if running:
+        if driven(machine, motion, able).any():
             return ""
+        stuck.append((machine, able))
     factor, unit = (180.0 / math.pi, "deg") if motion.of == "crank" else (1e3, "mm of the slider")
     asked = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
     if any(start_column(problem.part(sheet.variant).mechanism) is not None for sheet in sheets(problem)):
@@ -63,6 +68,32 @@ def unswung(problem: Problem) -> str:
             "a slider cannot drive the crank; stay on one side of it, change the ranges, or drive the crank"
         )
     return (
-        f"friction may lock every design of the ranges that can make {asked}; lessen the friction, lengthen the rod, "
-        "or drive the other end"
+        f"friction may lock every design of the ranges that can make {asked}; {_too_much(stuck, motion)}lessen the "
+        "friction, lengthen the rod, or drive the other end"
     )
+
+
+def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
+    """Return which share of the friction some design of machines that it locks still moves with; "" where it varies."""
+    if any(path.startswith("friction.") for machine, _ in stuck for item in machine.varying for path in item.paths):
+        return ""
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        share = 0.5 * (low + high)
+        runs = any(driven(_rubbing(machine, share), motion, able).any() for machine, able in stuck)
+        low, high = (share, high) if runs else (low, share)
+    return f"the first ones run with {low:.2g} of its coefficients; "
+
+
+def _rubbing(machine: Mechanism, share: float) -> Mechanism:
+    """Return a machine with a share of its coefficients of friction."""
+    own = machine.friction
+    pins = {
+        name: replace(pin, coefficient=share * pin.coefficient)
+        for name, pin in (
+            ("crank_pivot", own.crank_pivot),
+            ("crank_pin", own.crank_pin),
+            ("slider_pin", own.slider_pin),
+        )
+    }
+    return replace(machine, friction=replace(own, guide=share * own.guide, **pins))

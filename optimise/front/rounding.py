@@ -17,7 +17,7 @@ import numpy as np
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ...model.linkage.values import DIMENSIONS
-from ...objectives.tables.evaluate import moving
+from ...objectives.tables.evaluate import running
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
@@ -191,7 +191,7 @@ class _Search:
         grid = np.meshgrid(*self._ladders(reach), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
-            return np.asarray(designs[moving(self.part.mechanism, self.part.motion, designs)])
+            return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
         return np.asarray(designs[clearly_turning(designs)])
 
     def _order(self, designs: Array, losses: Array) -> Whole:

@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Mask, Whole
 from ...model.linkage.values import DIMENSIONS
 from ...objectives.quantity import Array, Pieces
-from ...objectives.tables.evaluate import moving
+from ...objectives.tables.evaluate import running
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
@@ -102,10 +102,10 @@ class Evaluator:
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf where the linkage does not move as asked.
 
-        As asked: it turns fully, or makes the swing of the problem.
+        As asked: it turns fully, or makes the swing of the problem, and friction does not lock it on the way.
         """
         violation = np.zeros(len(dimensions))
-        turns = moving(self.mechanism, self.problem.motion, dimensions)
+        turns = running(self.mechanism, self.problem.motion, dimensions)
         violation[~turns] = np.inf
         for name in self.computed:
             # A linear rule may give an offset of the other sign, which is of the other sheet.
