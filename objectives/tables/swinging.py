@@ -67,14 +67,14 @@ def require_loads(mechanism: Mechanism) -> None:
         if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
             raise InputError(
                 "the cycle of a cylinder runs between the dead centres of a full turn; got one with a swing; leave it "
-                "out, or give its pressures over the slider position"
+                "out, or give the forces on its piston over the slider position, from the crank pivot"
             )
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre"):
             instead = "zero crank angle" if load.enters is Enters.ANGLE_TABLE else "the crank pivot"
             raise InputError(
                 f"a load is measured from the {datum} of a full turn, which a swing need not have; "
-                f"measure it from {instead}, or leave it out"
+                f"measure it from {instead}, a pressure as the force on its piston, or leave it out"
             )
         if load.cycle_turns > 1:
             raise InputError(

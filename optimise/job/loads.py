@@ -52,7 +52,7 @@ def _part(table: model.Table) -> type[LoadPart]:
     fields: dict[str, Any] = {entry.name: (_type(entry), _field(entry)) for entry in table.entries}
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
     part.model_config["json_schema_extra"] = {
-        "x-load": {"key": table.key, "title": table.title, "first": dict(table.first)}
+        "x-load": {"key": table.key, "title": table.title, "first": dict(table.first), "motion": table.motion}
     }
     part.model_rebuild(force=True)
     part.makes = staticmethod(table.build)

@@ -194,5 +194,6 @@ AngleTable.tables = (
         ),
         {"pressure_angles": ["0 deg", "180 deg"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
         _of_pressures,
+        motion="turn",
     ),
 )

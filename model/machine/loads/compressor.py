@@ -86,5 +86,6 @@ Compressor.tables = (
         ),
         {"bore": "70 mm", "suction": "1 bar", "discharge": "8 bar", "clearance": 0.05},
         _built,
+        motion="turn",
     ),
 )

@@ -93,5 +93,6 @@ CrankTorque.tables = (
         ),
         {"torque_per_angle": "40 N m/rad", "free_angle": "0 deg"},
         built(CrankTorque, torque_per_angle="crank_stiffness"),
+        motion="swing",
     ),
 )

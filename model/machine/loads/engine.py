@@ -296,5 +296,6 @@ Engine.tables = (
         ),
         {"bore": "70 mm", "compression_ratio": 8.0, "intake": "1 bar", "peak_pressure": "40 bar"},
         _built,
+        motion="turn",
     ),
 )

@@ -82,6 +82,7 @@ class Table:
     """A table [[load]] of a job file, told from others by its key.
 
     title: of the form's list. help: a sentence. first: the form's first values. build: from values in SI, by name.
+    motion: of the crank that it is of, which turns through or swings; "" for either.
     """
 
     key: str
@@ -91,6 +92,7 @@ class Table:
     entries: tuple[Entry, ...]
     first: Mapping[str, Any]
     build: Callable[..., Load]
+    motion: Literal["", "turn", "swing"] = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -129,5 +129,6 @@ PositionTable.tables = (
         ),
         {"pressure_positions": ["0 mm", "50 mm"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
         _of_pressures,
+        motion="turn",
     ),
 )

@@ -50,8 +50,8 @@ declare namespace Form {
     items?: Schema;
     anyOf?: Schema[];
     oneOf?: Schema[];
-    /** Of a load's table: the key that tells it from others, its name in lists, and its first values. */
-    "x-load"?: { key: string; title: string; first: Record<string, unknown> };
+    /** Of a load's table: the key that tells it from others, its name in lists, its first values, and the motion that it is of, "" for any. */
+    "x-load"?: { key: string; title: string; first: Record<string, unknown>; motion: string };
   }
   /** What control a part of the schema needs. */
   interface Described {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,11 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
+from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.catalogue import with_catalogues
 from slidercrank.service.store import Store
-from tests.service.page.conftest import Open
+from tests.service.page.conftest import Open, ready, text_of
 
 Job = dict[str, Any]
 TOUCH = """() => {
@@ -162,3 +164,35 @@ def test_a_catalogue_is_pasted_and_its_options_are_in_the_job_without_those_that
     assert len(parse_job(job).variants) == 2
     page.get_by_role("button", name="Remove catalogue 1").click()
     assert "choice" not in json.loads(page.locator("#job-text").input_value())
+
+
+def test_cylinders_an_uneven_speed_and_an_engine_of_four_strokes_are_filled_in(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=compressor")
+    ready(page)
+    for fold in ("Several cylinders on one crankshaft", "Acceleration of the crank, uneven speed"):
+        page.locator("details.more > summary").filter(has_text=fold).click()
+    page.get_by_label("phases", exact=True).fill("0 deg, 180 deg")
+    page.get_by_label("banks", exact=True).fill("0 deg, 90 deg")
+    page.get_by_label("places", exact=True).fill("-50 mm, 50 mm")
+    page.get_by_label("cosines", exact=True).fill("0, 0.05")
+    ready(page)
+    machine = parse_job(text_of(page)).mechanism
+    assert machine.arrangement is not None
+    assert machine.arrangement.phases == pytest.approx((0.0, math.pi))
+    assert machine.arrangement.banks == pytest.approx((0.0, 0.5 * math.pi))
+    assert machine.arrangement.places == (-0.05, 0.05)
+    assert machine.speed_profile is not None
+    kind = page.get_by_label("kind of load", exact=True)
+    kind.select_option(label="ideal engine cycle")
+    page.get_by_label("cycle", exact=True).select_option("720 deg")
+    page.get_by_label("heat", exact=True).fill("1.6 kJ/L")
+    page.get_by_label("heat", exact=True).blur()
+    page.get_by_label("peak pressure", exact=True).fill("")
+    page.get_by_label("exhaust", exact=True).fill("1.1 bar")
+    page.get_by_label("exhaust", exact=True).blur()
+    ready(page)
+    load = parse_job(text_of(page)).mechanism.loads[0]
+    assert isinstance(load, FourStroke)
+    # The pressure after compression, and the rise by the heat at constant volume.
+    risen = 1e5 * 8.0**1.3 + 0.4 * 1.6e6 * 7.0
+    assert (load.high, load.exhaust) == pytest.approx((risen, 1.1e5), rel=1e-9)

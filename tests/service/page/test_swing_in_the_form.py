@@ -89,3 +89,70 @@ def test_a_swing_is_stated_by_places_of_the_slider_or_by_its_angle(form: Open, s
     assert (motion["slider_from"], motion["slider_to"]) == ("3100 mm", "800 mm")
     assert not {"from", "to", "swing"} & set(motion)
     require_accessible(page)
+
+
+def test_a_swing_is_offered_what_it_can_have(form: Open, store: Store) -> None:
+    """Cycles of cylinders, cylinders on a shaft and the like are of a full turn, a spring on the crank of a swing."""
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    folds = page.locator("details.more > summary")
+    of_a_turn = [
+        "Several cylinders",
+        "Wanted motion",
+        "Motor and flywheel",
+        "Robust designs",
+        "Loose joint",
+        "Costs of",
+    ]
+    for fold in of_a_turn:
+        expect(folds.filter(has_text=fold)).to_have_count(0)
+    expect(page.get_by_label("acceleration", exact=True)).to_have_count(0)
+    page.get_by_role("button", name="Add a load").click()
+    kind = page.get_by_label("kind of load", exact=True)
+    kinds = kind.locator("option").all_text_contents()
+    assert "spring on a swinging crank" in kinds
+    assert not [title for title in kinds if "pressure" in title or "engine" in title or "compressor" in title]
+    for title in ("torque on the crank", "table of torques on the crank over the crank angle", *kinds[-2:]):
+        kind.select_option(label=title)
+        ready(page)
+        assert parse_job(text_of(page)).mechanism.loads
+    page.get_by_label("the crank", exact=True).select_option("")
+    for fold in of_a_turn:
+        expect(folds.filter(has_text=fold)).to_have_count(1)
+    turning = set(page.get_by_label("kind of load", exact=True).locator("option").all_text_contents())
+    assert set(kinds) - turning == {"spring on a swinging crank"}
+    assert len(turning - set(kinds)) == 4
+
+
+def test_what_a_choice_leaves_without_a_meaning_is_taken_out(form: Open, store: Store) -> None:
+    """The points of a table with another law, the duration of a slow swing, the tolerance of no actuator."""
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    law = page.get_by_label("motion over time", exact=True)
+    law.select_option("table")
+    page.get_by_label("duration of one way", exact=True).fill("20")
+    page.get_by_label("shares of the time", exact=True).fill("0, 0.2, 0.8, 1")
+    page.get_by_label("shares of the way", exact=True).fill("0, 0.1, 0.9, 1")
+    ready(page)
+    motion = text_of(page)["motion"]
+    assert (motion["law_times"], motion["law_shares"]) == ([0, 0.2, 0.8, 1], [0, 0.1, 0.9, 1])
+    law.select_option("harmonic")
+    ready(page)
+    assert not {"law_times", "law_shares"} & set(text_of(page)["motion"])
+    law.select_option("slow")
+    ready(page)
+    assert "duration" not in text_of(page)["motion"]
+    page.get_by_label("driven end", exact=True).select_option("crank")
+    assert "actuator_tolerance" not in text_of(page)["motion"]
+
+
+def test_the_start_of_a_swing_may_vary(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=support")
+    ready(page)
+    page.get_by_label("stated by", exact=True).select_option("crank angle and swing")
+    page.get_by_label("swing", exact=True).fill("90")
+    page.locator("details.more > summary").filter(has_text="Further numbers that vary").click()
+    page.get_by_label("Another number that varies", exact=True).select_option("motion.from")
+    ready(page)
+    problem = parse_job(text_of(page))
+    assert [item.name for item in problem.mechanism.varying] == ["motion.from"]

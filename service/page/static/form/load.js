@@ -3,6 +3,7 @@
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
+import { fits } from "./motion.js";
 import { idOf, isTable } from "./path.js";
 import { points } from "./points.js";
 import { describe, words } from "./schema.js";
@@ -16,7 +17,7 @@ export function loads(form) {
   const all = Array.isArray(given) ? given : [];
   const add = h("button", { type: "button", id: "add-load" }, all.length ? "Add another load" : "Add a load");
   add.addEventListener("click", () => {
-    form.put(["load"], [...all, structuredClone(kinds(form)[0].first)]);
+    form.put(["load"], [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)]);
     form.redraw(idOf(["load", all.length, "kind"]));
   });
   return [all.map((load, place) => one(form, load, place, all)), h("p", {}, add)];
@@ -25,8 +26,9 @@ export function loads(form) {
 /** @param {Form.Whole} form @param {unknown} load @param {number} place @param {unknown[]} all */
 function one(form, load, place, all) {
   const path = ["load", place];
-  const known = kinds(form);
-  const kind = known.find(({ key }) => isTable(load) && key in load) ?? known[0];
+  const every = kinds(form);
+  const kind = every.find(({ key }) => isTable(load) && key in load) ?? every[0];
+  const known = every.filter((one) => one === kind || fits(form, one));
   const select = h("select", { id: idOf([...path, "kind"]) }, known.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)));
   select.addEventListener("change", () => {
     form.put(path, structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first));
@@ -53,10 +55,10 @@ function one(form, load, place, all) {
 }
 
 /**
- * Return the kinds of load: key, title, first values and table of the schema.
+ * Return the kinds of load: key, title, first values, motion that it is of and table of the schema.
  * @param {Form.Whole} form
  */
 function kinds(form) {
   const tables = form.schema.property(["load"])?.items?.oneOf ?? [];
-  return tables.map(form.schema.resolve).map((table) => ({ key: "", title: "", first: {}, ...table["x-load"], table }));
+  return tables.map(form.schema.resolve).map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table }));
 }

@@ -22,7 +22,7 @@ export function swings(form) {
   return form.at([...PATH, "kind"]) === "swing";
 }
 
-/** Return whether a quantity can be asked of the motion of a job. @param {Form.Whole} form @param {Api.Quantity} quantity */
+/** Return whether a quantity, or a kind of load, is of the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
 export function fits(form, { motion }) {
   return motion === "" || motion === (swings(form) ? "swing" : "turn");
 }
@@ -51,10 +51,13 @@ export function motion(form, turning) {
   /** @param {string} key @param {string} label */
   const own = (key, label) => byschema(form, [...PATH, key], { label });
   const slow = (form.at([...PATH, "law"]) ?? "slow") === "slow";
-  /** @param {string} key @param {string} label */
-  const choosing = (key, label) => {
+  /** @param {string} key @param {string} label @param {(chosen: string) => string[]} gone what a choice leaves without a meaning */
+  const choosing = (key, label, gone) => {
     const made = own(key, label);
-    made?.querySelector("select")?.addEventListener("change", () => form.redraw());
+    made?.querySelector("select")?.addEventListener("change", ({ currentTarget }) => {
+      for (const other of gone(/** @type {HTMLSelectElement} */ (currentTarget).value)) form.put([...PATH, other], undefined);
+      form.redraw();
+    });
     return made;
   };
   const how = stated(form);
@@ -65,9 +68,9 @@ export function motion(form, turning) {
     ways,
     ...Object.keys(ENDS[how] ?? {}).map((key) => own(key, LABELS[/** @type {keyof typeof LABELS} */ (key)])),
     how.includes("slider") ? own("crank_side", "side of the crank pin") : null,
-    choosing("driver", "driven end"),
+    choosing("driver", "driven end", (driver) => (driver === "slider" ? [] : ["actuator_tolerance"])),
     own("margin", "margin from dead points"),
-    choosing("law", "motion over time"),
+    choosing("law", "motion over time", (law) => [...(law === "" || law === "slow" ? ["duration"] : []), ...(law === "table" ? [] : ["law_times", "law_shares"])]),
     slow ? null : own("duration", "duration of one way"),
     ...(form.at([...PATH, "law"]) === "table" ? [own("law_times", "shares of the time"), own("law_shares", "shares of the way")] : []),
     form.at([...PATH, "driver"]) === "slider" ? own("actuator_tolerance", "tolerance of the actuator") : null,

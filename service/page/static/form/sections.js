@@ -25,7 +25,7 @@ export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Acceleration of the crank, crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], byschema(form, ["mechanism", "acceleration"]), swings(form) && form.at(["mechanism", "speed_profile"]) === undefined ? null : byschema(form, ["mechanism", "speed_profile"]), byschema(form, ["mechanism", "branch"])), more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form))),
+    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], turning(form, "mechanism.acceleration", () => byschema(form, ["mechanism", "acceleration"])), turning(form, "mechanism.speed_profile", () => byschema(form, ["mechanism", "speed_profile"])), byschema(form, ["mechanism", "branch"])), turning(form, "target_motion", () => more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
@@ -34,11 +34,11 @@ export function sections(form) {
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"])), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form)), more(["Motor and flywheel, for the start and the running", has(form, "drive")], byschema(form, ["drive"], { label: "drive" }))),
+    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), turning(form, "mechanism.cylinders", () => more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"]))), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form)), turning(form, "drive", () => more(["Motor and flywheel, for the start and the running", has(form, "drive")], byschema(form, ["drive"], { label: "drive" })))),
     section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
     section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
     section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
-    section("Search", solving(form), more(["Robust designs", has(form, "robust")], robust(form)), more(["Loose joint, for the simulation of its impacts", has(form, "clearance")], byschema(form, ["clearance"], { label: "clearance" }))),
+    section("Search", solving(form), turning(form, "robust", () => more(["Robust designs", has(form, "robust")], robust(form))), turning(form, "clearance", () => more(["Loose joint, for the simulation of its impacts", has(form, "clearance")], byschema(form, ["clearance"], { label: "clearance" })))),
     kept(form),
   ].filter(Boolean);
 }
@@ -58,6 +58,14 @@ function fields(...content) {
 function more(title, ...content) {
   const [name, has] = [title].flat();
   return h("details", { class: "more" }, h("summary", {}, name, has ? h("span", { class: "has" }, has) : null), h("div", { class: "fields" }, content));
+}
+
+/**
+ * Return a part that is of a crank that turns through; of one that swings only where the job has it, so that it can be taken out.
+ * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
+ */
+function turning(form, place, part) {
+  return swings(form) && form.at(place.split(".")) === undefined ? null : part();
 }
 
 /** Return what the job has at some places, in a line; "" for nothing. @param {Form.Whole} form @param {...string} places */
@@ -149,7 +157,7 @@ function tolerances(form) {
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
     more(["Clearances, and where the position matters", has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke")], byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
-    more(["Costs of tolerances, for those of least cost", has(form, "costs")], byschema(form, ["costs"], { label: "costs" })),
+    turning(form, "costs", () => more(["Costs of tolerances, for those of least cost", has(form, "costs")], byschema(form, ["costs"], { label: "costs" }))),
   ];
 }
 
