@@ -26,7 +26,7 @@ of that bar, K = 2). Each of these is at most one:
     buckling        n C / P in the plane, and the same with w and d exchanged out of it: Shigley eq. 4-43 with the end
                     condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
                     crank, a cantilever
-    net section     n K F / (S_y (w - D) d), written as n K F / (S_y w d) + D / w, at each pin of diameter D, with the
+    net section     n K F / (S_y (w - D) d), in the programme n K F / (S_y w d) + D / w, at each pin of diameter D, with the
                     stress concentration K of the eye; in fatigue K (F_a / S_e + F_m / S_m) of the axial load, own mass
                     as amplitude
     bent eye        at the crank's pivot, at the bore and at the outer edge, with B = min(K, 2) and 1, C = K and 1 and
@@ -104,9 +104,16 @@ def limit_states(
 ) -> dict[str, Any]:
     """Return the utilisation of each limit state (1 is the limit), by name.
 
-    held: K of the plane's buckling length. z: amplification. cvxpy expressions give posynomials; numbers give numbers,
-    with z at its least if it is None, infinite where the bar buckles.
+    held: K of the plane's buckling length. z: amplification. cvxpy expressions give posynomials. Numbers, with z None,
+    give numbers: z is then at its least, infinite where the bar buckles, and of an eye the stress in its net section
+    counts, of which a posynomial has the limit alone.
     """
+    exact = z is None
+
+    def eye(stress: Any, hole: Any) -> Any:
+        """Return the utilisation of an eye by the stress without its hole and the share that the hole takes."""
+        return stress / (1.0 - hole) if exact and hole < 1.0 else stress + hole
+
     static = limits.static_safety / material.yield_strength
     euler = 12.0 * (held * length) ** 2 / (math.pi**2 * material.elasticity) * loads.compression
     u = above(limits.static_safety * euler / (d * w**3))
@@ -123,9 +130,9 @@ def limit_states(
     }
     raised = limits.eye_concentration
     for name, (force, diameter) in loads.pins.items():
-        found[f"net section at the {name}"] = static * raised * force / (w * d) + diameter / w
+        found[f"net section at the {name}"] = eye(static * raised * force / (w * d), diameter / w)
         tired = limits.fatigue_safety * raised * loads.fatigue_axial
-        found[f"fatigue of the eye at the {name}"] = tired / (w * d) + diameter / w
+        found[f"fatigue of the eye at the {name}"] = eye(tired / (w * d), diameter / w)
         found[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
     if loads.bent_eye:
         diameter = loads.pins[loads.bent_eye][1]
@@ -137,7 +144,7 @@ def limit_states(
                 ("fatigue of the ", limits.fatigue_safety, loads.fatigue_axial, tiring),
             ):
                 stress = n * (pulled * axial * rest + 6.0 * bent * turned * lever) / (d * w**3)
-                found[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = stress + (diameter / w) ** 3
+                found[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = eye(stress, (diameter / w) ** 3)
     found["least width"], found["greatest width"] = limits.width[0] / w, w / limits.width[1]
     found["least depth"], found["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
     return found

@@ -37,6 +37,7 @@ _SETTLED = 1e-8  # relative change of the sections that ends the iteration
 _RADIUS = 1.0  # of the logarithms of the sections, in one iteration
 _ANYWHERE = 50.0
 _OVER = 1e-6  # overload that counts as none
+_ROUNDS, _ROUNDING = 20, 1e-9  # of widening eyes; what is left of an overload
 _STEP = 1e-4  # relative, for central differences of the loads: error 1e-8 of them
 _EXACT = 1e-11  # of the solver
 _SLACK = 200.0  # percent of mass that one percent of overload counts as; far above any sensitivity
@@ -95,6 +96,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
         elif change > 0.7 * before:
             radius = 0.5 * min(radius, change)  # two crank angles take turns as the worst
         before = change if iteration else math.inf
+    sizes = task.widened(sizes)
     states = {name: state for name, state in task.states(sizes).items() if not name.endswith(AMPLIFICATION)}
     # Where a bar buckles its stress is infinite; what says by how much is the buckling.
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
@@ -148,6 +150,30 @@ class _Task:
             for row in range(len(sizes))
         ]
         return np.array([[math.log(up[name] / down[name]) / (2.0 * _STEP) for up, down in ends] for name in ends[0][0]])
+
+    def widened(self, sizes: Array) -> Array:
+        """Return sizes whose eyes carry their loads to rounding.
+
+        The solver is exact to a share of the width, which is much of a net section of some micrometres.
+        """
+        holes = {
+            "pivot": self.limits.crank_pivot,
+            "crank pin": self.limits.crank_pin,
+            "slider pin": self.limits.slider_pin,
+        }
+        widths = np.exp(sizes)
+        for _ in range(_ROUNDS):
+            wider = widths.copy()
+            for name, state in self.states(np.log(widths)).items():
+                kind, _, pin = name.partition(" at the ")
+                width, hole = 2 * kind.startswith("rod"), holes.get(pin, 0.0)
+                if pin and "bearing" not in kind and 1.0 + _ROUNDING < state < math.inf and widths[width] > hole:
+                    wider[width] = max(wider[width], hole + state * (widths[width] - hole))
+            wider = np.minimum(wider, [self.limits.width[1], math.inf] * 2)
+            if (wider == widths).all():
+                break
+            widths = wider
+        return np.log(widths)
 
     def limit_states(self, x: list[Any], z: list[Any], joints: dict[str, Any], above: Above = same) -> dict[str, Any]:
         """Return the limit states of widths and depths x, amplifications z and joint loads, by bar and name."""

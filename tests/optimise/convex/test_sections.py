@@ -21,7 +21,7 @@ from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.strength import Material
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.optimise.sizing.limit_states import rod_loads
+from slidercrank.optimise.sizing.limit_states import joint_terms, rod_loads
 from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.section_loads import joint_loads, whip_of
 from slidercrank.optimise.sizing.sections import Sections, size_sections
@@ -316,3 +316,31 @@ def test_sections_know_whether_they_have_settled() -> None:
     assert max(found.utilisation.values()) <= 1.0 + 1e-6
     assert found.mass == pytest.approx(found.crank.mass(0.05) + found.rod.mass(0.2), rel=1e-12)
     assert all(found.utilisation[name] >= 1.0 - 1e-5 for name, rate in found.sensitivity.items() if rate > 1e-3)
+
+
+@pytest.mark.parametrize("seed", [94, 99, 12, 22])
+def test_eyes_of_a_few_micrometres_carry_what_they_must(seed: int) -> None:
+    machine, linkage, material, limits = random_task(seed)
+    random = np.random.default_rng(seed)
+    machine = replace(
+        machine,
+        loads=(),
+        speed=machine.speed * 10.0 ** random.uniform(-2.0, -0.5),
+        acceleration=0.0,
+        slider_mass=10.0 ** random.uniform(-5.0, 0.0),
+        gravity=(0.0, 0.0) if random.random() < 0.5 else machine.gravity,
+    )
+    found = size_sections(machine, linkage, material, limits)
+    joints = joint_loads(replace(machine, crank=found.crank, rod=found.rod), linkage)
+    terms = joint_terms(joints, material, limits)
+    width, depth = found.rod.width, found.rod.depth
+    own = rod_loads(width, depth, float(linkage.rod), terms, whip_of(machine, linkage), material, limits)
+    for pin, diameter in (("crank pin", limits.crank_pin), ("slider pin", limits.slider_pin)):
+        raised = limits.eye_concentration / ((width - diameter) * depth)
+        for name, used in (
+            ("net section", limits.static_safety * raised * terms[pin] / material.yield_strength),
+            ("fatigue of the eye", limits.fatigue_safety * raised * own.fatigue_axial),
+        ):
+            assert 0.0 < used <= 1.0 + 1e-6
+            assert found.utilisation[f"rod: {name} at the {pin}"] == pytest.approx(used, rel=1e-9)
+    assert max(found.utilisation.values()) <= 1.0 + 1e-6
