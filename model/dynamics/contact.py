@@ -29,20 +29,20 @@ def rubs(mechanism: Mechanism) -> bool:
 
 @analytic
 def _touch(
-    theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, turn: Any, swing: Any
+    theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, grip: Any, swing: Any
 ) -> Any:
     sine, cosine = math.sin(theta), math.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
     load = load_on_slider(m, d, block, j, theta, outward, loads, piece, shift)
-    return touch(sine, cosine, m, d, load, turn, swing)
+    return touch(sine, cosine, m, d, load, grip, swing)
 
 
 @analytic
 def _senses(inside: Any, d: Any) -> Any:
-    """Senses in which crank and rod turn, 1 or -1."""
+    """Senses in which the crank turns, the rod, and the crank against the rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
     m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
-    return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0
+    return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0, turn if m.rod_1 < 1.0 else -turn
 
 
 @analytic
@@ -51,11 +51,11 @@ def sides_of(
 ) -> Any:
     """Return the `Sides` of the segment, entered before, around the crank angle `inside`."""
     if not rubbing:
-        return Sides(0.0, 0.0, 0.0, 0.0)
-    turn, swing = _senses(inside, d)
+        return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
+    turn, swing, grip = _senses(inside, d)
     slide = d.branch.real * (1.0 if outward else -1.0)
-    guide = _touch(inside, d, block, j, outward, loads, piece, shift, turn, swing)
-    return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0)
+    guide = _touch(inside, d, block, j, outward, loads, piece, shift, grip, swing)
+    return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0, grip)
 
 
 @analytic
@@ -78,7 +78,7 @@ def cut_contacts(
             continue
         inside = within(a, b)
         _, outward = enter(d, block, j, inside, loads, watch, piece, shift)
-        turn, swing = _senses(inside, d)
+        _, swing, grip = _senses(inside, d)
         low, high = crowded(a, kappa), crowded(b, kappa)
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
         left, before, right, after = a, 0.0, a, 0.0
@@ -87,7 +87,7 @@ def cut_contacts(
         while i <= points:
             sampled = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
             theta = sampled if halvings == 0 else 0.5 * (p + q)
-            now = _touch(theta, d, block, j, outward, loads, piece, shift, turn, swing)
+            now = _touch(theta, d, block, j, outward, loads, piece, shift, grip, swing)
             if halvings > 0:
                 halvings += 1
                 if now * before > 0.0:
@@ -123,12 +123,12 @@ def contact_shift(
     sides: Any,
 ) -> float:
     """Return the imaginary part of such a cut's angle when the design `z` carries an imaginary step; `d` is without."""
-    moved = _touch(theta, z, stepped, j, outward, loads, piece, shift, sides.turn, sides.swing).imag
+    moved = _touch(theta, z, stepped, j, outward, loads, piece, shift, sides.grip, sides.swing).imag
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = motion(s, c, d.r, d.l, d.e, d.branch)
     load = load_on_slider(m, d, block, j, complex(theta, STEP), outward, loads, piece, shift)
-    rise = touch(s, c, m, d, load, sides.turn, sides.swing).imag / STEP
+    rise = touch(s, c, m, d, load, sides.grip, sides.swing).imag / STEP
     return float(-moved / rise)
 
 

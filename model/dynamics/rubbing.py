@@ -4,10 +4,11 @@ Friction adds to the equations of `dynamics` (mu: the guide's coefficient, rho: 
 crank speed):
 
 - slider: B_x = pull + mu |N| sgn(x' w), N = -(B_y + W), W = m_s G_y;
-- rod, moments about the crank pin: along B_y - across B_x + moment - rho_A sgn(w) |A| + rho_B sgn(phi' w) |B| = 0;
-- crank, moments about the pivot: T gains sgn(w) (rho_A |A| + rho_O |P|).
+- rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B sgn(phi' w) |B| = 0;
+- crank, moments about the pivot: T gains rho_A s_A |A| + rho_O sgn(w) |P|, with s_A = sgn((1 - phi') w).
 
-In the crank pin the rod turns by (phi' - 1) w, and |phi'| < 1 where l > r + |e|: it never turns the other way.
+|phi'| < 1 where l > r + |e|, so that s_A = sgn(w); on a swing the rod may turn faster than the crank, where x is on the
+other side of the pivot.
 
 With B_x eliminated, and A - B known, the moment balance is one equation h(y) = 0 for y = B_y. Where y > -W or y < -W
 its slope is along -+ mu across, plus at most (rho_A + rho_B) sqrt(1 + mu^2) in size, since d|A|/dy and d|B|/dy are at
@@ -41,13 +42,14 @@ class Sides(NamedTuple):
     """Signs, each +1 or -1, that stay the same within a segment of the cycle; all 0 without friction.
 
     turn: of the crank speed (+1 at rest). slide: of the slider's velocity along x. swing: of the rod's angular
-    velocity. press: of B_y + W, minus that of the guide's force.
+    velocity. press: of B_y + W, minus that of the guide's force. grip: of the crank's angular velocity against the rod.
     """
 
     turn: float
     slide: float
     swing: float
     press: float
+    grip: float
 
 
 @analytic
@@ -65,13 +67,13 @@ def always_drives(d: Design) -> Any:
 
 
 @analytic
-def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, turn: Any, swing: Any) -> Any:
+def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, swing: Any) -> Any:
     """Return h(-W) times the branch: it has the sign of the guide's force, and is smooth between other breakpoints."""
     b = balance(sine, cosine, m, d, load)
     y = -d.slider_mass * d.gravity_y
     ax, ay = b.pull + b.rod_x, y + b.rod_y
     pins = d.slider_pin_circle * swing * root(b.pull * b.pull + y * y)
-    pins = pins - d.crank_pin_circle * turn * root(ax * ax + ay * ay)
+    pins = pins - d.crank_pin_circle * grip * root(ax * ax + ay * ay)
     return d.branch.real * (m.along * y - m.across * b.pull + b.moment + pins)
 
 
@@ -95,7 +97,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
     slope = m.along - m.across * mu
     pull = b.pull + mu * weight
     rest = b.moment - m.across * pull
-    p, q = -d.crank_pin_circle * s.turn, d.slider_pin_circle * s.swing
+    p, q = -d.crank_pin_circle * s.grip, d.slider_pin_circle * s.swing
     least = drives(m.along.real, m.across.real, d)
     y = math.nan
     if least.real > 0.0:
@@ -124,7 +126,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
     f = joined(sine, cosine, d, b, pull + mu * by, by)
     pin = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
     pivot = root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
-    torque = f.torque + s.turn * (d.crank_pin_circle * pin + d.crank_pivot_circle * pivot)
+    torque = f.torque + (s.grip * d.crank_pin_circle * pin + s.turn * d.crank_pivot_circle * pivot)
     return Forces(torque, f.pivot_x, f.pivot_y, f.crank_pin_x, f.crank_pin_y, f.slider_pin_x, f.slider_pin_y, f.guide)
 
 

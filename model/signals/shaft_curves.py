@@ -157,7 +157,7 @@ def follow_kernel(
     own, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
     piece = np.zeros((count, first.kind.shape[0]), np.int64)
     shift = np.zeros((count, first.kind.shape[0]))
-    sides = np.zeros((count, 4))
+    sides = np.zeros((count, 5))
     for p in range(asked.row.shape[0]):
         ratio, slope, _, _ = ratio_at(asked.inside[p], pace)
         for i in range(count):
@@ -177,7 +177,8 @@ def follow_kernel(
             local = asked.inside[p] + axes.lead[k]
             _, outward = enter(d, real, 0, local, loads, watch, piece[i], shift[i])
             signs = sides_of(local, d, real, 0, outward, loads, piece[i], shift[i], rubbing)
-            sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3] = signs.turn, signs.slide, signs.swing, signs.press
+            sides[i, 0], sides[i, 1], sides[i, 2] = signs.turn, signs.slide, signs.swing
+            sides[i, 3], sides[i, 4] = signs.press, signs.grip
             out.outward[p, i] = 1 if outward else 0
         for a in range(asked.angle.shape[1]):
             theta = asked.angle[p, a]
@@ -210,7 +211,7 @@ def follow_kernel(
                     at = complex(local, step)
                     m = design_motion(s, c, z)
                     load = load_on_slider(m, z, own, 0, at, out.outward[p, i] == 1, loads, piece[i], shift[i])
-                    signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3])
+                    signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
                     place = (own, at, loads, piece[i], shift[i])
                     x, y = _components(kind, s, c, m, z, load, signs, place, rate)
                     if kind in (_SHAKING_FORCE, _ROCKING_COUPLE):

@@ -149,8 +149,8 @@ class Many:
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
                 yield from self._at_angle(np.full(self.count, angle), ANGLE)
-            if slider and friction.crank_pin.circle:
-                yield self._at_place(np.zeros(self.count)), PLACE
+            if friction.crank_pin.circle:  # the rod turns as fast as the crank where the slider is at the pivot
+                yield from self._passing(0.0)
         if self.both and not slider:
             r, l, e = self.designs[:, :3].T
             for reach, ahead in ((r + l, True), (r - l, False)):
@@ -161,16 +161,20 @@ class Many:
             for knot in self.loads.at[self.loads.start[k] : self.loads.start[k + 1]].tolist():
                 if kind == int(Enters.ANGLE_TABLE):
                     yield from self._at_angle(np.full(self.count, knot), ANGLE)
-                elif slider:
-                    yield self._at_place(np.full(self.count, self.sign * knot)), PLACE
                 else:
-                    r, l, e = self.designs[:, :3].T
-                    size = np.hypot(knot, e)
-                    with np.errstate(divide="ignore", invalid="ignore"):
-                        half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
-                    for way in (-1.0, 1.0):
-                        angle = np.arctan2(e, self.sign * knot) + way * half
-                        yield from self._at_angle(angle, PLACE)
+                    yield from self._passing(self.sign * knot)
+
+    def _passing(self, x: float) -> Any:
+        """Yield the cuts at which the slider passes a place."""
+        if self.swing.driver == "slider":
+            yield self._at_place(np.full(self.count, x)), PLACE
+            return
+        r, l, e = self.designs[:, :3].T
+        size = np.hypot(x, e)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
+        for way in (-1.0, 1.0):
+            yield from self._at_angle(np.arctan2(e, x) + way * half, PLACE)
 
     def _at_angle(self, angle: Array, state: int) -> Any:
         theta = self.ends.within(angle)
@@ -265,22 +269,9 @@ def _sorted(own: Pieces) -> Pieces:
     return Pieces(own.back, cuts, np.where(ends, -1, state))
 
 
-def able(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) can swing as asked; see `require_swing` of one."""
-    sign = mechanism.sign
-    found = passes(mechanism, swing, designs)
-    if swing.driver == "crank" and mechanism.fullest.friction.crank_pin.circle and found.any():
-        # The rod turns as fast as the crank where the slider is at the pivot.
-        ends = ends_of(mechanism, swing, designs[found])
-        theta = np.linspace(ends.start, ends.end, 361, axis=1)
-        r, l, e = (designs[found, i : i + 1] for i in range(3))
-        found[found] = (sign * motion(np.sin(theta), np.cos(theta), r, l, e, sign).x > 0.0).all(axis=1)
-    return found
-
-
 def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can swing as asked, and are not locked by friction on the way."""
-    found = able(mechanism, swing, designs)
+    found = passes(mechanism, swing, designs)
     if mechanism.fullest.friction.acts:
         rows = np.flatnonzero(found)
 

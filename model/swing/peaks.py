@@ -17,7 +17,8 @@ from ..arrays import Array, Whole
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
-from .many import Many, Pieces, able
+from .closure import passes
+from .many import Many, Pieces
 from .points import DRIVE, ERROR
 from .swing import Swing
 
@@ -111,7 +112,7 @@ def _gathered(
     values, places = np.full((n, kept), -np.inf), np.full((n, kept), np.nan)
     slopes = np.zeros((n if gradients else 0, kept, designs.shape[1]))
     values[:, 0] = np.nan
-    rows = np.flatnonzero(able(mechanism, swing, designs))
+    rows = np.flatnonzero(passes(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]

@@ -82,16 +82,16 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 
 
 @analytic
-def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rubbing: bool) -> Any:
+def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool) -> Any:
     """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide.
 
-    on_crank: minus the torque of the loads on the crank, N m.
+    on_crank: minus the torque of the loads on the crank, N m. rod_1: phi' within the piece, whose side counts on a cut.
     """
     b = with_couple(balance(sine, cosine, m, d, load), on_crank)
     bx, by = free_pin(sine, cosine, m, d, b)
     turn = 1.0 if d.speed.real > 0.0 else -1.0
     if rubbing:
-        over, swings = (1.0 if m.rod_1.real < 1.0 else -1.0), (1.0 if m.rod_1.real > 0.0 else -1.0)
+        over, swings = (1.0 if rod_1 < 1.0 else -1.0), (1.0 if rod_1 > 0.0 else -1.0)
         sides = PinSides(
             d.crank_pin_circle * (over * turn), d.slider_pin_circle * (swings * turn), d.crank_pivot_circle * turn
         )
@@ -204,7 +204,8 @@ def _states(
             if path.forces:
                 angle = complex(theta, moved)
                 on_crank = beside_crank_loads(0j, z, own, 0, angle, turning, loads, piece, shift)
-                drive, guide = _pushed(zs, zc, m, z, load, on_crank, path.rubbing)
+                rod_1 = motion(math.sin(within), math.cos(within), d.r, d.l, d.e, d.branch).rod_1
+                drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
                 power = drive * m.x_1 * speed
             off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
             off = off + magnitude(j.offset) * z.offset_error + path.tolerance

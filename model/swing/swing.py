@@ -15,7 +15,6 @@ import numpy as np
 from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
-from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
 from ..linkage.single import one_linkage
 from ..machine.loads.load import require_word
@@ -203,8 +202,6 @@ def _require_passing(mechanism: Mechanism, own: Linkage, swing: Swing) -> None:
                 f"a load is measured from the {datum} of a full turn, which this linkage does not make; "
                 "measure it from the crank pivot"
             )
-    if mechanism.friction.crank_pin.circle and swing.driver == "crank":
-        _require_one_sense(own, swing)
 
 
 def _folded(linkage: Linkage, swing: Swing) -> bool:
@@ -227,19 +224,6 @@ def _require_closing(linkage: Linkage, swing: Swing) -> None:
             "the linkage must close over the whole swing: rod > |offset - crank sin(crank angle)|; "
             f"got a rod of {1e3 * l:.6g} mm and {1e3 * reach:.6g} mm at {_degrees(worst)}; "
             "lengthen the rod, change the offset, or swing less far"
-        )
-
-
-def _require_one_sense(linkage: Linkage, swing: Swing) -> None:
-    """Refuse a swing in which the rod turns faster than the crank: friction in the crank pin would change sides."""
-    theta = np.linspace(swing.start, swing.end, 2001)
-    m = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    fast = m.rod_1 >= 1.0
-    if fast.any():
-        raise InputError(
-            "friction in the crank pin of a driven crank is computed where the rod turns less than the crank; "
-            f"got {float(m.rod_1[fast][0]):.4g} times as fast at {_degrees(float(theta[fast][0]))}; "
-            "lengthen the rod, swing less far, or leave that friction out"
         )
 
 

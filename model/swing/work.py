@@ -15,7 +15,8 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
-from .many import Many, Pieces, able
+from .closure import passes
+from .many import Many, Pieces
 from .points import DRIVE, RATE
 from .swing import Swing
 
@@ -63,7 +64,7 @@ def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: boo
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     values = np.full(len(designs), np.nan)
     slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))
-    rows = np.flatnonzero(able(mechanism, swing, designs))
+    rows = np.flatnonzero(passes(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]

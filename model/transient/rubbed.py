@@ -154,7 +154,8 @@ def _rubbed(
             m = design_motion(sine, cosine, d)
             load = load_on_slider(m, d, stepped, 0, theta, outward, loads, piece, shift)
             guide = touch(sine, cosine, m, d, load, senses.turn, senses.swing)
-            sides = Sides(senses.turn, senses.slide, senses.swing, -1.0 if guide.real > 0.0 else 1.0)
+            press = -1.0 if guide.real > 0.0 else 1.0
+            sides = Sides(senses.turn, senses.slide, senses.swing, press, senses.turn)
             f = joint_forces(sine, cosine, m, d, load, sides)
             torque = beside_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
             rate = torque.imag / _STEP

@@ -12,7 +12,8 @@ from ...model.arrays import Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
-from ...model.swing.many import able, driven
+from ...model.swing.closure import passes
+from ...model.swing.many import driven
 from ...model.swing.swing import Swing
 from ..cycle_peak import screened
 from ..formula.meant import meant
@@ -102,7 +103,7 @@ def evaluate(
 def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) turn fully; with a swing, which can make it."""
     if swing is not None:
-        return able(mechanism, swing, designs)
+        return passes(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.forces import swing_curves
@@ -131,6 +134,35 @@ def test_gradients_are_those_of_extrapolated_differences(friction: bool) -> None
             size = np.abs(expected).max() + 1e-9
             misses.append((float(np.abs(slopes - expected).max() / size), of.name, swing.driver, swing.law))
     assert max(misses)[0] < 1e-7, max(misses)
+
+
+PIN = Pin(radius=0.1, coefficient=0.5)
+ANGLES, FORCES = tuple(np.radians([60.0, 90.0, 120.0]).tolist()), (0.0, 100.0, 0.0)
+TORQUE, FORCE = CrankTable(angles=ANGLES, forces=FORCES), AngleTable(angles=ANGLES, forces=FORCES)
+JUMPS = [  # the rod turns back at 90 deg; it overtakes the crank where the slider passes the pivot, 2.25 rad
+    (TORQUE, Swing(start=np.radians(60.0), end=np.radians(120.0), driver="slider"), [1.0, 2.0, -0.3]),
+    (TORQUE, Swing(start=np.radians(120.0), end=np.radians(60.0), driver="slider"), [1.0, 2.0, 0.3]),
+    (FORCE, Swing(start=np.radians(60.0), end=np.radians(120.0), driver="crank"), [1.0, 2.0, -0.3]),
+    (CrankTorque(torque=100.0), Swing(start=1.6, end=2.8, driver="slider"), [1.0, 0.8, 0.3]),
+    (CrankTorque(torque=100.0), Swing(start=1.6, end=2.8, driver="crank"), [1.0, 0.9, 0.3]),
+]
+
+
+@pytest.mark.parametrize(("load", "swing", "design"), JUMPS)
+def test_a_peak_on_a_jump_of_friction_is_of_the_greater_side(load: Load, swing: Swing, design: list[float]) -> None:
+    machine = Mechanism(
+        slider_mass=1.0, gravity=(40.0, 10.0), friction=Friction(slider_pin=PIN, crank_pin=PIN), loads=(load,)
+    )
+    share = np.linspace(0.0, 1.0, 40_001)
+    curves = [
+        swing_curves(machine, Linkage(design[0], design[1], design[2]), swing, share, back=back)
+        for back in (False, True)
+    ]
+    swept = max(np.abs(curve.drive).max() for curve in curves)
+    found = values(machine, swing, np.array([design]))
+    peak = found["peak_actuator_force" if swing.driver == "slider" else "peak_actuator_torque"]
+    assert peak == pytest.approx(swept, rel=1e-4)
+    assert peak >= swept * (1.0 - 1e-12)
 
 
 def test_what_cannot_swing_has_no_value_and_every_fact_has_a_place() -> None:

@@ -13,8 +13,9 @@ import pytest
 from slidercrank.model.arrays import Array, Mask
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.swing.closure import passes
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.many import able, driven
+from slidercrank.model.swing.many import driven
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
@@ -56,7 +57,7 @@ def sampled(given: Problem, count: int) -> tuple[Array, Mask]:
         found.append(np.column_stack([dimensions, violation <= FEASIBLE]))
     every = np.concatenate(found)
     assert given.motion is not None
-    every = every[able(given.mechanism, given.motion, every[:, :3])]
+    every = every[passes(given.mechanism, given.motion, every[:, :3])]
     return every[:, :3], every[:, 3] > 0.0
 
 

@@ -65,12 +65,9 @@ def random_swings(
         sign = 1.0 if machine.branch == "open" else -1.0
         phi = np.arctan2(across, sign * np.sqrt(l * l - across**2))
         bend = np.sin(theta - phi)
-        rod_rate = -r * np.cos(theta) / (l * np.cos(phi))
         if drives == "slider" and (np.abs(bend).min() < math.sin(least) or np.ptp(np.sign(bend))):
             continue
         if drives == "crank" and np.abs(across).max() > l * math.cos(least):
-            continue
-        if friction and drives == "crank" and rod_rate.max() >= 0.98:
             continue
         linkage = Linkage(r, l, e, machine.branch)
         if not bool(linkage.rotates_fully):
