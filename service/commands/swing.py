@@ -104,9 +104,9 @@ def swing(
         say(f"{curves}: the curves of both ways")
     if figure is not None:
         from ..figures.panels import save_sheet
-        from ..figures.swing import swing_sheet
+        from ..figures.swing import swing_figure
 
         with disk(figure.parent), waiting("drawing the figure"):
             figure.parent.mkdir(parents=True, exist_ok=True)
-            save_sheet(swing_sheet(mechanism, linkage, asked, units), figure)
+            save_sheet(swing_figure(mechanism, linkage, asked, units), figure)
         say(f"figure: {figure}")

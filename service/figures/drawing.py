@@ -32,7 +32,7 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
     _stroke(axes, look, size, system)
     _offset(axes, left, look.offset, size, system)
-    _scale(axes, left, low - 0.13 * size, size, system)
+    scale_bar(axes, left, low - 0.13 * size, size, system)
     show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
 
@@ -113,7 +113,7 @@ def _arrow(axes: Axes, start: Point, end: Point) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=6)
 
 
-def _scale(axes: Axes, x: float, y: float, size: float, system: System) -> None:
+def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
     """Draw a scale bar of a round length, about a sixth of the picture."""
     unit, factor = shown_in("mm", system)
     most = size / 6.0 * factor

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,12 +19,11 @@ from ..designs.variation import Variation
 from ..resources.garbage import uncollected
 from .comparison import robustness_figure
 from .marks import marks
-from .panels import draw_sheet
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .sheet import design_sheet
 from .style import save
-from .swing import swing_sheet
+from .swing import swing_figure
 
 
 @dataclass(frozen=True)
@@ -94,8 +93,7 @@ def sheet_of(
         design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
     title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
     if swing is not None:
-        made = swing_sheet(design.mechanism, linkage, swing, system)
-        return draw_sheet(replace(made, title=title, subtitle=f"{subtitle}; {made.subtitle}"))
+        return swing_figure(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)
     wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
     bold = {of.field: of.short_title for of in wanted}
     return design_sheet(design.mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)

@@ -40,13 +40,13 @@ _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
 _GAP, _ROOM = 0.5, 0.9  # between stacked panels, and between those with axes of their own
 
 
-def draw_sheet(sheet: Sheet) -> Figure:
-    """Return the figure of a sheet."""
+def draw_sheet(sheet: Sheet, *, above: float = 0.0) -> Figure:
+    """Return the figure of a sheet. above: room, inches, that is kept free below the heading."""
     widths = [sheet.width] * sheet.columns if isinstance(sheet.width, float) else list(sheet.width)
     rows = math.ceil(len(sheet.panels) / sheet.columns)
     tall = sheet.height - (_GAP if sheet.stacked else _ROOM)
     head = _HEAD + (_GAP - 0.3 if sheet.stacked and sheet.subtitle else 0.0)
-    figure = style.new_figure(sum(widths), rows * sheet.height + head)
+    figure = style.new_figure(sum(widths), rows * sheet.height + head + above)
     style.heading(figure, sheet.title, sheet.subtitle)
     for index, panel in enumerate(sheet.panels):
         row, column = divmod(index, sheet.columns)

@@ -1,8 +1,11 @@
-"""Figure of a swing: drive, slider, transmission angle and error over the crank angle, both ways."""
+"""Figure of a swing: the machine to scale, and drive, slider, angles and error over the crank angle, both ways."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from matplotlib.figure import Figure
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
@@ -10,8 +13,46 @@ from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import ANGLE, LENGTH, POWER, Face, Kind, System
 from ..designs.swing_curves import both_ways, drive_kind, error_kind
+from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
+from .drawing import scale_bar
 from .numerals import shown, with_unit
+from .painting import paint, show_rectangle
+from .panels import draw_sheet
 from .sheets import CRANK_ANGLE, Line, Panel, Sheet
+from .style import place
+
+_TALLEST = 3.2  # inches, of the drawing
+_ASIDE, _BELOW = 0.4, 0.3
+
+
+def swing_figure(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    swing: Swing,
+    system: System = "metric",
+    *,
+    title: str = "",
+    subtitle: str = "",
+) -> Figure:
+    """Return the machine half-way between both ends of its swing, which are dashed, above the curves of both ways.
+
+    title: instead of how it is driven. subtitle: before its dimensions.
+    """
+    sheet = swing_sheet(mechanism, linkage, swing, system)
+    if title:
+        sheet = replace(sheet, title=title, subtitle=f"{subtitle}; {sheet.subtitle}" if subtitle else sheet.subtitle)
+    of = swing_look(mechanism, linkage, swing)
+    (left, low, right, high), size = of.extent, of.look.size
+    low -= 0.11 * size
+    wide = sheet.columns * float(np.max(sheet.width)) - 2.0 * _ASIDE
+    tall = min(_TALLEST, wide * (high - low) / (right - left))
+    figure = draw_sheet(sheet, above=tall + _BELOW)
+    foot = -(-len(sheet.panels) // sheet.columns) * sheet.height + _BELOW
+    axes = place(figure, _ASIDE, foot, wide, tall)
+    paint(axes, [*swing_scenery(of), *swing_moving(of, 0.5 * (of.swing.start + of.swing.end))])
+    scale_bar(axes, left, low + 0.03 * size, size, system)
+    show_rectangle(axes, left, low, right, high)
+    return figure
 
 
 def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Sheet:

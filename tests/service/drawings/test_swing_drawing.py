@@ -12,6 +12,7 @@ from ezdxf.document import Drawing as Document
 from ezdxf.entities import Dimension as Measured
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import read as read_dxf
+from matplotlib.patches import Circle as Disc
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -22,6 +23,7 @@ from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.svg import svg_file
 from slidercrank.service.drawings.swing_drawing import swing_drawing
 from slidercrank.service.figures.painting import drawing_figure
+from slidercrank.service.figures.swing import swing_figure
 from tests.model.swing.swings import Case, random_swings
 
 CASES = random_swings(24, seed=61)
@@ -123,3 +125,29 @@ def test_svg_and_figure_show_the_same_shapes() -> None:
     left, low, right, high = drawing.bounds
     width, height = drawing_figure(drawing).get_size_inches()
     assert width / height == pytest.approx((right - left) / (high - low), rel=1e-6)
+
+
+@pytest.mark.parametrize("number", range(0, 24, 6))
+def test_the_figure_of_a_swing_has_the_machine_to_scale_above_its_curves(number: int) -> None:
+    """Discs of the pins stand where the linkage is half-way, at one scale in both directions; nothing overlaps."""
+    mechanism, linkage, swing = CASES[number]
+    figure = swing_figure(mechanism, linkage, swing)
+    (drawn, *panels) = sorted(figure.axes, key=lambda axes: -axes.get_position().y1)
+    assert len(panels) >= 3
+    assert all(panel.get_position().y1 < drawn.get_position().y0 for panel in panels)
+    middle = 0.5 * (swing.start + swing.end)
+    found = np.array([patch.center for patch in drawn.patches if isinstance(patch, Disc)])
+    for pin in [(0.0, 0.0), *pins(linkage, middle)]:
+        assert np.hypot(*(found - pin).T).min() < 1e-6 * 1e3 * float(linkage.rod)
+    across, up = (np.ptp(limits) for limits in (drawn.get_xlim(), drawn.get_ylim()))
+    box = drawn.get_window_extent()
+    assert across / box.width == pytest.approx(up / box.height, rel=1e-9)
+
+
+def test_the_figure_of_a_swing_has_its_body() -> None:
+    linkage, swing = Linkage(1.4, 1.8, -0.05), Swing(start=0.2, end=1.7, driver="slider")
+    machine = Mechanism(crank=RigidLink(mass=1200.0, centre=1.1, centre_across=0.15))
+    drawn = max(swing_figure(machine, linkage, swing).axes, key=lambda axes: axes.get_position().y1)
+    point = 1e3 * linkage.crank_point(0.95, along=1.1, across=0.15).position
+    found = np.array([patch.center for patch in drawn.patches if isinstance(patch, Disc)])
+    assert np.hypot(*(found - point).T).min() < 1e-6
