@@ -1,12 +1,12 @@
 /** A value over rounds, as a line that grows. */
 
 import { svg } from "../lib/dom.js";
-import { text } from "../lib/numbers.js";
+import { grouped, text } from "../lib/numbers.js";
 import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [460, 190]; // no wider than on a laptop, where its texts have 12 pixels
-const AREA = { left: 76, right: 14, top: 12, bottom: 40 };
+const AREA = { left: 76, right: 24, top: 12, bottom: 40 };
 
 /**
  * Return a picture of points [[round, value], ...] under a heading.
@@ -20,7 +20,7 @@ export function history(points, heading, rounds) {
   const at = points.filter(isPoint).map(([round, value]) => `${x.at(round).toFixed(1)} ${y.at(value).toFixed(1)}`);
   const [last] = points.slice(-1);
   return svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${heading}: ${last ? `${text(last[1])} after round ${last[0]}` : "none yet"}` },
-    x.ticks.filter(Number.isInteger).map((tick) => svg("text", { x: x.at(tick), y: bottom + 18, "text-anchor": "middle" }, `${tick}`)),
+    x.ticks.filter(Number.isInteger).map((tick) => svg("text", { x: x.at(tick), y: bottom + 18, "text-anchor": "middle" }, grouped(tick))),
     y.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${y.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick))]),
     svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, "round"),
     at.length > 1 && svg("path", { class: "curve", d: `M${at.join("L")}` }),

@@ -118,7 +118,7 @@ export function watch(place, job, { signal, changed }) {
     function show(left) {
       const gained = growth(rounds.map(({ hypervolume }) => hypervolume));
       const shown = [
-        ["round", `${data.round} of ${data.rounds}`],
+        ["round", `${grouped(data.round)} of ${grouped(data.rounds)}`],
         ["evaluated", grouped(data.evaluations)],
         ["feasible", grouped(data.feasible)],
         [gained && gained.rounds > 1 ? `gained in the last ${gained.rounds} rounds` : "gained in the last round", gained?.text ?? "–"],

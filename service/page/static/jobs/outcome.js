@@ -18,7 +18,7 @@ export function outcome(job) {
     return said("Stopped early", `What it had found by then is below; a longer search finds better designs. ${job.reason}`, ["Resume it, above, to go on from where it was."]);
   }
   if (job.state === "cancelled") {
-    return said("The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);
+    return said(job.progress?.feasible ? "Stopped before its designs were gathered" : "The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);
   }
   return null;
 }

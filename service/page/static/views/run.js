@@ -67,18 +67,18 @@ export async function show(place, { parts, signal }) {
     const { summary } = job;
     const facts = [`run ${job.id}`, summary && counted(summary.designs, "design"), summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
     fill(head,
-      summary?.designs ? h("button", { type: "button", class: "skip", onclick: toTable }, "Skip to the table of designs") : null,
+      summary?.designs ? [["the-table", "Skip to the table of designs"], ["kept", "Skip to the kept designs"]].map(([part, words]) => h("button", { type: "button", class: "skip", onclick: () => skipTo(`.${part}`) }, words)) : null,
       h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
       h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), own: files, signal })));
   }
 
   /** Past all that can be done with charts, which takes some sixty steps of the Tab key. */
-  function toTable() {
-    const table = first(body, ".the-table");
-    if (!table) return;
-    table.tabIndex = -1;
-    table.focus();
-    table.scrollIntoView();
+  function skipTo(/** @type {string} */ selector) {
+    const part = first(body, selector);
+    if (!part) return;
+    part.tabIndex = -1;
+    part.focus();
+    part.scrollIntoView();
   }
 
   function gone() {
