@@ -12,7 +12,7 @@ from ..figures.sheets import Line, Panel, Sheet
 from .block import Block
 
 _NUMBER = r"[-+−]?\d[\d.]*(?:e[-+]?\d+)?"
-_JOINED = rf"{_NUMBER}(?:(?:, | to | and | or | / | ± ){_NUMBER})*"
+_JOINED = rf"{_NUMBER}(?:(?:, | to | and | or | x | / | ± ){_NUMBER})*"
 _FIRST = re.compile(rf"({_NUMBER})( without .+)", re.DOTALL)  # a remark that compares with another value of the line
 _LEAST_DIGITS = 4  # 0.7 mm is 0.02756 in
 
@@ -35,7 +35,7 @@ def _units() -> dict[str, tuple[str, float]]:
 def _patterns() -> tuple[re.Pattern[str], re.Pattern[str]]:
     """Return what finds values with a unit in a sentence, and the unit at the end of a head."""
     units = "|".join(map(re.escape, sorted(_units(), key=len, reverse=True)))
-    values = rf"(?<![\"“'\w.^])({_JOINED}) ({units})(?![\w^/²³])"
+    values = rf"(?<![\"“'\w.^])({_JOINED}\)?) ({units})(?![\w^/²³])"
     return re.compile(values), re.compile(rf"(?:^|(?<=[\s,]))({units})$")
 
 

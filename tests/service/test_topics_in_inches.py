@@ -36,6 +36,7 @@ QUICK = [name for name in TOPICS if name not in ("clearance", "start_up", "toler
         ("50 % within 0.0254 mm at 300 rpm", "50 % within 0.001 in at 300 rpm"),
         ('got "60 mm"; 2 N m is possible', 'got "60 mm"; 17.7 lbf in is possible'),
         ("1 MPa m/s, 8 bar, 3 kg m²", "28551 psi ft/min, 116 psi, 10252 lb in²"),
+        ("bar 25.4 x 50.8 mm, (0, 25.4) mm", "bar 1 x 2 in, (0, 1) in"),
         ("Nm of 3 N/mm, 7 Nails", "Nm of 3 N/mm, 7 Nails"),
     ],
 )

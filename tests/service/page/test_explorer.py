@@ -117,6 +117,8 @@ def test_limits_are_in_the_units_of_the_reader_and_stay_those_of_the_service(ope
     field(page, "At most rod, in").fill("20")
     field(page, "At most rod, in").press("Enter")
     expect(page).to_have_url(re.compile(r"max\.rod_mm=508"))
+    page.get_by_text("Axes", exact=True).click()
+    expect(page.get_by_role("group", name="Axes").get_by_label("stroke, in", exact=True)).to_be_visible()
 
 
 def test_sentences_exports_and_figures_follow_the_units_of_the_reader(open_page: Open, solved: Solved) -> None:

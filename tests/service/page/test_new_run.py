@@ -236,6 +236,9 @@ def test_a_job_in_inches_is_the_same_job_and_whoever_prefers_inches_begins_with_
     assert parse_job(inches) == parse_job(metric)
     page.get_by_label("Units").select_option("inch")
     expect(page.get_by_role("complementary")).to_contain_text(" in")
+    understood = page.get_by_role("complementary").locator("details li")
+    expect(understood.filter(has_text=re.compile(r"^crank [\d.]+ to [\d.]+ in$"))).to_have_count(1)
+    assert not any(re.search(r"\d (mm|kg|N)\b", line or "") for line in understood.all_text_contents())
     page.get_by_role("button", name="Start over").click()
     ready(page)
     assert text_of(page)["constraints"]["stroke"] == {"equals": "4 in"}

@@ -93,7 +93,7 @@ export function rounding(place, { job, number, base, requirements, objectives, s
       if (own === turn) tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
-      refuse(`${sentenceOf(error)}.`);
+      refuse(`${sentenceOf(error).replace(/^To must/, "A step must")}.`);
       fill(answer);
     } finally {
       if (own === turn) button.disabled = false;

@@ -3,7 +3,7 @@
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { capital, inWords } from "../lib/words.js";
-import { limitText, unitOf, withUnit } from "../lib/numbers.js";
+import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, example, understood, swing }) {
@@ -50,7 +50,7 @@ function told(unchecked, understood, said = []) {
 function understanding(understood) {
   /** @type {[string, string[]][]} */
   const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Requirements", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
-  return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, line)))]);
+  return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, inShownUnits(line))))]);
 }
 
 /** @param {number} value */

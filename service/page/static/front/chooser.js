@@ -2,25 +2,31 @@
 
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
+import { headed } from "./columns.js";
 
 /**
  * Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order.
  * @param {string} heading @param {Api.Column[]} columns @param {() => string[]} chosen @param {(keys: string[]) => void} choose
  */
 export function chooser(heading, columns, chosen, choose) {
-  const ticks = columns.map(({ key, title, unit }) => {
+  const ticks = columns.map((column) => {
+    const { key } = column;
+    const name = h("span", {}, headed(column));
     const tick = h("input", { type: "checkbox", value: key, onchange: () => {
       const before = chosen().filter((one) => one !== key);
       choose(tick.checked ? [...before, key] : before);
       if (!chosen().includes(key)) tick.checked = false;
     } });
-    return { tick, label: h("label", {}, tick, ` ${title}${unit ? `, ${unit}` : ""}`) };
+    return { tick, label: h("label", {}, tick, " ", name), show: () => (name.textContent = headed(column)) };
   });
   const find = h("input", { type: "search", "aria-label": `Find a quantity for ${heading.toLowerCase()}`, placeholder: "Find", oninput: () => {
     const wanted = find.value.trim().toLowerCase();
     for (const { label } of ticks) label.hidden = !label.textContent.toLowerCase().includes(wanted);
   } });
   return menu(heading, h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)), { opened: () => {
-    for (const { tick } of ticks) tick.checked = chosen().includes(tick.value);
+    for (const { tick, show } of ticks) {
+      tick.checked = chosen().includes(tick.value);
+      show(); // in the units of now
+    }
   } });
 }

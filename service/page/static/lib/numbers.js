@@ -75,7 +75,7 @@ export function inShownUnits(sentence) {
   const units = Object.keys(SYSTEMS[system()] ?? {}).sort((one, other) => other.length - one.length);
   if (!units.length) return sentence;
   const number = "[-−]?\\d[\\d.]*(?:e[-+]?\\d+)?";
-  const values = new RegExp(`(?<!["“\\w.^])((?:${number}(?:, | to | and | or ))*${number}) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`, "g");
+  const values = new RegExp(`(?<!["“\\w.^])((?:${number}(?:, | to | and | or | x ))*${number}\\)?) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`, "g");
   return sentence.replace(values, (_, given, unit) => `${given.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`);
 }
 

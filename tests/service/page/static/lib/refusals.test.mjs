@@ -24,5 +24,6 @@ test("in inches a refusal has inches, but for what somebody typed", async () => 
   await chooseSystem("inch");
   assert.equal(refusalInWords(LENGTHS.split("\n")[1].trim()), "Rod must be at most 2000\u00a0in; got 39370.08\u00a0in; correct it");
   assert.equal(refusalInWords('a crank from 25.4 mm to 50.8 mm; got "60 mm"; 25.4 to 76.2 mm is possible with 2 N m'), 'A crank from 1 in to 2 in; got "60 mm"; 1 to 3 in is possible with 17.701 lbf in');
+  assert.equal(refusalInWords("bar 25.4 x 50.8 mm, (0, 25.4) mm"), "Bar 1 x 2 in, (0, 1) in");
   await chooseSystem("si");
 });
