@@ -26,9 +26,9 @@ of that bar, K = 2). Each of these is at most one:
     buckling        n C / P in the plane, and the same with w and d exchanged out of it: Shigley eq. 4-43 with the end
                     condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
                     crank, a cantilever
-    net section     n K F / (S_y (w - D) d), in the programme n K F / (S_y w d) + D / w, at each pin of diameter D, with the
-                    stress concentration K of the eye; in fatigue K (F_a / S_e + F_m / S_m) of the axial load, own mass
-                    as amplitude
+    net section     n K F / (S_y (w - D) d), in the programme n K F / (S_y w d) + D / w, at each pin of diameter D, with
+                    the stress concentration K of the eye; in fatigue K (F_a / S_e + F_m / S_m) of the axial load, own
+                    mass as amplitude
     bent eye        at the crank's pivot, at the bore and at the outer edge, with B = min(K, 2) and 1, C = K and 1 and
                     y = D and w: n (C N / ((w - D) d) + 6 B M y / (d (w^3 - D^3))) / S_y, written as
                     n (C N (w^2 + w D + D^2) + 6 B M y) / (S_y d w^3) + (D / w)^3; in fatigue likewise
