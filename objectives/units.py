@@ -131,7 +131,9 @@ _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
 _LONGEST = 60
 _GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
-_SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+SPACES = "\u00a0\u2007\u2009\u202f"
+"""Spaces that do not break a line, as texts of pages and papers have them between number and unit."""
+_TYPESET = str.maketrans(f"⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"-0123456789{' ' * len(SPACES)}")
 
 
 def kind_of(symbol: str) -> Kind:
@@ -218,7 +220,7 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
 
 def is_value(text: str) -> bool:
     """Return whether a text is one number, alone or with a unit of whatever kind."""
-    match = _VALUE.fullmatch(text.translate(_SUPERSCRIPTS)) if len(text) <= _LONGEST else None
+    match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
     try:
         return match is not None and _unit(match[2] or "") is not None
     except InputError:
@@ -234,7 +236,7 @@ def shown(value: object) -> str:
         quoted = json.dumps(text, ensure_ascii=False)
         return "".join(one if one.isprintable() else json.dumps(one)[1:-1] for one in quoted)
     if isinstance(value, Mapping):
-        return f"a table of {len(value)} keys" if value else "an empty table"
+        return f"a table of {len(value)} key{'s' if len(value) > 1 else ''}" if value else "an empty table"
     if isinstance(value, list | tuple):
         plain = len(value) <= 4 and not any(isinstance(x, list | tuple | Mapping) for x in value)
         inner = ", ".join(map(shown, value)) if plain else ""
@@ -262,7 +264,7 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         raise InputError(f"must be a finite number; got {shown(text)}; {write}")
     if re.search(r"\d,\d", text):
         raise InputError(f"{rule} without a comma; got {shown(text)}; the decimal sign is a point")
-    match = _VALUE.fullmatch(text.translate(_SUPERSCRIPTS))
+    match = _VALUE.fullmatch(text.translate(_TYPESET))
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
     number, unit = Fraction(match[1]), match[2] or ""

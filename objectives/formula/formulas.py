@@ -84,7 +84,8 @@ def words_of(text: object) -> list[str]:
 def unknown_name(name: str, known: Iterable[str], units: Units) -> InputError:
     """Return the refusal of a name that no quantity, dimension or varying number has. known: the names there are."""
     every = list(known)
-    near = difflib.get_close_matches(name[:60], every, n=_NEAREST)
+    same = [other for other in every if other.casefold() == name.casefold()]
+    near = same or difflib.get_close_matches(name[:60], every, n=_NEAREST)
     hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {listed(every)}"
     if "." in name and not near:
         hint = "let the number vary in [variables], or write its value"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ...model.errors import InputError
+from ..units import SPACES
 from .expression import ARGUMENTS, Call, Name, Node, Number
 
 LONGEST = 500
@@ -29,7 +30,7 @@ _OTHER_UNIT = re.compile(rf"\s*[*/·⋅]\s*{_UNIT}", re.ASCII)
 _POWER = re.compile(r"(?:(?:\^|\*\*)([+-]?\d)|(\d))(?![\w.])", re.ASCII)
 _SAME: dict[int, str] = {
     ord(sign): other for sign, other in zip("^·⋅−×÷²³", ("**", "*", "*", "-", "*", "/", "**2", "**3"), strict=True)
-}
+} | {ord(space): " " for space in SPACES}
 _EXAMPLE = '"offset - 2 * crank" or "min(crank, 30 mm)"'
 
 

@@ -66,9 +66,12 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
 
 def _column(name: str, keys: Collection[str]) -> Column:
     """Return the column of a name in a formula; a varying number is known by its path, too."""
-    if "." in name:
-        name = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")
-    return find_column(name, keys)
+    if "." not in name:
+        return find_column(name, keys)
+    plain = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")
+    if plain not in {split_unit(key)[0] for key in keys}:
+        raise InputError(f"no column is called {name!r}: numbers that vary have one; leave it out")
+    return find_column(plain, keys)
 
 
 def _si(row: Row, column: Column) -> Array:

@@ -31,6 +31,7 @@ _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq,
     "!=": operator.ne,
 }
+_TURNED = {">=": "<=", "<=": ">=", ">": "<", "<": ">", "==": "==", "!=": "!="}
 _SAME = {"=": "==", "≥": ">=", "≤": "<="}
 _EXAMPLE = '--where "transmission_angle >= 40 deg"'
 
@@ -76,14 +77,28 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
         )
     name, comparison, value = match.groups()
     comparison = _SAME.get(comparison, comparison)
+    _require_order(text, name, comparison, value)
     column, formula = _meant(name, keys)
     if formula is not None:
-        return Condition(column, comparison, _number(text, column, value), formula)
+        return Condition(column, comparison, _number(match, column), formula)
     if isinstance(example[column.key], str):
         if comparison not in ("==", "!="):
             raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
         return Condition(column, comparison, value.strip("\"'"))
-    return Condition(column, comparison, _number(text, column, value))
+    return Condition(column, comparison, _number(match, column))
+
+
+def _require_order(text: str, name: str, comparison: str, value: str) -> None:
+    """Refuse a condition that begins with its value, or compares twice."""
+    from ...objectives.units import is_value
+
+    if re.search("[<>=]", value):
+        if value[0] in "<>=":
+            raise InputError(f"a condition has one of >= <= > < = !=; got {text!r}; write it like {_EXAMPLE}")
+        raise InputError(f"a condition compares once; got {text!r}; give two conditions")
+    if is_value(name):
+        turned = f"{value} {_TURNED[comparison]} {name.strip()}"
+        raise InputError(f'a condition begins with its quantity or formula; got {text!r}; write it like "{turned}"')
 
 
 def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
@@ -120,17 +135,22 @@ def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
         raise InputError(f"{key} {error}") from None
 
 
-def _number(text: str, column: Column, value: str) -> float:
+def _number(match: re.Match[str], column: Column) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
+    from ...objectives.formula.formulas import is_formula
     from ...objectives.units import kind_for, to_si
 
+    name, comparison, value = match.groups()
+    if is_formula(value):
+        less = f"{name.strip()} - ({value}) {comparison} 0 {column.unit}".rstrip()
+        raise InputError(f'a condition ends with a number; got {match[0]!r}; compare the difference, like "{less}"')
     number = plain_number(value)
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain
     try:
         return to_si(value, kind_for(column.unit), plain=False) * column.factor
     except InputError as error:
-        raise InputError(f"the value in {text.strip()!r} {error}") from None
+        raise InputError(f"the value in {match[0].strip()!r} {error}") from None
 
 
 def select(rows: list[Row], conditions: Collection[str]) -> list[int]:

@@ -69,7 +69,7 @@ def _dimensions(
 
 def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
-    widths = "Widths of links are those of the job; slider and pins are for show."
+    widths = "Widths of links are to scale; slider and pins are for show."
     return (
         f"{in_words(linkage, 7)}.",
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "

@@ -93,7 +93,7 @@ def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float
 def _notes(of: SwingLook, angle: float) -> tuple[str, ...]:
     look, swing = of.look, of.swing
     start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
-    widths = "Widths of links are those of the job; slider and pins are for show."
+    widths = "Widths of links are to scale; slider and pins are for show."
     driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is for show."
     return (
         f"{lengths_in_words(of.linkage, 7)}; {of.linkage.branch} branch.",

@@ -74,7 +74,8 @@ def test_names_and_formulas_stand_side_by_side_in_problems_analyses_and_sweeps()
     ("formula", "words"),
     [
         ("crank + rud", 'is called "rud"; did you mean rod?'),
-        ("crank + peak_torque", "adds mm and N m"),
+        ("CRANK + rod", 'is called "CRANK"; did you mean crank?'),
+        ("crank\u00a0+ peak_torque", "crank + peak_torque adds mm and N m"),
         ("crank +", "is missing at its end"),
         ("2 * efficiency", "efficiency is not defined here: "),
         ("3 mm", "the same for every design"),

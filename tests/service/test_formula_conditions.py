@@ -64,6 +64,10 @@ def test_a_formula_that_has_a_column_is_that_column() -> None:
         ("2 * 3 >= 1", r"got 2 \* 3, which is the same for every design"),
         ("offset - >= 1 mm", "missing at its end"),
         ("offset - crank", "a condition is a quantity or a formula, one of"),
+        ("crank < offset + 3 mm", r'compare the difference, like "crank - \(offset \+ 3 mm\) < 0 mm"'),
+        ("3 mm <= crank", 'write it like "crank >= 3 mm"'),
+        ("10 mm <= crank <= 50 mm", "compares once; got .*; give two conditions"),
+        ("mechanism.speed > 3 rpm", "no column is called 'mechanism.speed': numbers that vary have one; leave it out"),
     ],
 )
 def test_a_wrong_formula_in_a_condition_is_refused(condition: str, said: str) -> None:
