@@ -58,7 +58,7 @@ def _summary(subject: Subject) -> Section:
     keys = {metric_key(key) for key in row}
     known = [of.name for of in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if of.field in keys]
     columns = [find_column(name, list(row)) for name in (*DIMENSIONS, *known)]
-    lengths = [f"{column.title} {measured(row[column.key], column.unit)}" for column in columns]
+    lengths = [f"{of.title} {subject.sensible(of.key, row[of.key])} {unit_text(of.unit)}" for of in columns]
     rows = {
         "Lengths": [", ".join(lengths)],
         "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],

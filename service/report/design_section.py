@@ -14,7 +14,7 @@ from ...objectives.needs import Without
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns, key_in
 from ..designs.requirements import requirements_of
-from ..designs.toleranced import toleranced, tolerances_of
+from ..designs.toleranced import toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
 from ..figures.front import sheet_of
@@ -107,11 +107,10 @@ def _of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
 def _toleranced(subject: Subject) -> dict[str, str]:
     """Return the dimensions that have a tolerance, with the digits that it makes sensible, by their columns."""
     found = {}
-    for name, tolerance in tolerances_of(subject.design.mechanism, subject.design.linkage).items():
-        key, factor = key_in(f"{name}_mm", subject.system)
+    for key, tolerance in subject.tolerances.items():
         value = subject.row.get(key)
         if isinstance(value, float):
-            found[key] = toleranced(value, factor * tolerance).replace("-", "−")
+            found[key] = toleranced(value, tolerance).replace("-", "−")
     return found
 
 

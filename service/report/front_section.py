@@ -70,11 +70,18 @@ def _marked(subject: Subject) -> Table:
     keys += ["slow_stroke"] if result.strokes_differ else []
     columns = [find_column(key, list(subject.row)) for key in dict.fromkeys(keys)]
     rows = tuple(
-        (str(place + 1), ", ".join(words), *(rounded(result.designs[place][column.key]) for column in columns))
+        (
+            str(place + 1),
+            ", ".join(words),
+            *(subject.sensible(column.key, result.designs[place][column.key]) for column in columns),
+        )
         for place, words in labels.items()
     )
     if subject.changed is not None:
-        rows = (("", "this design", *(rounded(subject.row[column.key]) for column in columns)), *rows)
+        rows = (
+            ("", "this design", *(subject.sensible(column.key, subject.row[column.key]) for column in columns)),
+            *rows,
+        )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
     lengths, what = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
     share = (0.95 - what - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))

@@ -11,10 +11,13 @@ from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
+from ..designs.columns import key_in
 from ..designs.shown_units import result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
+from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.variation import Variation
-from ..runs.result import Result, Row
+from ..figures.numerals import rounded
+from ..runs.result import Cell, Result, Row
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +73,19 @@ class Subject:
     def design(self) -> StoredDesign:
         """The machine and the linkage. Raises `RunError` for a design that does not belong to the problem."""
         return self.changed.design if self.changed else stored_design(self.problem, self.metric, self.number)
+
+    @cached_property
+    def tolerances(self) -> dict[str, float]:
+        """Tolerance of each dimension that has one, by its column and in its unit."""
+        found = tolerances_of(self.design.mechanism, self.design.linkage)
+        faces = {name: key_in(f"{name}_mm", self.system) for name in found}
+        return {key: factor * found[name] for name, (key, factor) in faces.items()}
+
+    def sensible(self, key: str, cell: Cell) -> str:
+        """Return a cell for people: of a dimension with a tolerance the decimals of that, else six digits."""
+        if key not in self.tolerances or not isinstance(cell, float):
+            return rounded(cell)
+        return toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
 
     @property
     def row(self) -> Row:

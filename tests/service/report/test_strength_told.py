@@ -109,3 +109,18 @@ def test_bounds_of_a_report_are_in_its_units() -> None:
     row = next(row for row in table.rows if row[0] == "peak torque")
     peak = float(OPTIONS[str(subject.row["choice_motor"])][0].removesuffix(" N m"))
     assert float(row[1].removeprefix("at most ")) == pytest.approx(peak / 0.1129848290276167, rel=1e-5)
+
+
+def test_dimensions_have_the_digits_of_their_tolerances_wherever_the_report_has_them() -> None:
+    decimals = {"crank": 2, "rod": 2, "offset": 2}  # 0.03, 0.05 and 0.05 mm
+    for subject, report in told():
+        summary = next(part for part in report.sections if part.title == "Summary")
+        (facts,) = (block for block in summary.blocks if isinstance(block, Facts))
+        for name, places in decimals.items():
+            assert f"{name} {subject.row[f'{name}_mm']:.{places}f} mm" in facts.rows["Lengths"][0]
+        front = next(part for part in report.sections if part.title == "The front")
+        marked = next(block for block in front.blocks if isinstance(block, Table) and block.title == "Marked designs")
+        for row in marked.rows:
+            design = subject.result.designs[int(row[0]) - 1]
+            shown = [f"{design[f'{name}_mm']:.{places}f}" for name, places in decimals.items()]
+            assert list(row[2:5]) == shown
