@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
 from ..designs.design_curves import design_curves
 from ..designs.stored_designs import StoredDesign
 from ..drawings.outlines import outlines
@@ -86,15 +89,15 @@ def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
         inner_dead_centre_deg=inner,
         outer_dead_centre_deg=outer,
         slow_stroke=slow,
-        outlines=_outlines(of),
+        outlines=outlines_model(of.mechanism, of.linkage, of.part.motion),
         columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
         curves={column.key: json_ready(column.values, gaps=True) for column in found.columns},
     )
 
 
-def _outlines(of: StoredDesign) -> OutlinesModel:
+def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> OutlinesModel:
     """Return the parts of a design as its drawings have them."""
-    drawn = outlines(of.mechanism, of.linkage, of.part.motion)
+    drawn = outlines(mechanism, linkage, swing)
     actuator, body = drawn.actuator, drawn.body
     return OutlinesModel(
         extent_mm=drawn.extent,

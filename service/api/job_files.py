@@ -13,9 +13,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field
 
+from ...model.linkage.linkage import Linkage
 from ...optimise.problem.problem import Problem
 from .. import presets
-from ..presets.designs import DESIGNS
+from ..presets.designs import DESIGNS, Design
+from .cycle import OutlinesModel, outlines_model
 from .job_requests import EXAMPLE, TOML, Asked, asked_for, given_problem
 from .problems import problem_responses
 from .settings import SettingsDep
@@ -25,13 +27,17 @@ router = APIRouter(tags=["jobs"])
 
 
 class PresetDesign(BaseModel):
-    """A linkage of the front of a shipped job, near its knee. from_deg, to_deg: of a crank that swings."""
+    """A linkage of the front of a shipped job, near its knee. from_deg, to_deg: of a crank that swings.
+
+    outlines: of what moves, to draw it.
+    """
 
     crank_mm: float = Field(examples=[37.62])
     rod_mm: float = Field(examples=[101.71])
     offset_mm: float = Field(examples=[31.78])
     from_deg: float | None = Field(examples=[None])
     to_deg: float | None = Field(examples=[None])
+    outlines: OutlinesModel
 
 
 class PresetModel(BaseModel):
@@ -113,11 +119,21 @@ def _presets() -> PresetList:
                 title=job["name"],
                 sentence=job.get("description", ""),
                 job=job,
-                design=PresetDesign(**DESIGNS[name]._asdict()),
+                design=_drawn(job, DESIGNS[name]),
             )
             for name, job in sorted(jobs.items())
         ]
     )
+
+
+def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
+    """Return the design of a shipped job with what its drawings have."""
+    from ...optimise.job import parse_job
+
+    problem = parse_job(job)
+    machine = problem.mechanism.nominal
+    linkage = Linkage(1e-3 * design.crank_mm, 1e-3 * design.rod_mm, 1e-3 * design.offset_mm, machine.branch)
+    return PresetDesign(**design._asdict(), outlines=outlines_model(machine, linkage, problem.motion))
 
 
 @router.post("/parse", responses=problem_responses(415))

@@ -54,6 +54,9 @@ def test_the_design_that_shows_a_shipped_job_is_one_of_its_ranges_and_moves_as_a
     lengths = [shown[f"{part}_mm"] / 1e3 for part in ("crank", "rod", "offset")]
     for length, ends in zip(lengths, (problem.crank, problem.rod, problem.offset), strict=True):
         assert ends.lower - 1e-9 <= length <= ends.upper + 1e-9
+    parts = shown["outlines"]
+    assert [each["bore_mm"] for each in parts["cylinders"]] == ([70.0] if name == "compressor" else [])
+    assert (parts["body"] is not None, parts["actuator"] is not None) == (name == "support",) * 2
     if shown["from_deg"] is not None:
         motion = tomllib.loads((pytestconfig.rootpath / "runs" / f"{name}.toml").read_text())["motion"]
         assert (f"{shown['from_deg']:g} deg", f"{shown['to_deg']:g} deg") == (motion["from"], motion["to"])

@@ -35,6 +35,9 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
     machines = page.get_by_role("navigation", name="Shipped machines").get_by_role("link")
     expect(machines).to_have_count(5)
     require_accessible(page)
+    expect(machines.filter(has_text="Air compressor").locator("path.cylinder")).to_have_count(1)
+    expect(machines.filter(has_text="Tilting support").locator("g.body:not([hidden])")).to_have_count(1)
+    expect(page.locator(".machine-picture path.cylinder")).to_have_count(1)
     rods = page.locator(".machine-picture .moving g:has(> path.rod)")
     turned = "nodes => nodes.map(node => node.getAttribute('transform'))"
     before = rods.evaluate_all(turned)

@@ -27,14 +27,14 @@ export function gallery(signal) {
 }
 
 /** @param {HTMLElement} place @param {string} title @param {Api.Preset["design"]} design @param {AbortSignal} signal */
-function move(place, title, { from_deg: from, to_deg: to, ...linkage }, signal) {
+function move(place, title, { from_deg: from, to_deg: to, outlines, ...linkage }, signal) {
   const drawn = drawing(place, { label: `${title}, a linkage that moves` });
   signal.addEventListener("abort", () => drawn.close());
   const { slider_position_mm: positions } = motionOf(linkage);
   /** @type {Page.Point | null} */
   const ends = from !== null && to !== null ? [from, to] : null;
   const within = positions.map((position, angle) => (!Number.isFinite(position) || (ends && (angle < Math.floor(ends[0]) || angle > Math.ceil(ends[1]))) ? null : position));
-  drawn.show(linkage, { slider_position_mm: within }, { direction: 0, small: true, angle: ends ? ends[0] : START, ...(ends ? { dead_centres_deg: ends } : {}) });
+  drawn.show(linkage, { slider_position_mm: within }, { direction: 0, small: true, outlines, angle: ends ? ends[0] : START, ...(ends ? { dead_centres_deg: ends } : {}) });
   if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
   /** @param {number} now */
   const step = (now) => {
