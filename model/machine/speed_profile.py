@@ -19,6 +19,7 @@ from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite
 from ..errors import InputError
 
+_RPM = 30.0 / math.pi
 _TURN = 2.0 * math.pi
 _MOST = 100  # harmonics
 _LEAST = 4  # points of a table
@@ -122,7 +123,7 @@ class SpeedTable:
             if not speed * self.speeds[0] > 0.0:
                 raise InputError(
                     "a speed over the crank angle must not be zero or change its sign, for the crank would never get "
-                    f"past; got {speed:.6g} rad/s at {math.degrees(angle):.6g} deg; correct it"
+                    f"past; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
                 )
         turns = self._spline.derivative().roots()  # with NaN for a stretch of one speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
@@ -138,7 +139,7 @@ class SpeedTable:
                 remedy = "give one turn"
             elif step:
                 remedy = (
-                    f"its last point is the first one a turn later and differs by {step:.6g} rad/s, so that the "
+                    f"its last point is the first one a turn later and differs by {_RPM * step:.6g} rpm, so that the "
                     "profile does not close; correct one of the two and leave out the last"
                 )
             raise InputError(

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from ...model.errors import InputError, JobError
 from ...model.machine.links import Bar
+from ...model.machine.loads.compressor import Compressor
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
@@ -42,6 +43,7 @@ def require_consistent(problem: Problem) -> None:
         except InputError as error:
             raise JobError(f"motion: {error}") from None
         return
+    _require_delivery(problem)
     require_reachable(problem)
     require_slow_stroke(problem)
     require_options(problem)
@@ -68,6 +70,40 @@ def _require_one_density(problem: Problem) -> None:
                 f"{100.0 * _ONE_MATERIAL:.0f} % of that; got "
                 f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
             )
+
+
+def _require_delivery(problem: Problem) -> None:
+    """Refuse compressors whose clearance volume is so large that no stroke of the ranges delivers, in every variant."""
+    said = [_undelivered(part) for part in problem.parts()]
+    if said and all(said):
+        raise JobError(said[0])
+
+
+def _undelivered(part: Problem) -> str:
+    """Return why a compressor of a problem without choices delivers in no design, or "".
+
+    What is left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
+    is at most 2 sqrt(r l), that of e = l - r.
+    """
+    asked = [item.upper for item in part.constraints if item.quantity == "stroke" and item.upper is not None]
+    stroke = min([2.0 * math.sqrt(part.crank.upper * part.rod.upper), *asked])
+    varies = {path for item in part.mechanism.varying for path in item.paths}
+    for k, load in enumerate(part.mechanism.loads):
+        if not isinstance(load, Compressor) or load.expansion_exponent == 0.0 or load.clearance_volume == 0.0:
+            continue
+        if any(path.startswith(f"loads.{k}.") for path in varies):
+            continue
+        grown = (load.high / load.low) ** (1.0 / load.expansion_exponent) - 1.0
+        swept = 0.25 * math.pi * (load.bore**2 - load.piston_rod**2) * stroke
+        most = swept * (1.0 / grown - load.clearance)
+        if load.clearance_volume >= most:
+            return (
+                f"load #{k + 1}.clearance_volume: must be below {1e6 * most:.4g} cm^3, else nothing is delivered at "
+                f"{load.high / load.low:.4g} times the suction pressure by a stroke of {1e3 * stroke:.6g} mm, the "
+                f"longest one of the job; got {1e6 * load.clearance_volume:.6g} cm^3; reduce it or the pressure ratio, "
+                "or allow longer strokes"
+            )
+    return ""
 
 
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:

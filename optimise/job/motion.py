@@ -16,7 +16,7 @@ from ...objectives.kinds import ANGLE
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
 from ..problem.requirements import Constraint
-from .values import Angle, AngleTolerance, Checked, Clearance, Length, Part, PositiveTime, optional
+from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
 _MARGIN = ANGLE.metric.factor * (SWING_TRANSMISSION_ANGLE.floor or 0.0)
@@ -176,7 +176,7 @@ _ENTRIES: dict[str, Any] = {
         optional("how far the driven slider may be off: adds to the error of the crank", "1 mm", default=0.0),
     ),
     "margin": (
-        AngleTolerance | None,
+        Angle | None,
         optional(
             "from the dead points, or from opening: the least transmission angle of the driven side, "
             f"{_MARGIN:g} deg if left out; a min of constraints.{SWING_TRANSMISSION_ANGLE.name} says the same",

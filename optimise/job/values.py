@@ -338,6 +338,7 @@ GasExponent = Annotated[
     PositiveRatio, Limited("from 0.2 to 10", "1 is isothermal, 1.4 adiabatic air", least=0.2, most=10.0)
 ]
 CompressionRatio = Annotated[PositiveRatio, Limited("above 1", "6 to 20 are usual", above=1.0)]
+HeatCapacityRatio = Annotated[PositiveRatio, Limited("above 1", "1.4 is cold air, 1.3 burnt gas", above=1.0)]
 PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -127,6 +127,8 @@ def test_heat_gives_the_pressure_of_an_ideal_gas_at_constant_volume() -> None:
         ({"peak_pressure": "10 bar"}, r"exceed that of compression alone, 14\.9285 bar; got 10 bar"),
         ({"peak_pressure": "0 bar"}, "a peak pressure, heat or both; got neither"),
         ({"compression_ratio": 1}, "compression_ratio: must be above 1; got 1"),
+        ({"heat_capacity_ratio": 1}, "heat_capacity_ratio: must be above 1; got 1"),
+        ({"heat_capacity_ratio": 0.9}, "heat_capacity_ratio: must be above 1; got 0.9"),
         (
             {"peak_pressure": "16 bar", "expansion_exponent": 1.39},
             "not expand below its intake pressure, 1 bar; got 0.8",

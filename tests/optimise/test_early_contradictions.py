@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
+from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.objectives.formula.expression import Call, Name
 from slidercrank.objectives.formula.linear import unknown
 from slidercrank.objectives.formula.ranges import Interval, Ranges
+from slidercrank.objectives.gas import VOLUMETRIC_EFFICIENCY
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
@@ -164,3 +167,35 @@ def test_one_combination_is_one() -> None:
 
 def test_rules_that_differ_by_the_rounding_of_their_units_are_one() -> None:
     parse_job(job(constraints={"rod": {"equals": "3 inch"}, "2 * rod": {"equals": "152.4 mm"}}))
+
+
+def test_a_clearance_volume_that_no_stroke_of_the_job_delivers_from_is_refused_with_the_greatest_one() -> None:
+    """The longest stroke is 2 sqrt(r l); just below the told volume some design delivers, from it on none does."""
+    random = np.random.default_rng(18)
+    for _ in range(6):
+        discharge, exponent = random.uniform(3.0, 12.0), random.uniform(1.0, 1.4)
+        cylinder = {
+            "bore": "70 mm",
+            "suction": "1 bar",
+            "discharge": f"{discharge} bar",
+            "expansion_exponent": exponent,
+            "clearance": 0.01,
+        }
+        given = job(load=[cylinder | {"clearance_volume": "900 cm^3"}], objectives={"peak_torque": "minimise"})
+        with pytest.raises(JobError, match=r"load #1\.clearance_volume: must be below .*; got 900 cm\^3") as refusal:
+            parse_job(given)
+        told = float(str(refusal.value).split("below ")[1].split(" cm^3")[0])
+        corner = np.array([[0.06, 0.3, 0.24 - 1e-9]])  # the inner dead centre is at the pivot
+        problem = parse_job(job(load=[cylinder | {"clearance_volume": "1 cm^3"}]))
+        for factor, delivers in ((0.99, True), (1.01, False)):
+            load = problem.mechanism.loads[0]
+            assert isinstance(load, Compressor)
+            load = replace(load, clearance_volume=factor * told * 1e-6)
+            machine = replace(problem.mechanism, loads=(load,))
+            assert (VOLUMETRIC_EFFICIENCY.evaluate(machine, corner).values[0] > 0.0) == delivers
+        held = given | {"constraints": {"stroke": {"max": "40 mm"}}}
+        with pytest.raises(JobError, match="by a stroke of 40 mm, the longest one of the job"):
+            parse_job(held)
+        followed = cylinder | {"clearance_volume": f"{0.9 * told} cm^3"}
+        parse_job(given | {"load": [followed]})
+        parse_job(given | {"variables": given["variables"] | {"load.1.bore": ["70 mm", "400 mm"]}})

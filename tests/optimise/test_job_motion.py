@@ -145,6 +145,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design of the ranges closes"),
         ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it is of a swing that the slider drives"),
         ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
+        ({"motion": {"margin": "-5 deg"}}, "motion.margin: must be more than 0 and less than 90 deg; got -5 deg"),
         (
             {"motion": {"margin": "20 deg"}, "constraints": {"swing_transmission_angle": {"min": "30 deg"}}},
             "motion.margin: it is the min of",

@@ -68,6 +68,14 @@ def test_speeds_come_from_a_file(over: str, pytestconfig: pytest.Config, tmp_pat
         ("{ cosines = [1.2] }", "got -20 % of the mean at 180 deg"),
         ("{ }", "harmonics or of points; got neither"),
         ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" cannot be read"),
+        (
+            '{ crank_angles = [0, 1, 2, 3], speeds = ["9 rpm", "-8 rpm", "9 rpm", "9 rpm"] }',
+            "must not be zero or change its sign, .*; got -8 rpm at 57.2958 deg",
+        ),
+        (
+            '{ crank_angles = ["0 deg", 1, 2, "360 deg"], speeds = ["9 rpm", "8 rpm", "9 rpm", "7 rpm"] }',
+            "a turn later and differs by -2 rpm",
+        ),
         ('{ file = "short.csv" }', "must be of a turn at least; got 54 deg"),
         ('{ file = "rising.csv" }', r"must repeat after a turn, to 2 %; got 900 rpm at its start and 1024\.7"),
         (

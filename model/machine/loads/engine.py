@@ -280,7 +280,7 @@ Engine.tables = (
                 "1.2 MJ/m^3",
                 default=0.0,
             ),
-            Entry("heat_capacity_ratio", "PositiveRatio", "of the burning gas, for heat", 1.4, default=1.4),
+            Entry("heat_capacity_ratio", "HeatCapacityRatio", "of the burning gas, for heat", 1.4, default=1.4),
             CYCLE,
             Entry(
                 "exhaust",
