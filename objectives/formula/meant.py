@@ -30,7 +30,7 @@ def meant(
     for name in names:
         if is_formula(name, mechanism, own):
             formulas = formulas or Formulas(own, mechanism, ranges, {}, turning=turning)
-            found.append(formulas.quantity(name, f"the formula {name[:60]}"))
+            found.append(formulas.quantity(name, f"the formula {' '.join(name[:60].split())}"))
         else:
             found.append(quantity(name, own))
     return found

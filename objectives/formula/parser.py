@@ -97,8 +97,8 @@ class _Reader:
         return sign
 
     def refuse(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
-        shown = self.text if len(self.text) <= 60 else f"{self.text[:60]}..."
-        shown = shown if shown.isprintable() else ascii(shown)
+        text = " ".join(self.text.split())
+        shown = text if len(text) <= 60 else f"{text[:60]}..."
         raise InputError(f"{rule}; got the formula {shown!r}; {remedy}")
 
     def deeper(self) -> None:

@@ -105,6 +105,9 @@ def _require_path(text: str, name: str, unit: str, where: str, own: frozenset[st
         raise JobError(
             f"{where}: a quantity needs min, max or equals; got none; write {name} max{behind} for its limit"
         )
+    own_path = name.removeprefix("variables.")
+    if own_path != name and _PATH.fullmatch(own_path):
+        raise JobError(f"{where}: a number of the job has its own path; got {name}; write {own_path}{behind}")
     for formula in (name, text):  # text: the brackets at its end may be those of a function
         try:
             limited, _ = _limited(formula, own)

@@ -85,7 +85,9 @@ def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
         raise InputError("a list of values has its own ends; got min or max too; leave them out")
     values = given["values"]
     if not isinstance(values, list | tuple) or len(values) < 2:
-        raise InputError(f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}')
+        raise InputError(
+            f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}; one stands alone'
+        )
     if len(values) > MOST:
         raise InputError(f"values are {MOST} at most; got {len(values)}; leave out some")
     found = sorted(read(value) for value in values)

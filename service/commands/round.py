@@ -38,8 +38,9 @@ def round(
     """Find the best designs of round numbers near one of a run, and what each costs.
 
     All combinations of multiples of the steps around the design are judged exactly. Told are those that keep every
-    requirement, least loss first: the greatest over the objectives, each by its range over the front. Where none keeps
-    all, the nearest are told, with what they miss; the exit code is then 3.
+    requirement and that no other one beats in every objective, least loss first: the greatest over the objectives,
+    each by its range over the front. Where none keeps all, the nearest are told, with what they miss; the exit code is
+    then 3.
     """
     folder, result, front = front_of_run(run, runs, number)
     steps = steps_of(to, front.part(number - 1), key="--to")

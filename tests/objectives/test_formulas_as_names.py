@@ -77,6 +77,10 @@ def test_names_and_formulas_stand_side_by_side_in_problems_analyses_and_sweeps()
         ("CRANK + rod", 'is called "CRANK"; did you mean crank?'),
         ("crank\u00a0+ peak_torque", "crank + peak_torque adds mm and N m"),
         ("crank +", "is missing at its end"),
+        (
+            "crank +\nrod )",
+            "the formula crank + rod ): a sign of + - * / ** is missing before ); got the formula 'crank + rod )'",
+        ),
         ("2 * efficiency", "efficiency is not defined here: "),
         ("3 mm", "the same for every design"),
         ("wellness", "and 50 more, all in `slidercrank schema` and slidercrank.quantities()"),

@@ -102,6 +102,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("crank == rod max (mm)", "'=' has no meaning in it"),
         ("min(crank max (mm)", "got the formula"),
         ("price (EUR)", "got neither; rename it, or let it begin with # to pass it over"),
+        ("variables.crank (mm)", "a number of the job has its own path; got variables.crank; write crank (mm)"),
         ("crank+rod max (mm),crank + rod max (cm)", "columns must differ; got it twice"),
     ],
 )

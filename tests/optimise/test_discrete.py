@@ -249,7 +249,7 @@ def test_requirements_over_the_cycle_that_no_combination_meets_are_told_with_the
         ({"min": "20 mm", "max": "60 mm", "series": "R7"}, 'series must be one of R5, R10, R20, R40; got "R7"'),
         ({"min": "20.1 mm", "max": "22 mm", "series": "R5"}, "none of R5 in mm is; widen the range"),
         ({"min": "20 mm", "max": "60 mm", "series": "R5", "step": "1 mm"}, "got step and series"),
-        ({"values": ["20 mm"]}, "must be a list of two or more"),
+        ({"values": ["20 mm"]}, 'got ["20 mm"]; one stands alone'),
         ({"min": "20 mm", "max": "60 mm", "steps": "1 mm"}, 'got "steps"; correct or remove it'),
         ({"values": ["20 mm", "2 cm"]}, "values must differ"),
         ({"values": ["20 mm", "25 mm"], "min": "1 mm"}, "leave them out"),
