@@ -265,7 +265,7 @@ def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, st
 def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> None:
     add(store)
     taken(store).fail("its worker was killed", again=False)
-    put_in(store, result("infeasible", rows=[]), TABLES)
+    put_in(store, replace(result("infeasible", rows=[]), message="time ratio is at most 1.2; got min 1.5"), TABLES)
     add(store)
     page = open_page(store, "#/help")
     asked = pictures_asked_for(page)
@@ -275,6 +275,7 @@ def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> 
         expect(page.get_by_role("listitem").filter(has_text="Compare run")).to_have_count(3)
     expect(page.get_by_role("img", name="the front")).to_have_count(0)
     assert asked == [[3, 2, 1]]
+    expect(page.get_by_text("time ratio is at most 1.2; got at least 1.5")).to_be_visible()  # in the words of the form
 
 
 def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) -> None:

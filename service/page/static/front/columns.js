@@ -33,6 +33,6 @@ export function named(key, value, digits = 4) {
 
 /** Return a title with the unit that the reader chose, on one line. @param {Page.Heading} column */
 export function headed(column) {
-  const unit = unitOf(column.unit);
-  return unit ? `${column.title},\u00a0${unit}` : column.title; // no line begins with a unit
+  const unit = unitOf(column.unit)?.replaceAll(" ", "\u00a0");
+  return unit ? `${column.title},\u00a0${unit}` : column.title; // no line begins with a unit, or with a part of one
 }

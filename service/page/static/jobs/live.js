@@ -8,6 +8,7 @@ import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
 import { counted, grouped, inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { inWords } from "../lib/words.js";
 import { growth } from "./growth.js";
 import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
@@ -82,7 +83,7 @@ export function watch(place, job, { signal, changed }) {
       soon();
     } else if (event.kind === "state") {
       const { state, reason } = /** @type {Api.Job} */ (event.data);
-      note(event.at, `${stateWord(state)}${reason ? `: ${reason}` : ""}`);
+      note(event.at, `${stateWord(state)}${reason ? `: ${inWords(reason)}` : ""}`);
       if (event.number > job.events || state !== job.state) soon(0);
     } else note(event.at, String(event.data.text));
   }

@@ -4,6 +4,7 @@ import { named } from "../front/columns.js";
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 import { counted, grouped } from "../lib/numbers.js";
+import { inWords } from "../lib/words.js";
 import { actions } from "./actions.js";
 import { badge } from "./states.js";
 import { moment } from "./times.js";
@@ -44,5 +45,5 @@ function standing(job) {
       h("div", { class: "quiet" }, `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`),
     ];
   }
-  return h("div", { class: "quiet" }, job.reason || (job.state === "queued" ? "waits for a worker" : ""));
+  return h("div", { class: "quiet" }, inWords(job.reason) || (job.state === "queued" ? "waits for a worker" : ""));
 }
