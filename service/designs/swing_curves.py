@@ -12,7 +12,18 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves, swing_curves
 from ...model.swing.swing import Swing, placed, require_swing
-from ...objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, POWER, SPEED, TORQUE, Kind
+from ...objectives.kinds import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    POWER,
+    SPEED,
+    TORQUE,
+    Kind,
+)
 
 POINTS = 181
 """Of one way, in curves and figures."""
@@ -45,6 +56,8 @@ def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
     error = "slider position error" if swing.driver == "crank" else "crank angle error"
     every = (
         SwingCurve("crank_angle", "crank_angle", "crank angle", ANGLE),
+        SwingCurve("crank_speed", "crank_speed", "crank speed", ANGULAR_SPEED, timed=True),
+        SwingCurve("crank_acceleration", "crank_acceleration", "crank acceleration", ANGULAR_ACCELERATION, timed=True),
         SwingCurve("slider_position", "slider_position", "slider position", LENGTH),
         SwingCurve("slider_velocity", "slider_velocity", "slider velocity", SPEED, timed=True),
         SwingCurve("slider_acceleration", "slider_acceleration", "slider acceleration", ACCELERATION, timed=True),

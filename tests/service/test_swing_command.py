@@ -94,6 +94,22 @@ def test_curves_and_figure(command: Command, tmp_path: Path) -> None:
     assert figure.read_bytes().startswith(b"\x89PNG")
 
 
+def test_speed_and_acceleration_of_the_crank_stand_in_curves_and_extremes(command: Command, tmp_path: Path) -> None:
+    """Summed up over the time they are the angle and the speed."""
+    curves, timed = tmp_path / "curves.csv", ("--law", "polynomial", "--duration", "4 s")
+    given = (SUPPORT, *SIZES, *OVER, "--driver", "slider", *timed)
+    found = numbers_of(command, *given, "--curves", curves)["extremes"]
+    with curves.open(encoding="utf-8") as file:
+        forth = [row for row in csv.DictReader(file) if row["way"] == "forth"]
+    columns = ("time_s", "crank_angle_deg", "crank_speed_rpm", "crank_acceleration_rad_s2")
+    time, angle, speed, rise = (np.array([float(row[name]) for row in forth]) for name in columns)
+    assert np.trapezoid(6.0 * speed, time) == pytest.approx(angle[-1] - angle[0], rel=1e-3)
+    assert np.trapezoid(rise[:91], time[:91]) == pytest.approx(speed[90] * math.pi / 30.0, rel=1e-3)
+    assert found["crank_speed"]["greatest_rpm"] == pytest.approx(speed.max(), rel=1e-3)
+    assert found["crank_acceleration"]["least_rad_s2"] == pytest.approx(rise.min(), rel=1e-3)
+    assert "crank_speed" not in numbers_of(command, *given[: -len(timed)])["extremes"]  # slow
+
+
 def test_inch_units_are_the_metric_ones_converted(command: Command) -> None:
     given = (SUPPORT, *SIZES, *OVER, "--driver", "slider")
     metric, inch = numbers_of(command, *given), numbers_of(command, *given, "--units", "inch")
