@@ -29,7 +29,7 @@ def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
     root.handlers[:] = [handler]
     root.setLevel(logging.INFO)
     logging.captureWarnings(True)
-    for talkative in ("httpx", "alembic", "distributed", "ezdxf", "matplotlib"):
+    for talkative in ("httpx", "alembic", "distributed", "ezdxf", "fontTools", "matplotlib"):
         logging.getLogger(talkative).setLevel(logging.WARNING)
 
 
