@@ -185,14 +185,13 @@ class ParetoFront:
         """Return the row that is best in an objective among those within bounds.
 
         best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
-        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. Raises `InputError` when none qualifies.
+        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may stand for a
+        column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` when none qualifies.
         """
         objective = self.column_of(best)
         keep = np.ones(len(self), dtype=bool)
         for column, (least, greatest) in bounds.items():
-            if column not in self.columns:
-                raise InputError(f"the table has no column {column!r}; see front.designs.columns")
-            values = self.columns[column]
+            values = self.columns[column] if column in self.columns else self._of(column)
             if least is not None:
                 keep &= values >= least
             if greatest is not None:
@@ -201,6 +200,20 @@ class ParetoFront:
             raise InputError(f"no design of the front lies within {bounds}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
+
+    def _of(self, name: str) -> Array:
+        """Return a quantity or formula of every design, SI."""
+        found = np.full(len(self), np.nan)
+        variants = np.array(self.variants or [0] * len(self))
+        for variant in set(variants.tolist()):
+            rows = np.flatnonzero(variants == variant)
+            try:
+                found[rows] = self.problem.part(variant).evaluate(self.dimensions[rows], [name])[:, 0]
+            except InputError:
+                if not name.isidentifier():
+                    raise
+                raise InputError(f"the table has no column {name!r}; see front.designs.columns") from None
+        return found
 
     def rounded(self, row: int, to: float | Mapping[str, float], *, count: int = 5) -> Rounded:
         """Return the best designs of round numbers near a design that keep every requirement, and what each costs.

@@ -25,7 +25,7 @@ SENSES: dict[str, Sense] = {
 Word = Literal["min", "max", "equals"]
 """Words of a constraint's bounds."""
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-_FORMULA = re.compile(r".* [-+*/] .*|-.*|.*\*\*.*|.*\(.*|[a-z_]+\..*")  # as `expression.text_of` writes them
+_FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")  # a `Problem` wants it as `expression.text_of` writes it
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -143,5 +143,7 @@ def test_constraints_and_objectives_of_python_may_be_formulas() -> None:
     assert asked.evaluate([0.04, 0.2, 0.02])[2] == 0.04
     with pytest.raises(InputError, match="write '2 \\* crank'"):
         replace(PROBLEM, constraints=(sc.Constraint(quantity="2 * (crank)", upper=0.17),))
+    with pytest.raises(InputError, match="write 'rod / crank'"):
+        replace(PROBLEM, constraints=(sc.Constraint(quantity="rod/crank", upper=9.0),))
     with pytest.raises(InputError, match="may be zero within the ranges"):
         replace(PROBLEM, constraints=(sc.Constraint(quantity="rod / offset", upper=0.17),))

@@ -72,6 +72,21 @@ def test_the_best_of_what_lies_within_bounds_is_picked() -> None:
     assert table["time_ratio"][best] == table["time_ratio"].max()
 
 
+def test_bounds_of_a_pick_may_be_formulas() -> None:
+    front = pair()
+    lengths = front.dimensions
+    for formula, values in (
+        ("2 * crank + rod", 2.0 * lengths[:, 0] + lengths[:, 1]),
+        ("rod/crank", lengths[:, 1] / lengths[:, 0]),
+    ):
+        bound = float(np.median(values))
+        row = front.pick("peak_torque", **{formula: (bound, None)})
+        assert values[row] >= bound
+        assert front.values[row, 0] == front.values[values >= bound, 0].min()
+    with pytest.raises(InputError, match='is called "crnk"; did you mean crank'):
+        front.pick("peak_torque", **{"crnk / rod": (1.0, None)})
+
+
 def test_a_pick_says_what_is_wrong_with_it() -> None:
     with pytest.raises(InputError, match="one of the objectives peak_torque, time_ratio; got 'stroke'"):
         pair().pick("stroke")
