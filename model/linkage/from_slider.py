@@ -121,7 +121,7 @@ def _between(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[Crank
             acceleration=asked.acceleration or 0.0,
             solution=stroke,
         )
-    speed, acceleration = float(found.speed), float(found.acceleration)
+    speed, acceleration = float(found.speed) + 0.0, float(found.acceleration) + 0.0  # -0 is 0
     if not (math.isfinite(speed) and math.isfinite(acceleration)):
         raise InputError(
             "crank speed and acceleration must be finite numbers; "

@@ -10,6 +10,7 @@ from pydantic import Field, create_model
 
 from ...model.errors import InputError, JobError
 from ...model.machine.start import Start
+from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.words import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
@@ -237,6 +238,22 @@ def require_start(varying: Mapping[str, bool]) -> None:
             raise JobError(
                 f"{path}: the start of a swing varies within a range; got a choice; write its least and its greatest "
                 "value, with swing or slider_travel in [motion] if the end goes along"
+            )
+
+
+def require_apart(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
+    """Raise JobError for a range of starts about an end that stays: swings of next to nothing would be the best."""
+    if motion is None or motion.follows:
+        return
+    name = _STARTS[motion.of]
+    factor, unit = (ANGLE.metric.factor, "deg") if motion.of == "crank" else (1e3, "mm")
+    for item in varying:
+        if item.name == f"motion.{name}" and item.lower <= motion.end <= item.upper:
+            raise JobError(
+                f"motion.{name}: starts must lie on one side of the end of the swing, where nothing is left of it; got "
+                f"{factor * item.lower:.6g} to {factor * item.upper:.6g} {unit} with an end at "
+                f"{factor * motion.end:.6g} {unit}; narrow the range, or give {_SPANS[motion.of]} instead of "
+                f"{_ENDS[motion.of]}"
             )
 
 

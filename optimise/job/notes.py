@@ -12,13 +12,14 @@ from .model import Job, job_with
 from .own import declared
 
 _MOST = 6  # plain numbers that are told one by one
+_OF_GAS = "compression_exponent", "expansion_exponent"
 _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
 def notes_of(data: Mapping[str, Any]) -> list[str]:
     """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening.
 
-    And on a speed that a swing does not have.
+    And on a speed and tables that a swing does not have, and exponents of a liquid.
     """
     plain: list[tuple[str | None, float, Kind]] = []
     job = job_with(declared(data, allowed=True)).model_validate(data, context=plain)
@@ -42,6 +43,16 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     notes += _pins(job)
     if job.motion.build() is not None and job.mechanism.speed is not None:
         notes.append("mechanism.speed: a swing has a motion of its own, that of [motion]; leave the speed out")
+    if job.motion.build() is not None:
+        notes += [
+            f"{name}: it is of a crank that turns through, and says nothing of a swing; leave it out"
+            for name in ("drive", "clearance")
+            if name in job.model_fields_set
+        ]
+    for k, load in enumerate(data.get("load", ()), start=1):
+        idle = [key for key in _OF_GAS if key in load and load.get("medium") == "liquid"]
+        if idle:
+            notes.append(f"load #{k}: a liquid is not compressed: no use of {' and '.join(idle)}; leave it out")
     return notes
 
 

@@ -19,7 +19,7 @@ from ..problem.requirements import Constraint, merged
 from .contradictions import require_consistent
 from .messages import key_of
 from .model import Job
-from .motion import require_speed, require_start, require_swing_asked, with_margin
+from .motion import require_apart, require_speed, require_start, require_swing_asked, with_margin
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
@@ -41,6 +41,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
     require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
+    require_apart(motion, machine.varying)
     own = (
         *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
         *functions_of(job.quantity, folder),

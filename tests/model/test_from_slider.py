@@ -199,3 +199,4 @@ def test_rates_that_are_not_asked_for_are_none() -> None:
     assert [(each.speed, each.acceleration) for each in linkage.from_slider(0.24)] == [(None, None)] * 2
     for each in linkage.from_slider(0.24, velocity=0.0):
         assert (each.speed, each.acceleration) == (0.0, None)
+        assert math.copysign(1.0, each.speed or 0.0) == 1.0  # not -0

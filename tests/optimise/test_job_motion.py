@@ -145,6 +145,10 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design of the ranges closes"),
         ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it is of a swing that the slider drives"),
         ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
+        (
+            {"variables": JOB["variables"] | {"motion.from": ["0 deg", "120 deg"]}},
+            r"motion\.from: .* one side of the end .*; got 0 to 120 deg with an end at 101 deg; .* give swing",
+        ),
         ({"motion": {"margin": "-5 deg"}}, "motion.margin: must be more than 0 and less than 90 deg; got -5 deg"),
         (
             {"motion": {"margin": "20 deg"}, "constraints": {"swing_transmission_angle": {"min": "30 deg"}}},
@@ -198,6 +202,23 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
 def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: str) -> None:
     with pytest.raises(JobError, match=words):
         parse_job(changed(**tables))
+
+
+def test_tables_of_a_full_turn_are_told_to_say_nothing_of_a_swing() -> None:
+    given = changed(
+        drive={"motor": {"torque": "10 N m"}}, clearance={"joint": "crank pin", "radial_clearance": "0.1 mm"}
+    )
+    told = "it is of a crank that turns through, and says nothing of a swing; leave it out"
+    assert [note for note in notes_of(given) if "says nothing" in note] == [f"drive: {told}", f"clearance: {told}"]
+
+
+def test_exponents_of_a_liquid_are_told_to_have_no_use() -> None:
+    pump = {"bore": "50 mm", "suction": "1 bar", "discharge": "5 bar", "medium": "liquid", "clearance": 0.1}
+    turning = changed(mechanism={"speed": "60 rpm"}, objectives={"peak_torque": "minimise"}, constraints={})
+    turning = {key: value for key, value in turning.items() if key != "motion"}
+    told = "load #1: a liquid is not compressed: no use of expansion_exponent; leave it out"
+    assert notes_of(turning | {"load": [pump | {"expansion_exponent": 1.2}]}) == [told]
+    assert notes_of(turning | {"load": [pump]}) == []
 
 
 def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothing() -> None:
