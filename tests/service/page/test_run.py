@@ -154,8 +154,9 @@ def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, sto
     page = open_page(store, "#/jobs/1")
     page.get_by_role("button", name="Finish now run 1").click()
     expect(page.get_by_text("stopping")).to_be_visible()
-    claim.finish(replace(solved.result, status="cancelled"))
+    claim.finish(replace(solved.result, status="cancelled", message="cancelled: 8 designs"))
     expect(page.get_by_role("heading", name="Stopped early")).to_be_visible()
+    expect(page.get_by_text("a longer search finds better designs. Cancelled: 8 designs.", exact=False)).to_be_visible()
     expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
     expect(page.get_by_role("button", name="Resume run 1")).to_be_visible()
 

@@ -2,7 +2,7 @@
 
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
-import { inWords } from "../lib/words.js";
+import { capital, inWords } from "../lib/words.js";
 
 /** Return what to say of a job that has ended otherwise than done; null of one that is done. @param {Api.Job} job */
 export function outcome(job) {
@@ -15,7 +15,7 @@ export function outcome(job) {
     return said("The run stopped with an error", job.reason, ["Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ", again]);
   }
   if (job.state === "cancelled" && found) {
-    return said("Stopped early", `What it had found by then is below; a longer search finds better designs. ${job.reason}`, ["Resume it, above, to go on from where it was."]);
+    return said("Stopped early", `What it had found by then is below; a longer search finds better designs. ${capital(job.reason)}.`, ["Resume it, above, to go on from where it was."]);
   }
   if (job.state === "cancelled") {
     return said(job.progress?.feasible ? "Stopped before its designs were gathered" : "The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);
