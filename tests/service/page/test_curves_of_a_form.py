@@ -26,7 +26,7 @@ def test_a_load_is_drawn_dragged_and_moved_by_keys_with_the_dead_centres_in_sigh
     page = open_page(store, "#/new")
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     page.get_by_label("kind of load").select_option("positions")
-    drawn = page.locator(".curve-drawn")
+    drawn = page.locator(".curve-drawn:visible")
     expect(drawn.get_by_text("inner dead centre")).to_be_visible(timeout=30_000)
     expect(drawn.get_by_text("outer dead centre")).to_be_visible()
     points = drawn.get_by_role("slider")
@@ -71,7 +71,7 @@ def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(open_pa
         degrees, millimetres = float(angle.split()[0]), float(position.split()[0])
         where = float(linkage.at([degrees * 3.141592653589793 / 180.0], speed=1.0).slider_position[0])
         assert abs(where * 1e3 - millimetres) <= 0.51
-    drawn = page.locator("details", has_text="Wanted motion of the slider").locator(".curve-drawn")
+    drawn = page.locator("details", has_text="Wanted motion of the slider").locator(".curve-drawn:visible")
     expect(drawn.get_by_role("slider")).to_have_count(8)
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     page.get_by_label("phase", exact=True).select_option("free")

@@ -182,6 +182,18 @@ def test_cylinders_an_uneven_speed_and_an_engine_of_four_strokes_are_filled_in(f
     assert machine.arrangement.banks == pytest.approx((0.0, 0.5 * math.pi))
     assert machine.arrangement.places == (-0.05, 0.05)
     assert machine.speed_profile is not None
+    page.get_by_label("cosines", exact=True).fill("")
+    points = page.locator("#f-mechanism-speed_profile-crank_angles-c")
+    points.fill("crank angle (deg)\tspeed (rpm)\n0\t900\n90\t880\n180\t900\n270\t920")
+    ready(page)
+    profile = text_of(page)["mechanism"]["speed_profile"]
+    assert profile == {
+        "crank_angles": ["0 deg", "90 deg", "180 deg", "270 deg"],
+        "speeds": ["900 rpm", "880 rpm", "900 rpm", "920 rpm"],
+    }
+    points.fill("")
+    ready(page)
+    assert "speed_profile" not in text_of(page)["mechanism"]
     kind = page.get_by_label("kind of load", exact=True)
     kind.select_option(label="ideal engine cycle")
     page.get_by_label("cycle", exact=True).select_option("720 deg")

@@ -52,7 +52,7 @@ def test_a_file_is_asked_for_only_where_the_job_names_one(form: Open, store: Sto
     page = form(store, "#/new?preset=sieve")
     ready(page)
     file = page.locator("#f-mechanism-speed_profile-file-c")
-    expect(page.locator("#f-mechanism-speed_profile-speeds-c")).to_have_count(1)
+    expect(page.locator("#f-mechanism-speed_profile-crank_angles-c")).to_have_count(1)
     expect(file).to_have_count(0)  # a service opens none
     job = text_of(page)
     job["mechanism"]["speed_profile"] = {"file": "speeds.csv"}

@@ -131,8 +131,7 @@ def test_what_a_choice_leaves_without_a_meaning_is_taken_out(form: Open, store: 
     law = page.get_by_label("motion over time", exact=True)
     law.select_option("table")
     page.get_by_label("duration of one way", exact=True).fill("20")
-    page.get_by_label("shares of the time", exact=True).fill("0, 0.2, 0.8, 1")
-    page.get_by_label("shares of the way", exact=True).fill("0, 0.1, 0.9, 1")
+    page.get_by_label("points of the motion, one a line", exact=True).fill("0\t0\n0.2\t0.1\n0.8\t0.9\n1\t1")
     ready(page)
     motion = text_of(page)["motion"]
     assert (motion["law_times"], motion["law_shares"]) == ([0, 0.2, 0.8, 1], [0, 0.1, 0.9, 1])

@@ -4,7 +4,10 @@ import { h } from "../lib/dom.js";
 import { say } from "../lib/notices.js";
 import { byschema, choice } from "./controls.js";
 import { isTable } from "./path.js";
+import { points } from "./points.js";
 import { speed } from "./speed.js";
+
+/** @import { Column } from "./points.js" */
 
 const PATH = ["motion"];
 /** What states the ends of a swing: the keys of it, and what a new one begins with. @type {Record<string, Record<string, string>>} */
@@ -15,6 +18,8 @@ const ENDS = {
   "slider position and travel": { slider_from: "300 mm", slider_travel: "-100 mm" },
 };
 const LABELS = { from: "from crank angle", to: "to crank angle", swing: "swing", slider_from: "from slider position", slider_to: "to slider position", slider_travel: "travel of the slider" };
+/** @type {[Column, Column]} */
+const LAW = [{ key: "law_times", label: "share of the time", kind: null }, { key: "law_shares", label: "share of the way", kind: null }];
 const FIRST = { kind: "swing", from: "0 deg", to: "60 deg", driver: "slider" };
 
 /** Return whether the crank of a job swings. @param {Form.Whole} form */
@@ -72,7 +77,7 @@ export function motion(form, turning) {
     own("margin", "margin from dead points"),
     choosing("law", "motion over time", (law) => [...(law === "" || law === "slow" ? ["duration"] : []), ...(law === "table" ? [] : ["law_times", "law_shares"])]),
     slow ? null : own("duration", "duration of one way"),
-    ...(form.at([...PATH, "law"]) === "table" ? [own("law_times", "shares of the time"), own("law_shares", "shares of the way")] : []),
+    form.at([...PATH, "law"]) === "table" ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", { optional: true, title: "points of the motion, one a line" }) : null,
     form.at([...PATH, "driver"]) === "slider" ? own("actuator_tolerance", "tolerance of the actuator") : null,
     turning,
     h("details", { class: "more" }, h("summary", {}, "Crank speed, of no matter to a swing"), h("div", { class: "fields" }, speed(form))),

@@ -10,10 +10,10 @@ import { convert, factorsOf, join, split } from "../lib/units.js";
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 
 /**
- * Return the field of the points that two lists of a table say, one a line.
- * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why
+ * Return the field of the points that two lists of a table say, one a line. optional: whether there may be none, without the lists.
+ * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string }} options
  */
-export function points(form, path, columns, why) {
+export function points(form, path, columns, why, { optional = false, title = "points, one a line" } = {}) {
   const given = columns.map(({ key }) => form.at([...path, key]));
   const lists = given.map((one) => (Array.isArray(one) ? one : []));
   const units = columns.map(({ label, kind }, n) => (kind ? unitSelect(label, kind, split(lists[n][0], kind).unit, false, idOf([...path, columns[n].key], "u")) : null));
@@ -35,7 +35,8 @@ export function points(form, path, columns, why) {
       const select = units[n];
       if (unit && select) select.value = select.dataset.from = unit;
     });
-    columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));
+    const none = optional && !read.rows.length;
+    columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : none ? undefined : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));
   };
   const picture = curve({
     read: () => {
@@ -63,7 +64,7 @@ export function points(form, path, columns, why) {
     picture.draw();
   }));
   const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, `${label} in`), units[n]]);
-  const made = field(form, [...path, columns[0].key], "points, one a line", [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
+  const made = field(form, [...path, columns[0].key], title, [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
   const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
   made.querySelector(".field-controls")?.append(picture.node);
   made.append(error);

@@ -12,6 +12,7 @@ import { isTable } from "./path.js";
 import { range } from "./range.js";
 import { requirement } from "./requirement.js";
 import { words } from "./schema.js";
+import { speedProfile } from "./speed.js";
 import { solving } from "./solving.js";
 import { strength, strengthGiven } from "./strength.js";
 import { targetMotion, wantedGiven } from "./target_motion.js";
@@ -25,7 +26,7 @@ export function sections(form) {
   form.fields.length = 0;
   return [
     section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], turning(form, "mechanism.acceleration", () => byschema(form, ["mechanism", "acceleration"])), turning(form, "mechanism.speed_profile", () => byschema(form, ["mechanism", "speed_profile"])), byschema(form, ["mechanism", "branch"])), turning(form, "target_motion", () => more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)))),
+    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], turning(form, "mechanism.acceleration", () => byschema(form, ["mechanism", "acceleration"])), turning(form, "mechanism.speed_profile", () => speedProfile(form)), byschema(form, ["mechanism", "branch"])), turning(form, "target_motion", () => more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)))),
     section(
       "Dimensions",
       h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),

@@ -1,13 +1,23 @@
 /** The speed of the crank and the way in which it turns: one value of the job, whose sign is the direction. */
 
 import { h } from "../lib/dom.js";
-import { changeUnit, numberInput, unitSelect } from "./controls.js";
+import { byschema, changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
+import { points } from "./points.js";
 import { taken } from "./typed_field.js";
 import { split } from "../lib/units.js";
 
 const PATH = ["mechanism", "speed"];
+
+/** Return the fields of a speed that goes up and down over the turn: harmonics, or points. @param {Form.Whole} form */
+export function speedProfile(form) {
+  const path = ["mechanism", "speed_profile"];
+  const table = points(form, path, [{ key: "crank_angles", label: "crank angle", kind: "angle" }, { key: "speeds", label: "crank speed", kind: "angular speed" }],
+    "Measured speeds, with the sign of the speed, at crank angles that increase and span less than a turn; a smooth curve joins them. The speed of the job is their mean", { optional: true, title: "speeds over the turn, one a line" });
+  const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service opens no files
+  return h("fieldset", { class: "inner" }, h("legend", {}, "speed profile"), h("div", { class: "fields" }, byschema(form, [...path, "cosines"]), byschema(form, [...path, "sines"]), table, file));
+}
 
 /** Return the fields of speed and direction. @param {Form.Whole} form */
 export function speed(form) {
