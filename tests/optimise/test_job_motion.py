@@ -205,9 +205,8 @@ def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: 
 
 
 def test_tables_of_a_full_turn_are_told_to_say_nothing_of_a_swing() -> None:
-    given = changed(
-        drive={"motor": {"torque": "10 N m"}}, clearance={"joint": "crank pin", "radial_clearance": "0.1 mm"}
-    )
+    loose = {"joint": "crank pin", "radial_clearance": "0.1 mm", "journal_radius": "10 mm"}
+    given = changed(drive={"motor": {"torque": "10 N m"}}, clearance=loose)
     told = "it is of a crank that turns through, and says nothing of a swing; leave it out"
     assert [note for note in notes_of(given) if "says nothing" in note] == [f"drive: {told}", f"clearance: {told}"]
 
