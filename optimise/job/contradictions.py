@@ -13,6 +13,7 @@ from dataclasses import replace
 from ...model.errors import InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
+from ...objectives.proportions import STROKE
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
@@ -85,7 +86,7 @@ def _undelivered(part: Problem) -> str:
     What is left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
     is at most 2 sqrt(r l), that of e = l - r.
     """
-    asked = [item.upper for item in part.constraints if item.quantity == "stroke" and item.upper is not None]
+    asked = [item.upper for item in part.constraints if item.quantity == STROKE.name and item.upper is not None]
     stroke = min([2.0 * math.sqrt(part.crank.upper * part.rod.upper), *asked])
     varies = {path for item in part.mechanism.varying for path in item.paths}
     for k, load in enumerate(part.mechanism.loads):
