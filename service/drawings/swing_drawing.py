@@ -12,7 +12,7 @@ from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import aligned, dimension
 from .parts import lengths_in_words, pins_at
-from .shapes import Arc, Drawing, Label, Line, Shape
+from .shapes import Anchor, Arc, Drawing, Label, Line, Shape
 from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
 from .titles import TEXT, titled
 
@@ -84,9 +84,9 @@ def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
     share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
-    text = Label(
-        on.DIMENSIONS, f"{last - first:.6g} deg", arc.at(first + share * (last - first)), height, anchor="middle"
-    )
+    place, beside_it = arc.at(first + share * (last - first)), arc.at(math.degrees(angle))
+    anchor: Anchor = "start" if place[0] > beside_it[0] else "end"  # the words run away from the crank
+    text = Label(on.DIMENSIONS, f"{last - first:.6g} deg", place, height, anchor=anchor)
     return [*found, arc, text]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
 from slidercrank.service.drawings.dxf import dxf_file
+from slidercrank.service.drawings.shapes import WIDE, Label
 from slidercrank.service.drawings.svg import svg_file
 from slidercrank.service.drawings.swing_drawing import swing_drawing
 from slidercrank.service.figures.painting import drawing_figure
@@ -151,3 +153,18 @@ def test_the_figure_of_a_swing_has_its_body() -> None:
     point = 1e3 * linkage.crank_point(0.95, along=1.1, across=0.15).position
     found = np.array([patch.center for patch in drawn.patches if isinstance(patch, Disc)])
     assert np.hypot(*(found - point).T).min() < 1e-6
+
+
+@pytest.mark.parametrize("case", CASES, ids=range(len(CASES)))
+def test_the_words_of_the_swing_angle_do_not_lie_on_the_crank(case: Case) -> None:
+    mechanism, linkage, swing = case
+    drawing = swing_drawing(mechanism, linkage, swing, name="Support", design="design 2")
+    (words,) = (
+        shape for shape in drawing.shapes if isinstance(shape, Label) and re.fullmatch(r"[\d.]+ deg", shape.text)
+    )
+    long = WIDE * words.height * len(words.text)
+    left = words.at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[words.anchor] * long
+    along = np.linspace(0.0, 1e3 * float(linkage.crank), 400)
+    angle = 0.5 * (swing.start + swing.end)
+    x, y = along * math.cos(angle), along * math.sin(angle) - words.at[1]
+    assert not np.any((x > left) & (x < left + long) & (y > -0.3 * words.height) & (y < words.height))
