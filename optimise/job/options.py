@@ -23,7 +23,7 @@ def require_options(problem: Problem) -> None:
 
 def idle_options(problem: Problem) -> list[str]:
     """Return in words which combinations of options no design can have, and why."""
-    found = impossible_options(problem)
+    found = [*problem.left_out, *impossible_options(problem)]
     more = f", and {len(found) - _MOST} more" if len(found) > _MOST else ""
     told = "; ".join(f"{label}: {why}" for label, why in found[:_MOST])
     return [f"no design can have what an option asks for, and the front is without it: {told}{more}"] if found else []

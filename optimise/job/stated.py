@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ...model.errors import InputError, JobError
@@ -11,7 +11,6 @@ from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swinging import swing_quantities
-from ...objectives.units import shown
 from ..discrete.meetable import require_meetable
 from ..methods.registry import require_fit
 from ..problem.problem import Problem, Variant
@@ -52,8 +51,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     choices, variants = variants_of(job, formulas)
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
-    for variant in variants:
-        _require_joint(constraints, variant, (*own, *formulas.made.values()))
+    variants, left_out = _possible(variants, constraints, (*own, *formulas.made.values()))
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
@@ -64,6 +62,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         offset=ends_of(variables.offset),
         choices=choices,
         variants=variants,
+        left_out=left_out,
         objectives=objectives,
         constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
@@ -98,21 +97,38 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
     return tuple(found.values())
 
 
-def _require_joint(constraints: tuple[Constraint, ...], variant: Variant, own: Iterable[Quantity]) -> None:
-    """Refuse an option whose limit leaves nothing of a constraint of the job."""
+def _possible(
+    variants: tuple[Variant, ...], constraints: tuple[Constraint, ...], own: Iterable[Quantity]
+) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
+    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
+
+    Raises JobError where there is none.
+    """
     known = QUANTITIES | {of.name: of for of in own}
+    reasons = [_contradiction(variant, constraints, known) for variant in variants]
+    left_out = tuple(
+        (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
+    )
+    if variants and len(left_out) == len(variants):
+        label, why = left_out[0]
+        raise JobError(
+            f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
+            "the two"
+        )
+    return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
+
+
+def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:
+    """Return in words which limit of a variant leaves nothing of a constraint; None if there is no such."""
     given = {of.quantity: of for of in constraints}
     for limit in variant.limits:
         name = limit.quantity
-        both = (given.get(name, limit), limit)
+        both = (given[name], limit) if name in given else (limit,)
         try:
             (given[name],) = merged(both)
         except InputError:
-            raise JobError(
-                f"choice {', '.join(map(shown, variant.labels))}: {name}: must leave something of the job's own "
-                f"constraint, and of options chosen with it; got {_asked(both, known[name])}; leave out the option, or "
-                "one of the limits"
-            ) from None
+            return f"{known[name].title} {_asked(both, known[name])}, which exclude each other"
+    return None
 
 
 def _asked(constraints: Iterable[Constraint], of: Quantity) -> str:

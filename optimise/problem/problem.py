@@ -95,12 +95,14 @@ class Problem:
 
     mechanism: its varying numbers are variables besides the dimensions. crank, rod, offset: where the three dimensions
     may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
-    chosen. With variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
-    tolerances, for their allocation. own: quantities besides those that every problem has; objectives and constraints
-    may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset has one sign
-    only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`. discrete: which of a design's
-    numbers have one of some values only; their ranges are the hulls of these. motion: a swing of the crank, which then
-    need not turn through; its quantities are among the own ones, those of a turning crank refused.
+    chosen. left_out: combinations whose limits the constraints exclude, label and reason, to be told. With
+    variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
+    tolerances, for their allocation. own: quantities besides those that every problem has; objectives and
+    constraints may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset
+    has one sign only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`. discrete:
+    which of a design's numbers have one of some values only; their ranges are the hulls of these. motion: a swing
+    of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
+    refused.
     """
 
     name: str
@@ -115,12 +117,13 @@ class Problem:
     own: tuple[Quantity, ...] = ()
     choices: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
+    left_out: tuple[tuple[str, str], ...] = ()
     slow_stroke: SlowStroke | None = None
     discrete: tuple[Discrete, ...] = ()
     motion: Swing | None = None
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "discrete")
+        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out", "discrete")
         require_known(self.discrete, [*self.ranges])
         if self.motion is not None:
             self._take(self.motion)
@@ -347,6 +350,7 @@ class Problem:
             slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
             choices=(),
             variants=(),
+            left_out=(),
         )
 
     def parts(self) -> tuple[Problem, ...]:

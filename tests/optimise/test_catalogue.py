@@ -13,6 +13,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import files_beside, load_job, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, options_of
 from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import distance
 
@@ -188,9 +189,9 @@ def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str,
             'choice "gearmotor", option "A": crank: min must not exceed max; got min "30 mm" and max "20 mm"',
         ),
         (
-            "name,stroke equals (mm)\nA,90\nB,80",
-            'choice "A": stroke: must leave something of the job\'s own constraint, and of options chosen with it; got '
-            "equals 80 mm and equals 90 mm; leave out the option",
+            "name,stroke max (mm)\nA,70",
+            "choice: some option must leave something of [constraints]; got none: of A stroke equals 80 mm and max "
+            "70 mm, which exclude each other; leave out",
         ),
     ],
 )
@@ -200,6 +201,26 @@ def test_what_a_job_refuses_of_a_row_is_told_with_its_name(text: str, words: str
     job.write_text(ranges + '[constraints]\nstroke = { equals = "80 mm" }\n')
     with pytest.raises(JobError, match=re.escape(words)):
         load_job(job)
+
+
+def test_rows_that_the_constraints_exclude_are_left_out_and_told(tmp_path: Path) -> None:
+    rows = ["short,70,20", "long,85,45", "longer,95,50"]
+    fronts = []
+    for some in (rows, rows[1:]):
+        job = written(tmp_path, "\n".join(["name,stroke max (mm),transmission_angle min (deg)", *some]))
+        ranges = JOB.replace('{ choices = ["40 mm", "50 mm", "60 mm"] }', '["30 mm", "60 mm"]')
+        ranges = ranges.replace('stroke = "maximise"', 'time_ratio = "maximise"').replace(
+            '"20 mm"', '["0 mm", "60 mm"]'
+        )
+        job.write_text(
+            ranges + '[constraints]\nstroke = { equals = "80 mm" }\n[optimiser]\ndesigns = 5\nsamples = 256\n'
+        )
+        fronts.append(solve(load_job(job)))
+    told, none = (idle_options(front.problem) for front in fronts)
+    assert told[0].endswith("short: stroke equals 80 mm and max 70 mm, which exclude each other")
+    assert none == []
+    np.testing.assert_array_equal(fronts[0].values, fronts[1].values)
+    assert set(fronts[0].columns["choice_gearmotor"]) <= {"long", "longer"}
 
 
 def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
