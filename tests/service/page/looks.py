@@ -15,6 +15,6 @@ _SCRIPT = (
 
 
 def faults(page: Page) -> dict[str, list[str]]:
-    """Faults: "wider" than the window; text "clipped" or "over" other text; "small" targets; "tiny" labels."""
+    """Faults: "wider" than the window; text "clipped" or "over" another; "small" targets; "tiny" or "huge" labels."""
     found: dict[str, list[str]] = page.evaluate(f"(least) => {{ {_SCRIPT} return measured(least); }}", LEAST_TARGET)
     return found

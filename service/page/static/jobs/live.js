@@ -33,7 +33,7 @@ export function watch(place, job, { signal, changed }) {
   const course = stages();
   const extent = steady();
   const lost = h("p", { class: "lost", role: "status", hidden: true }, "The connection to the service was lost. The page goes on when it is back.");
-  const curve = h("div");
+  const curve = h("div", { class: "course" });
   const front = h("div");
   const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
   const why = h("p", { class: "quiet", hidden: true }, "The first search after an installation compiles the model of the machine. That takes a minute or two, once.");

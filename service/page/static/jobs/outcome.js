@@ -25,5 +25,5 @@ export function outcome(job) {
 
 /** @param {string} heading @param {string} reason @param {Dom.Child[]} remedy */
 function said(heading, reason, remedy) {
-  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, inWords(reason)), h("p", {}, remedy));
+  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, capital(inWords(reason)).replace(/[^.!?]$/, "$&.")), h("p", {}, remedy));
 }

@@ -1,7 +1,7 @@
-/** Faults of a view as it stands, measured in a browser: what is wider than the window, clipped, over other text, or too small to hit or read. */
+/** Faults of a view as it stands, measured in a browser: what is wider than the window, clipped, over other text, too small to hit or read, or too large. */
 /* global document, getComputedStyle, NodeFilter */
 
-const [WIDE, LEAST_TEXT] = [1280, 12]; // px: of the window, from where on texts in pictures have that size
+const [WIDE, LEAST_TEXT, MOST_TEXT] = [1280, 12, 20]; // px: of the window, from where on texts in pictures have the least size
 
 /** Return the faults by their kind. least: of what is clicked, px. */
 export function measured(least) {
@@ -9,7 +9,7 @@ export function measured(least) {
   const name = (node) => `${node.tagName.toLowerCase()}.${node.getAttribute("class") ?? ""} "${(node.textContent || node.value || "").trim().slice(0, 50)}"`;
   const style = (node) => getComputedStyle(node);
   const cutting = (node, kinds) => kinds.includes(style(node).overflowX) || kinds.includes(style(node).overflowY);
-  const found = { wider: [], clipped: [], over: [], small: [], tiny: [] };
+  const found = { wider: [], clipped: [], over: [], small: [], tiny: [], huge: [] };
   const width = document.documentElement.clientWidth;
   if (document.documentElement.scrollWidth > width) {
     const wide = [...document.querySelectorAll("main *")].filter((node) => seen(node) && node.getBoundingClientRect().right > width + 1);
@@ -44,10 +44,11 @@ export function measured(least) {
     if (seen(input) && input.value && input.scrollWidth > input.clientWidth + 2) found.clipped.push(name(input));
 
   // Texts in pictures, as large as they are drawn; on a phone pictures shrink with the screen.
-  for (const text of width >= WIDE ? document.querySelectorAll("svg text") : []) {
+  for (const text of document.querySelectorAll("svg text")) {
     const drawn = text.getScreenCTM();
     const size = drawn && seen(text) && text.textContent.trim() ? parseFloat(style(text).fontSize) * Math.hypot(drawn.a, drawn.b) : LEAST_TEXT;
-    if (size < LEAST_TEXT - 0.05) found.tiny.push(`${name(text)} of ${size.toFixed(1)} px`);
+    if (width >= WIDE && size < LEAST_TEXT - 0.05) found.tiny.push(`${name(text)} of ${size.toFixed(1)} px`);
+    if (size > MOST_TEXT) found.huge.push(`${name(text)} of ${size.toFixed(1)} px`);
   }
 
   // Texts over texts: by more than a third of a line in height, and more than two pixels across.
