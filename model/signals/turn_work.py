@@ -25,7 +25,7 @@ from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import ComplexCube, Cube, Row, Table, seldom_kernel
+from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
 from ..kinematics.position import motion_of
 from ..machine.derived import derived
 from ..machine.design import design_at
@@ -84,7 +84,7 @@ def _curves(
     )
 
 
-@seldom_kernel
+@kernel
 def _integrate(
     blocks: Cube,
     steps: ComplexCube,
