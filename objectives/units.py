@@ -22,6 +22,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
+from .counted import counted
 from .kinds import KINDS, TIME, Face, Kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
@@ -236,7 +237,7 @@ def shown(value: object) -> str:
         quoted = json.dumps(text, ensure_ascii=False)
         return "".join(one if one.isprintable() else json.dumps(one)[1:-1] for one in quoted)
     if isinstance(value, Mapping):
-        return f"a table of {len(value)} key{'s' if len(value) > 1 else ''}" if value else "an empty table"
+        return f"a table of {counted(len(value), 'key')}" if value else "an empty table"
     if isinstance(value, list | tuple):
         plain = len(value) <= 4 and not any(isinstance(x, list | tuple | Mapping) for x in value)
         inner = ", ".join(map(shown, value)) if plain else ""

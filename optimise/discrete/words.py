@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.counted import counted
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.front import ParetoFront
 from ..problem.problem import Problem
@@ -22,7 +23,7 @@ def found_in_words(front: ParetoFront) -> str:
     rules = rules_in_words(problem)
     if not len(front):
         return f"no design of {_many(answer.judged)} of {rules} keeps every requirement"
-    count = f"{len(front)} design{'' if len(front) == 1 else 's'}"
+    count = counted(len(front), "design")
     if len(front) >= problem.settings.designs:
         count += ", as many as are asked for"
     if answer.exact:
@@ -77,7 +78,7 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
 
 
 def _many(count: int) -> str:
-    return f"{count} combination{'' if count == 1 else 's'}"
+    return counted(count, "combination")
 
 
 def _both(here: float, asked: float) -> tuple[tuple[float, int], tuple[float, int]]:

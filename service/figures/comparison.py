@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
@@ -66,8 +67,8 @@ def comparison_matrix(
     for line, note in enumerate(notes):
         write(figure, 0.2, below - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     handles = [Line2D([], [], **_style(index)) for index in range(len(runs))]
-    counted = [f"{run.label}, {len(run.values)} design{'s' if len(run.values) != 1 else ''}" for run in runs]
-    legend_at(figure, 0.2, height - _TOP, handles, counted)
+    labels = [f"{run.label}, {counted(len(run.values), 'design')}" for run in runs]
+    legend_at(figure, 0.2, height - _TOP, handles, labels)
     return figure
 
 

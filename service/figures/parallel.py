@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from ...objectives.counted import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .marks import Axis, dimension_axes, marks, objective_axis
@@ -83,7 +84,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         handlelength=4.0,
         columnspacing=2.0,
     )
-    text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}; lines coloured by "
+    text = f"Pareto front, {counted(len(front), 'design')}; lines coloured by "
     heading(figure, front.problem.name, text + objectives[0].title.split(",")[0], left=0.2)
     return figure
 

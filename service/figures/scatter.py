@@ -10,6 +10,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ...objectives.counted import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .marks import Axis, Mark, arrowed, dimension_axes, marks, objective_axis
@@ -112,7 +113,7 @@ def _legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
 
 
 def _heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
-    text = f"Pareto front, {len(front)} design{'s' if len(front) != 1 else ''}"
+    text = f"Pareto front, {counted(len(front), 'design')}"
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"
     heading(figure, front.problem.name, text, left=0.2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
+from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
@@ -100,7 +101,7 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
         found.append("misses requirements of the job: see below")
     better = len(changed.dominated_by)
     if better:
-        found.append(f"{better} design{'s' if better > 1 else ''} of the front at least as good in every objective")
+        found.append(f"{counted(better, 'design')} of the front at least as good in every objective")
     return found
 
 
