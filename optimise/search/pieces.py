@@ -64,32 +64,33 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, within: float = ACTIV
     return np.concatenate(pieces)
 
 
-def partner(here: Rows, there: Rows, index: int) -> int | None:
-    """Return the row of another design that is the same piece, matched by its label: peaks may swap their order."""
-    same = np.flatnonzero((here.owner == here.owner[index]) & np.isfinite(there.values))
-    apart = np.abs(there.labels[same] - here.labels[index])
+def partners(here: Rows, there: Rows, of: Whole) -> list[tuple[int, int]]:
+    """Return rows (p,) of a design that another has too, each with its row there, matched by labels.
+
+    Peaks may swap their order. Rows of one owner with equal labels (lower and upper bound) keep their place.
+    """
+    same = (here.owner[of, None] == here.owner) & np.isfinite(there.values)
+    apart = np.abs(there.labels - here.labels[of, None])
     apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
-    near = apart < _SAME
-    same, apart = same[near], apart[near]
-    # Rows of one owner with equal labels (lower and upper bound) keep their place.
-    return int(same[np.lexsort((np.abs(same - index), np.round(apart, 3)))[0]]) if len(same) else None
+    near = same & (apart < _SAME)
+    count = len(there.owner)
+    steps = np.abs(np.arange(count) - of[:, None])
+    rank = np.where(near, np.rint(1e3 * np.where(near, apart, 0.0)) * (count + 1.0) + steps, np.inf)
+    rows = zip(of.tolist(), rank, near.any(axis=1), strict=True)
+    return [(index, int(row.argmin())) for index, row, has in rows if has]
 
 
 def difference(here: Rows, there: Rows, weight: Array) -> Array:
     """Return the weighted change of gradients."""
     total = np.zeros(here.gradients.shape[1])
-    for index in np.flatnonzero(weight > 0.0).tolist():
-        twin = partner(here, there, index)
-        if twin is not None:
-            total = total + weight[index] * (there.gradients[twin] - here.gradients[index])
+    for index, twin in partners(here, there, np.flatnonzero(weight > 0.0)):
+        total = total + weight[index] * (there.gradients[twin] - here.gradients[index])
     return total
 
 
 def bent(here: Rows, there: Rows, step: Array) -> Array:
     """Return the values of rows whose linearisation meets their values at the end of a step."""
     values = here.values.copy()
-    for index in np.flatnonzero(np.isfinite(values)).tolist():
-        twin = partner(here, there, index)
-        if twin is not None:
-            values[index] = there.values[twin] - here.gradients[index] @ step
+    for index, twin in partners(here, there, np.flatnonzero(np.isfinite(values))):
+        values[index] = there.values[twin] - here.gradients[index] @ step
     return values
