@@ -19,6 +19,7 @@ from ..cycle_peak import screened
 from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
+from .given import given_designs, numbers_of, require_machine
 from .swinging import require_in_motion, require_of_swing
 
 
@@ -54,23 +55,27 @@ def evaluate(
     """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
     A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
-    before the last: one design (3 + k,) gives (q,). quantities: names or formulas as in job files. own: quantities
-    that may be named besides those of the product. swing: which designs need only make, in place of a full turn.
+    before the last: one design (3 + k,) gives (q,). A table of pandas has these names as columns. quantities: names or
+    formulas as in job files. own: quantities that may be named besides those of the product. swing: which designs need
+    only make, in place of a full turn.
 
-    The row of a design that does not turn fully, or that has NaN in it, is NaN. Where friction locks the linkage, what
-    follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the exact one of
-    `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks the slope is
-    that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a quantity that the
-    machine does not define (a position error without tolerances), for one of a full turn with a swing, and for the
-    gradient of a function that has none.
+    The row of a design that does not turn fully, or that has NaN in it, is NaN. What is zero for every design of the
+    machine, such as a torque without masses and loads, is 0 here, and undefined in `analyse`. Where friction locks the
+    linkage, what follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the
+    exact one of `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks
+    the slope is that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a
+    quantity that the machine does not define (a position error without tolerances), for one of a full turn with a
+    swing, and for the gradient of a function that has none.
 
     >>> from slidercrank import Mechanism, evaluate
     >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
     array([[0.082 , 1.1334],
            [   nan,    nan]])
     """
+    require_machine(mechanism)
     if isinstance(quantities, str):
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
+    quantities = list(quantities)
     require_in_motion(quantities, own, swing)
     chosen = meant(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
@@ -79,7 +84,8 @@ def evaluate(
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
-    rows, shape = _rows(mechanism, designs)
+    given = given_designs(designs, numbers_of(mechanism))
+    rows, shape = np.ascontiguousarray(given.reshape(-1, given.shape[-1])), given.shape[:-1]
     lacking = [item.name for item in chosen if not item.has_gradient]
     if gradients and lacking:
         raise InputError(
@@ -112,26 +118,6 @@ def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
 def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) turn fully; with a swing, which can make it in spite of friction."""
     return moving(mechanism, None, designs) if swing is None else driven(mechanism, swing, designs)
-
-
-def _rows(mechanism: Mechanism, designs: object) -> tuple[Array, tuple[int, ...]]:
-    """Return designs as rows (n, 3 + k), and the shape that they stand in. Raises `InputError`."""
-    width = 3 + len(mechanism.varying)
-    names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
-    try:
-        given = np.asarray(designs)
-        if np.iscomplexobj(given):
-            raise TypeError
-        given = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"designs are arrays of real numbers, SI; got {type(designs).__name__} of others; give {names} of each"
-        ) from None
-    if given.ndim == 0 or given.shape[-1] != width:
-        raise InputError(
-            f"designs need {width} numbers each ({names}), as the last axis; got an array of shape {given.shape}"
-        )
-    return np.ascontiguousarray(given.reshape(-1, width)), given.shape[:-1]
 
 
 def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool) -> list[Values]:

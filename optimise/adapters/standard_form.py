@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...objectives.quantity import Array
+from ...objectives.tables.given import given_designs
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective
@@ -50,7 +51,7 @@ class ScipyForm(NamedTuple):
     constraints: list[LinearConstraint | NonlinearConstraint]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StandardForm:
     """A problem in standard form, over designs x = (crank, rod, offset, then the varying numbers), SI.
 
@@ -74,7 +75,7 @@ class StandardForm:
 
     def designs(self, x: ArrayLike) -> Array:
         """Return the designs (..., 3 + k) of points x; NaN where the eliminated equalities have no solution."""
-        points = np.asarray(x, dtype=np.float64)
+        points = given_designs(x, self.names)
         if self._sheet is None:
             return points
         found: Array = self._sheet.dimensions(points.reshape(-1, len(self.names)))
@@ -86,7 +87,8 @@ class StandardForm:
         F, G and H of a design that does not turn fully are infinite but for the first two of G, which say by how much
         it fails; its Jacobians are NaN but for these two rows. Raises `InputError` as `Problem.evaluate` does.
         """
-        points, x = np.asarray(x, dtype=np.float64), self.designs(x)
+        points = given_designs(x, self.names)
+        x = self.designs(points)
         names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._asked)]))
         values, slopes = (
             self.problem.evaluate(x, names, gradients=True)
@@ -273,11 +275,12 @@ def _turning(x: Array, asked: tuple[Constraint, ...], width: int) -> list[Row]:
     share, rows = _share(asked), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
-        value = (x[..., 0] + sign * x[..., 2] - share * x[..., 1]) / size
         slope = np.zeros((*x.shape[:-1], width))
-        if width:
-            slope[..., 0], slope[..., 2] = 1.0 / size, sign / size
-            slope[..., 1] = -(x[..., 0] + sign * x[..., 2]) / (size * x[..., 1])
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a rod of no length fails without bound
+            value = (x[..., 0] + sign * x[..., 2] - share * x[..., 1]) / size
+            if width:
+                slope[..., 0], slope[..., 2] = 1.0 / size, sign / size
+                slope[..., 1] = -(x[..., 0] + sign * x[..., 2]) / (size * x[..., 1])
         rows.append((value, slope))
     return rows
 

@@ -23,6 +23,7 @@ from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
+from ...objectives.tables.given import given_designs, numbers_of, require_machine, shortly
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.swinging import require_in_motion, swinging
 
@@ -185,14 +186,14 @@ class Analysis(Mapping[str, float]):
 
 def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
     """Return the machine of one design and the design's numbers (3 + k,); raise `InputError` for any other."""
-    width = 3 + len(mechanism.varying)
-    try:
-        sizes = np.asarray(design, dtype=np.float64)
-    except (TypeError, ValueError):
-        sizes = np.empty(0)
-    if sizes.shape != (width,) or not np.isfinite(sizes).all():
-        names = ", ".join(["crank, rod, offset", *(item.name for item in mechanism.varying)])
-        raise InputError(f"a design is {width} finite numbers ({names}), SI; got {design!r}")
+    require_machine(mechanism)
+    names = numbers_of(mechanism)
+    sizes = given_designs(design, names)
+    if sizes.ndim != 1 or not np.isfinite(sizes).all():
+        raise InputError(
+            f"a design is {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
+            "design, as a list of these"
+        )
     machine = mechanism.at(sizes[3:].tolist())
     return machine, sizes
 

@@ -241,9 +241,9 @@ class Problem:
     ) -> Array | tuple[Array, Array]:
         """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
-        The Jacobian is (n, q, 3 + k). quantities: names or formulas; the objectives if None. Values are those of the
-        quantities, not yet turned into what is minimised. Rows of designs that do not turn fully are NaN. See
-        `tables.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
+        The Jacobian is (n, q, 3 + k). quantities: names or formulas; if None the objectives, in the order of
+        `objectives`. Values are those of the quantities, not yet turned into what is minimised. Rows of designs that do
+        not turn fully are NaN. See `tables.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
         """
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities

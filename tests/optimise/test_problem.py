@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.average_torque import RMS_TORQUE
@@ -169,3 +170,19 @@ def test_lists_serve_as_tuples() -> None:
     loose = replace(given, **lists)
     assert loose == given
     assert hash(loose) == hash(given)
+
+
+def test_objectives_come_in_the_order_of_the_quantities_whatever_that_of_the_tables() -> None:
+    tables: dict[str, object] = {
+        "name": "order",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "1 kg"}},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["60 mm", "250 mm"], "offset": ["0 mm", "50 mm"]},
+    }
+    wanted = ["2 * crank + rod", "peak_torque", "time_ratio"]
+    ways = [sc.problem({**tables, "objectives": dict.fromkeys(order, "minimise")}) for order in (wanted, wanted[::-1])]
+    assert ways[0] == ways[1]
+    names = [objective.quantity for objective in ways[0].objectives]
+    known = list(sc.quantities().index)
+    assert names == [*sorted(wanted[1:], key=known.index), wanted[0]]
+    design = [0.04, 0.1, 0.02]
+    assert ways[0].evaluate(design).tolist() == [ways[0].analyse(design)[name] for name in names]

@@ -1,0 +1,74 @@
+"""Designs as they are given: arrays, lists, or tables of pandas with a column for each number of a design."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...model.errors import InputError
+from ...model.machine.mechanism import Mechanism
+from ..quantity import Array
+
+
+def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
+    """Return the names of the numbers of a design of a machine, in their order."""
+    return ("crank", "rod", "offset", *(item.name for item in mechanism.varying))
+
+
+def require_machine(mechanism: object) -> None:
+    """Refuse what is no machine: a problem and the tables of a job have their own functions."""
+    if not isinstance(mechanism, Mechanism):
+        raise InputError(
+            f"a machine is needed; got {type(mechanism).__name__}; give a Mechanism, or make a problem by `problem` or "
+            "`load_job` and use its evaluate and analyse"
+        )
+
+
+def given_designs(designs: object, names: Sequence[str]) -> Array:
+    """Return designs (..., k) as an array, SI, their numbers in the order of names.
+
+    Columns of a table, or the index of one row, are found by these names, in any order and among others; without names
+    they go by their order. Raises `InputError` for what holds no real numbers, for other columns, and other widths.
+    """
+    wanted = ", ".join(names)
+    given = _by_name(designs, names)
+    try:
+        found = np.asarray(given)
+        if np.iscomplexobj(found):
+            raise TypeError
+        found = np.asarray(found, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"designs are arrays of real numbers, SI; got {shortly(designs)}; give {wanted} of each, in m, not as text "
+            "and not complex"
+        ) from None
+    if found.ndim == 0 or found.shape[-1] != len(names):
+        raise InputError(
+            f"designs need {len(names)} numbers each ({wanted}), as the last axis; got an array of shape {found.shape}"
+        )
+    return found
+
+
+def shortly(given: object) -> str:
+    """Return what was given as it prints, on one line, or only its type where that is long."""
+    text = repr(given)
+    return text if len(text) <= 60 and "\n" not in text else type(given).__name__
+
+
+def _by_name(designs: object, names: Sequence[str]) -> object:
+    pandas = sys.modules.get("pandas")
+    if pandas is None or not isinstance(designs, pandas.DataFrame | pandas.Series):
+        return designs
+    labels = designs.columns if isinstance(designs, pandas.DataFrame) else designs.index
+    if not any(isinstance(label, str) for label in labels):
+        return designs
+    if not set(names) <= set(labels):
+        columns = ", ".join(map(str, labels[: len(names)])) + (", ..." if len(labels) > len(names) else "")
+        raise InputError(
+            f"a table of designs has the columns {', '.join(names)}, SI; got {columns}; rename them, lengths "
+            "in m; the designs of a front are `front.dimensions`"
+        )
+    found: object = designs[list(names)]
+    return found
