@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import NoneType, UnionType
+from typing import get_args
 
 from .errors import InputError
 
@@ -38,6 +40,17 @@ def require_all_finite(what: str, values: Iterable[float], where: str = "") -> N
             raise InputError(f"{what} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
         if not finite:
             raise InputError(f"{what} must be finite{where and f' {where}'}; got {value}")
+
+
+def require_kinds(owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, each: bool = False) -> None:
+    """Refuse fields of an object that are of another kind than theirs. each: of tuples, item by item."""
+    for name, kind in kinds.items():
+        field = getattr(owner, name)
+        for value in field if each and isinstance(field, tuple) else (field,):
+            if not isinstance(value, kind) or (each and not isinstance(field, tuple)):
+                of = " or ".join("None" if item is NoneType else item.__name__ for item in get_args(kind) or (kind,))
+                wanted = f"a tuple of {of}" if each else of
+                raise InputError(f"{name} of a {type(owner).__name__} must be {wanted}; got {value!r}; {remedy}")
 
 
 def keep_tuples(owner: object, *names: str) -> None:

@@ -81,8 +81,8 @@ def _pivot_loaded(machine: Mechanism) -> bool:
 _defining = partial(Need, without="undefined")
 _MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
-    "it comes from masses and loads; got none that matter; add for example "
-    '[mechanism] slider = { mass = "0.8 kg" }, or a [[load]]'
+    "it comes from masses that move or weigh, and from loads; got none; add for example "
+    '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
 _SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
 

@@ -22,7 +22,7 @@ from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, searched_by
 from .methods.auto.so_far import so_far
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
-from .problem.problem import Problem
+from .problem.problem import Problem, require_problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
 from .search.checkpoints import Cancelled, Checkpoints, Record
@@ -57,8 +57,9 @@ def solve(
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
     """
-    if not isinstance(problem, Problem):
-        raise InputError(f"solve takes a problem; got {type(problem).__name__}; make one by problem or load_job")
+    require_problem(problem, "solve")
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise InputError(f"progress is True, for a bar, or a function that is called; got {progress!r}")
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -27,7 +28,7 @@ SlowStroke = Literal["outward", "inward"]
 Stroke = Literal["outward", "inward", "equal"]
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, eq=False)
 class Linkage:
     """An offset slider-crank: crank, rod and offset in metres (scalars, or arrays that broadcast), and its branch.
 
@@ -61,6 +62,16 @@ class Linkage:
             value.flags.writeable = False
             object.__setattr__(self, name, value[()])
         object.__setattr__(self, "branch", branch)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Linkage)
+            and self.branch == other.branch
+            and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in DIMENSIONS)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.branch, *(tuple(np.ravel(getattr(self, name)).tolist()) for name in DIMENSIONS)))
 
     @property
     def sign(self) -> float:
@@ -123,9 +134,9 @@ class Linkage:
         direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch the inner dead
         centre comes pi + b after the outer one counter-clockwise, so the inward stroke is the slow one.
         """
-        if not (direction > 0.0 or direction < 0.0):
+        if not isinstance(direction, Real) or not (direction > 0.0 or direction < 0.0):
             raise InputError(
-                f"direction must be positive (counter-clockwise) or negative (clockwise); got {direction:g}"
+                f"direction must be positive (counter-clockwise) or negative (clockwise); got {direction!r}"
             )
         self.require_full_rotation()
         offset = np.broadcast_to(self.offset.real, np.shape(self.rotates_fully))
@@ -249,15 +260,14 @@ class Linkage:
     @property
     def label(self) -> str:
         """Dimensions of one linkage in words, mm."""
+        self._require_one("a label")
         sizes = (f"{name} {1e3 * float(getattr(self, name).real):.6g} mm" for name in DIMENSIONS)
         return ", ".join(sizes) + ("" if self.branch == "open" else ", crossed")
 
     def _pose(self, crank_angle: float) -> Pose:
-        if np.ndim(self.rotates_fully):
-            raise InputError(
-                f"a picture shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of it"
-            )
-        m, crank = self._motion(np.asarray(float(crank_angle))), float(self.crank.real)
+        self._require_one("a picture")
+        crank_angle = float(numbers(crank_angle, "a crank angle").real)
+        m, crank = self._motion(np.asarray(crank_angle)), float(self.crank.real)
         ends = self.dead_centres if bool(self.rotates_fully) else (np.asarray(np.nan), np.asarray(np.nan))
         return Pose(
             pin=(crank * math.cos(crank_angle), crank * math.sin(crank_angle)),
@@ -265,7 +275,21 @@ class Linkage:
             stroke=(float(ends[0].real), float(ends[1].real)),
         )
 
+    def _require_one(self, what: str) -> None:
+        if np.ndim(self.rotates_fully):
+            raise InputError(
+                f"{what} shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of it"
+            )
+
     def _motion(self, theta: Array) -> Motion:
+        try:
+            np.broadcast_shapes(np.shape(theta), np.shape(self.rotates_fully))
+        except ValueError:
+            raise InputError(
+                f"crank angles must broadcast with the linkages; got shapes {np.shape(theta)} and "
+                f"{np.shape(self.rotates_fully)}; give the linkages an axis of length 1 for "
+                "the angles, as crank[:, None] has"
+            ) from None
         if not np.all(np.isfinite(theta)):
             raise InputError("crank angles must be finite")
         reach = np.abs(self.offset.real - self.crank.real * np.sin(theta.real)) - self.rod.real

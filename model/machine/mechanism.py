@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from ..checks import keep_tuples, require_all_finite, require_numbers
+from ..checks import keep_tuples, require_all_finite, require_kinds, require_numbers
 from ..errors import InputError
 from .arrangement import Arrangement
 from .clearance import Clearance
 from .drive import Drive
 from .friction import Friction
-from .links import Counterweight, Link, RigidLink
+from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .speed_profile import Profile
 from .start import Start
@@ -98,6 +98,14 @@ class Tolerances:
         return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
 
 
+_TABLES = "the tables of a job state it: `problem({...}).mechanism`"
+_KINDS = {
+    **{"crank": Bar | RigidLink, "rod": Bar | RigidLink, "counterweight": Counterweight, "tolerances": Tolerances},
+    **{"friction": Friction, "drive": Drive | None, "clearance": Clearance | None, "arrangement": Arrangement | None},
+    **{"speed_profile": Profile | None, "strength": Strength | None, "start": Start},
+}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
     """A slider-crank but for crank, rod and offset.
@@ -135,13 +143,23 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         keep_tuples(self, "gravity", "loads", "varying")
+        require_kinds(self, _KINDS, _TABLES)
+        require_kinds(self, {"varying": Varying}, _TABLES, each=True)
         require_numbers(self, "speed", "acceleration", what="{}")
         require_numbers(self, "slider_mass", what="the slider mass", least=0.0, unit="kg")
-        require_all_finite("gravity", self.gravity)
+        gravity: object = self.gravity
+        if not isinstance(gravity, tuple) or len(gravity) != 2:
+            raise InputError(
+                f"gravity must be its components along x and y, m/s^2; got {gravity!r}; write it like (0.0, -9.81)"
+            )
+        require_all_finite("gravity", gravity)
         require_word("branch", self.branch, Branch)
         loads: object = self.loads
         if not isinstance(loads, Sequence) or not all(isinstance(load, Load) for load in loads):
             raise InputError(f"loads must be a tuple of loads; got {loads!r}; a job has them in its [[load]] tables")
+        for name in ("speed", "acceleration", "slider_mass"):
+            if getattr(self, name) is None:
+                raise InputError(f"{name} must be a number, SI; got None; leave it out for 0")
         if self.speed_profile is not None and self.acceleration:
             raise InputError(
                 "a speed that repeats with every turn has no constant acceleration besides; got "

@@ -109,6 +109,10 @@ def measured_from(
 
     Raises `InputError` as `columns_of` does, for values that cannot be, and for what the machine does not define.
     """
+    if not hasattr(table, "keys"):
+        raise InputError(
+            f"a measured table has columns by their names; got {type(table).__name__}; give a dict or a DataFrame"
+        )
     names = [str(name) for name in table]
     columns = columns_of(names, mechanism, linkage, units)
     values: dict[str, Array] = {}

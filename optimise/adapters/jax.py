@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.errors import InputError
-from ..problem.problem import Problem
+from ..problem.problem import Problem, require_problem
 from .missing import require
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
     quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate` (`jax.custom_vjp`), of
     first order and in reverse mode. Raises `InputError` without JAX, and unless JAX counts in double precision.
     """
+    require_problem(problem, "jax_function")
     try:
         import jax
     except ImportError as error:

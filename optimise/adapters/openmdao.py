@@ -11,7 +11,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.numbers import unit_of
-from ..problem.problem import Problem
+from ..problem.problem import Problem, require_problem
 from .missing import require
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     that does not turn fully has NaN outputs, which an optimiser's line search has to survive: bound the model so that
     rod exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
     """
+    require_problem(problem, "openmdao_component")
     try:
         from openmdao.api import ExplicitComponent
     except ImportError as error:

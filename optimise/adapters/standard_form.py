@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...objectives.quantity import Array
 from ...objectives.tables.given import given_designs
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.problem import Problem
+from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective
 from ..problem.violation import FEASIBLE, constraints_of, minimised
 from ..search.elimination import Sheet, sheets
@@ -190,6 +190,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
     and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
     for one with discrete values, and with `eliminate` for an offset of both signs.
     """
+    require_problem(problem, "standard_form")
     if problem.variants:
         raise InputError(
             f"other optimisers take no choices ({', '.join(problem.choices)}); got {len(problem.variants)} variants; "

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.errors import InputError
-from ..problem.problem import Problem
+from ..problem.problem import Problem, require_problem
 from .missing import require
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate`, of first order. Tensors
     have double precision and lie on the processor. Raises `InputError` without PyTorch, and for other tensors.
     """
+    require_problem(problem, "torch_function")
     try:
         import torch
     except ImportError as error:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
@@ -40,7 +43,7 @@ _UNMET = 1e-7  # what counts as no solution, rows being of size one
 Status = Literal["done", "cancelled", "infeasible"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ParetoFront:
     """The Pareto front of a problem and the evidence for it.
 
@@ -86,7 +89,7 @@ class ParetoFront:
 
     def __repr__(self) -> str:
         found = f"{len(self)} design" + ("" if len(self) == 1 else "s")
-        return f"ParetoFront({self.problem.name!r}: {self.status}, {found}; {', '.join(self._labels())})"
+        return f"ParetoFront({self.problem.name!r}: {self.status}, {found}; {'; '.join(self._labels())})"
 
     def _repr_html_(self) -> str:
         """Table of the first designs and a picture, for notebooks."""
@@ -155,6 +158,9 @@ class ParetoFront:
         `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
         """
         columns = {self.column_of(name): weight for name, weight in weights.items()}
+        for name, weight in weights.items():
+            if not isinstance(weight, Real):
+                raise InputError(f"the weight of {name} must be a number; got {weight!r}; write it like 2.0")
         shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
         return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
@@ -165,6 +171,9 @@ class ParetoFront:
         a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
+        for item in order:
+            if not isinstance(item, Priority):
+                raise InputError(f"a ranking is of names and of Priority(...); got {item!r}; name an objective")
         given = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
         return lexicographic(self.values, given, size=self._sizes)
 
@@ -189,8 +198,11 @@ class ParetoFront:
         column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` when none qualifies.
         """
         objective = self.column_of(best)
+        if not len(self):
+            raise InputError(f"a pick needs the designs of a front; got none: {self.message}")
         keep = np.ones(len(self), dtype=bool)
-        for column, (least, greatest) in bounds.items():
+        for column, ends in bounds.items():
+            least, greatest = pair(column, ends)
             values = self.columns[column] if column in self.columns else self._of(column)
             if least is not None:
                 keep &= values >= least
@@ -263,6 +275,7 @@ class ParetoFront:
         that has nothing left to gain this is said; one that is the same in all designs is left out. system: of the
         units that they are told in.
         """
+        require_word("system", system, System)
         rates, reach = self.rates(row), spread(self.values, size=self._sizes)
         units = np.array([quantity.unit.factor for quantity in self._quantities])
         better = (self.values[row] - self.values.min(axis=0)) * units
@@ -333,3 +346,19 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
     if found is None or np.abs(matrix @ found - target).max() > _UNMET:
         return None
     return found[k : k + m]
+
+
+def pair(name: str, ends: object) -> tuple[float | None, float | None]:
+    """Return least and greatest of a name, None for open. Raises `InputError` for what is no such pair of numbers."""
+    given = tuple(ends) if isinstance(ends, tuple | list) else ()
+    if len(given) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in given):
+        raise InputError(
+            f"bounds of {name} are (least, greatest), numbers or None; got {ends!r}; for example (1.0, None)"
+        )
+    return given
+
+
+def require_front(front: object, what: str) -> None:
+    """Refuse what is no front. what: takes one."""
+    if not isinstance(front, ParetoFront):
+        raise InputError(f"{what} takes a front; got {type(front).__name__}; solve(problem) gives one")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Literal
 
 import numpy as np
@@ -36,8 +37,10 @@ class Priority:
 
     def __post_init__(self) -> None:
         for value in (self.absolute, self.share):
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"the tolerance of {self.quantity} must be zero or more; got {value:g}; leave it out")
+            if not (isinstance(value, Real) and math.isfinite(value) and value >= 0.0):
+                raise InputError(
+                    f"the tolerance of {self.quantity} must be zero or more, a number; got {value!r}; leave it out"
+                )
 
 
 def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, overload
 
 from numpy.typing import ArrayLike
 
-from ...model.checks import keep_tuples
+from ...model.checks import keep_tuples, require_kinds
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.values import DIMENSIONS
@@ -89,6 +89,11 @@ class Variant:
         _require_stroke(self.slow_stroke)
 
 
+_KINDS = {"name": str, "mechanism": Mechanism, "crank": Range, "rod": Range, "offset": Range, "settings": Settings}
+_EACH = {"objectives": Objective, "constraints": Constraint, "own": Quantity, "variants": Variant, "discrete": Discrete}
+_CHANGE = "change what is there by `dataclasses.replace`, or state the problem anew by `problem`"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Problem:
     """A complete optimisation problem.
@@ -124,6 +129,8 @@ class Problem:
 
     def __post_init__(self) -> None:
         keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out", "discrete")
+        require_kinds(self, _KINDS, _CHANGE)
+        require_kinds(self, _EACH, _CHANGE, each=True)
         require_known(self.discrete, [*self.ranges])
         if self.motion is not None:
             self._take(self.motion)
@@ -371,6 +378,12 @@ def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | Non
             f"the slow stroke is either the outward or the inward one; got {stroke} and {more} of a choice"
         )
     return stroke if more is None else more
+
+
+def require_problem(problem: object, what: str) -> None:
+    """Refuse what is no problem. what: takes one."""
+    if not isinstance(problem, Problem):
+        raise InputError(f"{what} takes a problem; got {type(problem).__name__}; make one by problem or load_job")
 
 
 def _require_stroke(stroke: object) -> None:

@@ -61,7 +61,7 @@ class Constraint:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
             if bound is not None and not _finite(bound):
-                raise InputError(f"the constraint on {self.quantity} must be finite; got {_shown(bound)}")
+                raise InputError(f"the constraint on {self.quantity} must be a finite number, SI; got {_shown(bound)}")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
                 f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
@@ -99,7 +99,7 @@ class Objective:
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not _finite(self.target):
-            raise InputError(f"the target of {self.quantity} must be finite; got {_shown(self.target)}")
+            raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_shown(self.target)}")
 
 
 def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:

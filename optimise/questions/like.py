@@ -20,7 +20,7 @@ from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ...model.linkage.values import DIMENSIONS
 from ..front.dominance import beating
-from ..front.front import ParetoFront
+from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY
 from ..methods.registry import require_gradients
@@ -94,8 +94,16 @@ def like_design(
 
     It is Pareto-optimal for the problem with them, and of those designs the nearest, see `like`; empty, with the reason
     in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
-    `like_design(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
+    `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
     """
+    require_front(front, "like")
+    for item in constraints:
+        if not isinstance(item, Constraint):
+            raise InputError(
+                f"a requirement of like is a Constraint; got {item!r}; write it like "
+                'Constraint(quantity="time_ratio", lower=1.2)'
+            )
+    ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # refuses what is no row
     table = {name: values[row] for name, values in front.columns.items()}
     return like(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from ...objectives.registry import QUANTITIES
-from ..problem.problem import Problem
+from ..problem.problem import Problem, require_problem
 
 
 def quantities(problem: Problem | None = None) -> pd.DataFrame:
@@ -17,6 +17,8 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
     >>> quantities().loc["peak_torque", "title"]
     'peak torque'
     """
+    if problem is not None:
+        require_problem(problem, "quantities")
     known = (*QUANTITIES.values(), *(problem.own if problem else ()))
     rows = {
         item.name: {

@@ -26,7 +26,7 @@ import numpy as np
 
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
-from ..front.front import ParetoFront
+from ..front.front import ParetoFront, require_front
 from ..front.rounding import ranges_or_sizes
 from ..methods.achievement import Achievement
 from ..methods.registry import require_gradients
@@ -57,6 +57,7 @@ class Wishes:
     """
 
     def __init__(self, front: ParetoFront) -> None:
+        require_front(front, "a wish")
         if len(front.objectives) < 2:
             raise InputError(
                 f"a wish is for several objectives; got one, {front.objectives[0].quantity}; its best design is the "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -83,3 +84,25 @@ def test_lists_and_arrays_serve_as_tuples() -> None:
         assert loosened(machine) == machine
         assert hash(loosened(machine)) == hash(machine)
     assert {"AngleTable", "PositionTable"} <= kinds
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"rod": 0.5}, "rod of a Mechanism must be Bar or RigidLink; got 0.5; the tables of a job state it"),
+        ({"crank": {"mass": 1.0}}, "crank of a Mechanism must be Bar or RigidLink; got {'mass': 1.0}"),
+        ({"friction": 0.1}, "friction of a Mechanism must be Friction; got 0.1"),
+        ({"tolerances": 1e-4}, "tolerances of a Mechanism must be Tolerances; got 0.0001"),
+        ({"drive": 3.0}, "drive of a Mechanism must be Drive or None; got 3.0"),
+        ({"varying": ("speed",)}, "varying of a Mechanism must be a tuple of Varying; got 'speed'"),
+        ({"speed": None}, "speed must be a number, SI; got None; leave it out for 0"),
+        (
+            {"gravity": 9.81},
+            "gravity must be its components along x and y, m/s^2; got 9.81; write it like (0.0, -9.81)",
+        ),
+        ({"gravity": (0.0, 0.0, -9.81)}, "gravity must be its components along x and y, m/s^2; got (0.0, 0.0, -9.81)"),
+    ],
+)
+def test_a_part_of_another_kind_is_refused_at_once(wrong: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=re.escape(said)):
+        Mechanism(**wrong)

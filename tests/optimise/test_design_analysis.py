@@ -41,7 +41,7 @@ def test_undefined_quantities_say_why_instead_of_a_number() -> None:
         ("position_error", "tolerances"),
         ("peak_slider_speed", "speed 0"),
         ("peak_power", "speed 0"),
-        ("peak_torque", "masses and loads|speed"),
+        ("peak_torque", "masses that move or weigh|speed"),
     ):
         assert name not in still or name == "peak_torque"
         if name not in still:

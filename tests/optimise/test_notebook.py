@@ -22,7 +22,7 @@ def front(pytestconfig: pytest.Config) -> sc.ParetoFront:
 
 def test_texts_are_short_and_say_what_it_is(front: sc.ParetoFront) -> None:
     analysis = front.problem.analyse(front.dimensions[0])
-    assert repr(front).startswith(f"ParetoFront({NASTY!r}: done, 8 designs; time ratio, peak torque, N m")
+    assert repr(front).startswith(f"ParetoFront({NASTY!r}: done, 8 designs; time ratio; peak torque, N m; ")
     assert repr(front.problem).startswith(f"Problem({NASTY!r}: maximise time_ratio, minimise peak_torque")
     assert repr(analysis).startswith("Analysis(crank ")
     for shown in (front, front.problem, analysis):

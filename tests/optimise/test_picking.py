@@ -133,7 +133,7 @@ def test_what_cannot_be_picked_by_is_said() -> None:
         front.lexicographic()
     with pytest.raises(InputError, match="at least one objective, each once"):
         front.lexicographic("peak_torque", "peak_torque")
-    with pytest.raises(InputError, match="tolerance of peak_torque must be zero or more; got -1"):
+    with pytest.raises(InputError, match="tolerance of peak_torque must be zero or more, a number; got -1"):
         Priority(quantity="peak_torque", absolute=-1.0)
     empty = fronts.empty_front("infeasible", "nothing")
     with pytest.raises(InputError, match="the front is empty"):

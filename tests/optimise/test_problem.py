@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -36,7 +37,7 @@ def test_a_range_of_one_value_is_fixed() -> None:
 def test_a_constraint_needs_a_finite_bound_in_order() -> None:
     with pytest.raises(InputError, match="needs a lower bound, an upper bound or a value"):
         Constraint(quantity="stroke")
-    with pytest.raises(InputError, match="must be finite; got nan"):
+    with pytest.raises(InputError, match="must be a finite number, SI; got nan"):
         Constraint(quantity="stroke", lower=math.nan)
     with pytest.raises(InputError, match=r"is empty: min 2 exceeds max 1"):
         Constraint(quantity="stroke", lower=2.0, upper=1.0)
@@ -89,9 +90,9 @@ def test_an_unknown_quantity_of_a_choice_is_refused_at_construction() -> None:
 def test_what_is_no_number_is_refused_in_words(value: object) -> None:
     with pytest.raises(InputError, match="lower <= upper, both finite; got "):
         Range(lower=value, upper=0.2)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="must be finite; got"):
+    with pytest.raises(InputError, match="must be a finite number, SI; got"):
         Constraint(quantity="stroke", lower=0.1, upper=value if value is not None else "x")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r"needs a target exactly when|must be finite; got"):
+    with pytest.raises(InputError, match=r"needs a target exactly when|must be a finite number, SI; got"):
         Objective(quantity="stroke", sense="target", target=value)  # type: ignore[arg-type]
 
 
@@ -121,7 +122,7 @@ def test_a_target_belongs_to_the_sense_target_only() -> None:
         Objective(quantity="time_ratio", sense="target")
     with pytest.raises(InputError, match="needs a target exactly when"):
         Objective(quantity="time_ratio", sense="maximise", target=1.2)
-    with pytest.raises(InputError, match="must be finite"):
+    with pytest.raises(InputError, match="must be a finite number, SI"):
         Objective(quantity="time_ratio", sense="target", target=math.inf)
 
 
@@ -186,3 +187,20 @@ def test_objectives_come_in_the_order_of_the_quantities_whatever_that_of_the_tab
     assert names == [*sorted(wanted[1:], key=known.index), wanted[0]]
     design = [0.04, 0.1, 0.02]
     assert ways[0].evaluate(design).tolist() == [ways[0].analyse(design)[name] for name in names]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"crank": (0.02, 0.06)}, "crank of a Problem must be Range; got (0.02, 0.06); change what is there by"),
+        ({"rod": 0.1}, "rod of a Problem must be Range; got 0.1"),
+        ({"constraints": ("stroke",)}, "constraints of a Problem must be a tuple of Constraint; got 'stroke'"),
+        ({"objectives": ["stroke"]}, "objectives of a Problem must be a tuple of Objective; got 'stroke'"),
+        ({"settings": {"designs": 3}}, "settings of a Problem must be Settings; got {'designs': 3}"),
+        ({"mechanism": {"speed": 3.0}}, "mechanism of a Problem must be Mechanism; got {'speed': 3.0}"),
+        ({"name": 3}, "name of a Problem must be str; got 3"),
+    ],
+)
+def test_a_part_of_another_kind_is_refused_at_once(wrong: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=re.escape(said)):
+        replace(problem({"peak_torque": "minimise"}), **wrong)
