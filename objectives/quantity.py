@@ -235,6 +235,12 @@ class Quantity(ABC):
                 return need.missing.replace("{instead}", self.instead)
         return None
 
+    @property
+    def blank(self) -> str:
+        """Why a design may have none though the machine defines it."""
+        needs = (need for need in self.needs if need.without == "undefined")
+        return next((need.missing for need in needs), "it has no value for this design")
+
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
         """Return rule, value and remedy where one of the machines does not define the quantity; None if all do.
 

@@ -270,7 +270,8 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
     number, unit = Fraction(match[1]), match[2] or ""
     if not unit and kind.unit:
-        raise InputError(f"{rule} with its unit; got {shown(text)}; {write} (in a job file, without quotes)")
+        bare = " (in a job file, without quotes)" if "plain number" in write else ""
+        raise InputError(f"{rule} with its unit; got {shown(text)}; {write}{bare}")
     try:
         factor, dimension = _unit(unit)
     except InputError as error:

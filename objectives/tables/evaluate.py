@@ -19,7 +19,7 @@ from ..cycle_peak import screened
 from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
-from .given import given_designs, numbers_of, require_machine
+from .given import countable, given_designs, numbers_of, require_machine
 from .swinging import require_in_motion, require_of_swing
 
 
@@ -92,7 +92,7 @@ def evaluate(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
         )
     turns = moving(mechanism, swing, rows)
-    turns &= np.isfinite(rows).all(axis=1)
+    turns &= countable(rows)
     whole = bool(turns.all())
     found = _found(mechanism, chosen, rows if whole else rows[turns], gradients)
     values = np.full((len(rows), len(chosen)), np.nan)

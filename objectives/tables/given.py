@@ -7,9 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...model.arrays import Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array
+
+_LEAST, _MOST = 1e-50, 1e50
+"""Lengths, m: the fifth power of those beyond may be no number in double precision."""
 
 
 def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
@@ -49,6 +53,11 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
             f"designs need {len(names)} numbers each ({wanted}), as the last axis; got an array of shape {found.shape}"
         )
     return found
+
+
+def countable(designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) are of finite numbers, with lengths whose powers are numbers too."""
+    return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 
 def shortly(given: object) -> str:

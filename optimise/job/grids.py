@@ -57,7 +57,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     if len(words) != 1:
         raise InputError(
             f"must have one of step, series and values; got {' and '.join(words) or 'none'}; write it like "
-            '{ min = "20 mm", max = "60 mm", step = "0.5 mm" }'
+            '{ min = "20 mm", max = "60 mm", step = "0.5 mm" }, or a range without steps like ["20 mm", "60 mm"]'
         )
     if words == ["values"]:
         return _listed(given, read)

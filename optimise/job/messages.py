@@ -112,7 +112,9 @@ def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
     if kind == "literal_error":
-        words = list(dict.fromkeys(_words(_at(schema, path))))
+        # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
+        said = re.findall(r"'([^']*)'", str(context.get("expected", "")))
+        words = said or list(dict.fromkeys(_words(_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
         meant = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {got}{meant}"

@@ -35,7 +35,8 @@ from .values import Part, Physical, optional, required
 def _function(text: str) -> str:
     if not FUNCTION.fullmatch(text):
         raise InputError(
-            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction"'
+            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction", or give '
+            "the function itself in Python"
         )
     return text
 

@@ -72,10 +72,24 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         settings=job.optimiser.build(),
         own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),
     )
+    _require_shorter(problem)
     require_consistent(problem)
     require_meetable(problem)
     require_fit(problem)
     return robustly(problem, job.robust)
+
+
+def _require_shorter(problem: Problem) -> None:
+    """Refuse a tolerance that is as long as its link may be: a unit is wrong."""
+    for own in problem.variants or (problem,):
+        for name, ends in (("crank", own.crank), ("rod", own.rod)):
+            limit = getattr(own.mechanism.fullest.tolerances, name).limit(ends.lower)
+            if limit >= ends.lower:
+                raise JobError(
+                    f"tolerances.{name}: must be less than the {name} itself, which may be {1e3 * ends.lower:g} mm; "
+                    f"got {1e3 * limit:g} mm; lower it (a plain number is in m), or raise the lower end of "
+                    f"variables.{name}"
+                )
 
 
 def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:

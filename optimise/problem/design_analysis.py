@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -23,7 +24,7 @@ from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
-from ...objectives.tables.given import given_designs, numbers_of, require_machine, shortly
+from ...objectives.tables.given import countable, given_designs, numbers_of, require_machine, shortly
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.swinging import require_in_motion, swinging
 
@@ -150,7 +151,8 @@ class Analysis(Mapping[str, float]):
         self._require_turning("a figure of the cycle")
         from matplotlib.figure import Figure
 
-        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, even_angles(361))}
+        turn = np.append(even_angles(360), 2.0 * np.pi)  # curves close
+        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, turn)}
         found = Figure(figsize=(6.4, 8.0), layout="constrained")
         angle = curves["crank_angle"]
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
@@ -158,6 +160,7 @@ class Analysis(Mapping[str, float]):
             axes.plot(angle.shown.factor * angle.values, curve.shown.factor * curve.values)
             axes.set_ylabel(f"{curve.title},\n{unit_text(curve.shown.symbol)}")
             axes.set_xlabel("crank angle, deg")
+            axes.set_xticks(range(0, 361, 60))
             axes.label_outer()
         found.suptitle(self.title or self.linkage.label)
         return found
@@ -189,7 +192,7 @@ def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Arra
     require_machine(mechanism)
     names = numbers_of(mechanism)
     sizes = given_designs(design, names)
-    if sizes.ndim != 1 or not np.isfinite(sizes).all():
+    if sizes.ndim != 1 or not np.isfinite(sizes).all() or (sizes[0] > 0.0 and not countable(sizes[None])[0]):
         raise InputError(
             f"a design is {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
             "design, as a list of these"
@@ -229,5 +232,9 @@ def analyse(
         if reason:
             undefined[item.name] = reason
         else:
-            values[item.name] = float(item.evaluate(mechanism, row).values[0])
+            value = float(item.evaluate(mechanism, row).values[0])
+            if math.isnan(value):
+                undefined[item.name] = item.blank
+            else:
+                values[item.name] = value
     return Analysis(machine, linkage, values, undefined, chosen, title, swing)

@@ -12,7 +12,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.loads.load import Entry, Load, Table
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
@@ -177,3 +177,9 @@ def test_a_table_that_lies_beyond_its_dead_centre_is_refused() -> None:
     with pytest.raises(InputError, match=r"zero or more; got -12 mm to 0 mm, .* turn the table round"):
         PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4), datum="outer dead centre")
     PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4))
+
+
+def test_a_table_of_loads_is_told_by_one_of_its_keys() -> None:
+    entries = (Entry("pull", "Stiffness", "force per distance", "5 N/mm"),)
+    with pytest.raises(ValueError, match="told by the key of one of its entries; got 'magnet'"):
+        Table("magnet", "MagnetLoad", "magnet", "A magnet.", entries, {"pull": "5 N/mm"}, Spring)

@@ -93,3 +93,13 @@ def test_a_rod_of_no_length_fails_without_bound_and_without_warning() -> None:
 def test_standard_forms_and_fronts_are_compared_without_a_question_of_truth() -> None:
     assert FORM == FORM
     assert sc.standard_form(PROBLEM) != FORM
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-160, 1e160, 1e300])
+def test_lengths_whose_powers_are_no_numbers_give_none(size: float) -> None:
+    design = [size, 3.0 * size, 0.5 * size]
+    assert np.isnan(sc.evaluate(MACHINE, design, [*NAMES, "peak_slider_speed"])).all()
+    with pytest.raises(sc.InputError, match="a design is 3 finite numbers"):
+        sc.analyse(MACHINE, design)
+    near = sc.evaluate(MACHINE, [1e-40, 3e-40, 5e-41], NAMES)
+    np.testing.assert_allclose(near[0], sc.evaluate(MACHINE, [1.0, 3.0, 0.5], NAMES)[0], rtol=1e-12)

@@ -247,3 +247,8 @@ def test_values_are_shown_as_in_a_job_file() -> None:
 def test_the_nearest_word_is_found_whatever_its_case() -> None:
     assert closest("Spede", ["speed", "crank"]) == "speed"
     assert closest("something else", ["speed", "crank"]) is None
+
+
+def test_a_plain_number_is_offered_without_quotes_only_where_it_is_taken() -> None:
+    with pytest.raises(InputError, match=r'got "45"; write it like "0\.1 deg"$'):
+        to_si("45", kinds.ANGLE, plain=False)

@@ -164,3 +164,28 @@ def test_it_is_a_mapping_also_where_a_quantity_is_not_defined() -> None:
     assert found.get("no such thing", "none") == "none"
     assert found.get("stroke", 0.0) == found["stroke"]
     assert found.cycle(np.int64(4)).equals(found.cycle(4))
+
+
+def test_a_quantity_without_value_for_a_design_is_undefined_with_a_reason() -> None:
+    loads = [{"force": "200 N", "direction": "outward"}, {"force": "100 N", "opposes": "motion"}]
+    tables: dict[str, object] = {
+        "name": "Driven by its load",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "1 kg"}},
+        "load": loads,
+        "friction": {"guide": 0.1},
+        "variables": {"crank": "40 mm", "rod": "100 mm", "offset": "10 mm"},
+        "objectives": {"time_ratio": "maximise"},
+    }
+    assert 0.0 < sc.problem(tables).analyse([0.04, 0.1, 0.01])["efficiency"] < 1.0
+    analysis = sc.problem({**tables, "load": loads[:1]}).analyse([0.04, 0.1, 0.01])
+    assert "efficiency" not in analysis
+    assert analysis.undefined["efficiency"].startswith("an efficiency is the share of the energy that reaches the load")
+    assert not any(np.isnan(value) for value in analysis.values())
+
+
+def test_the_curves_of_a_figure_close() -> None:
+    figure = sc.analyse(sc.Mechanism(speed=3.0, slider_mass=1.0), DESIGN).plot()
+    for axes in figure.axes:
+        angles, values = (np.asarray(part) for part in axes.lines[0].get_data())
+        assert (angles[0], angles[-1]) == (0.0, 360.0)
+        assert values[-1] == pytest.approx(values[0], rel=1e-9, abs=1e-9)

@@ -317,3 +317,49 @@ def test_small_messages_tell_the_value_in_the_words_of_the_job() -> None:
         with pytest.raises(JobError, match=f"follows smoothly from sections.{path}, so it cannot vary") as error:
             parse_job({**press, "variables": variables, "constraints": {}})
         assert "strength.material" not in str(error.value).replace("sections.material", "")
+
+
+@pytest.mark.parametrize(
+    ("table", "given", "said"),
+    [
+        (
+            "tolerances",
+            {"crank": 0.05},
+            "tolerances.crank: must be less than the crank itself, which may be 20 mm; got 50 mm",
+        ),
+        (
+            "tolerances",
+            {"rod": "60 mm"},
+            "tolerances.rod: must be less than the rod itself, which may be 60 mm; got 60 mm",
+        ),
+        (
+            "load",
+            [{"crank_angles": ["0 deg", "90 deg"], "forces": ["1 N", "2 N"], "measured_from": "crank pivot"}],
+            'measured_from: must be "zero crank angle", "inner dead centre" or "outer dead centre"; got "crank pivot"',
+        ),
+        (
+            "load",
+            [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "2 N"], "measured_from": "pivot"}],
+            '"crank pivot", "inner dead centre" or "outer dead centre"; got "pivot"; did you mean "crank pivot"?',
+        ),
+        (
+            "variables",
+            {"crank": {"min": "20 mm", "max": "60 mm"}, "rod": "100 mm", "offset": "10 mm"},
+            'step = "0.5 mm" }, or a range without steps like ["20 mm", "60 mm"]',
+        ),
+        (
+            "quantity",
+            {"links": {"function": "links"}},
+            'like "mymodule:myfunction", or give the function itself in Python',
+        ),
+    ],
+)
+def test_the_remedy_is_that_of_the_place(table: str, given: object, said: str) -> None:
+    tables = {
+        "name": "x",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "1 kg"}},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["60 mm", "250 mm"], "offset": "10 mm"},
+        "objectives": {"time_ratio": "maximise"},
+    }
+    with pytest.raises(JobError, match=re.escape(said)):
+        parse_job({**tables, table: given})

@@ -94,6 +94,10 @@ class Table:
     build: Callable[..., Load]
     motion: Literal["", "turn", "swing"] = ""
 
+    def __post_init__(self) -> None:
+        if self.key not in {entry.name for entry in self.entries}:
+            raise ValueError(f"a table of loads is told by the key of one of its entries; got {self.key!r}; name one")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
