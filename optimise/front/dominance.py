@@ -74,29 +74,25 @@ def _mark(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: Intege
 @kernel
 def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, kept: Flags) -> None:
     """Say of which designs from `begin` to `end` one before them is as good in all of these objectives."""
-    some, as_good = np.empty(bits.shape[1], np.int64), np.empty(_WORD, np.int64)
+    some = np.empty(bits.shape[1], np.int64)
     for i in range(begin, end):
-        words = 1 + i // _WORD
-        row = upto[0, i]
+        words, first, second = 1 + i // _WORD, upto[0, i], upto[1, i]
         for w in range(words):
-            some[w] = bits[row, w]
-        for column in range(1, by_word.shape[0]):
+            some[w] = bits[first, w] & bits[second, w]
+        for column in range(2, by_word.shape[0]):
             row = upto[column, i]
             for w in range(words):
                 some[w] &= bits[row, w]
+        some[words - 1] &= (1 << (i % _WORD)) - 1  # those before this design
         for w in range(words):
-            before = min(_WORD, i - w * _WORD)
-            found = 0
+            for column in range(by_word.shape[0]):
+                if not some[w]:
+                    break
+                own, as_good = by_word[column, words - 1, i % _WORD], 0
+                for k in range(_WORD):
+                    as_good |= (by_word[column, w, k] <= own) << k
+                some[w] &= as_good
             if some[w]:
-                for k in range(before):
-                    as_good[k] = 1
-                for column in range(by_word.shape[0]):
-                    own = by_word[column, words - 1, i % _WORD]
-                    for k in range(before):
-                        as_good[k] &= by_word[column, w, k] <= own
-                for k in range(before):
-                    found += as_good[k]
-            if found:
                 kept[i] = False
                 break
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable
 
 import numpy as np
@@ -13,6 +12,8 @@ from .constant import spread
 
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""
+_BOUNDED = 4096  # designs: of more it takes longer to bound all gains than to compute some again
+_ROUNDING = 1e-12  # of a scaled volume, whose computation it exceeds by far
 
 Stand = Callable[[int, int], None]
 """Called many times a second by long work: how much of it is done, and of how much."""
@@ -24,7 +25,7 @@ def unheard(done: int, of: int) -> None:
 
 def scaling(values: Array) -> tuple[Array, Array]:
     """Return ideal and range of objective values (n, m); of an objective that is constant, its size for a range."""
-    ideal, span = values.min(axis=0), spread(values)
+    ideal, span = np.ascontiguousarray(values.T).min(axis=1), spread(values)
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
@@ -78,13 +79,48 @@ def _shared(taken: Table, count: int, point: Row, corners: Table) -> int:
     return kept
 
 
+class Bounds:
+    """Upper bounds of what designs (n, m), scaled, add to the hypervolume of those chosen.
+
+    That is the box of the design less what it shares with those chosen. Two of the shared boxes and a third one share
+    no less than by inclusion and exclusion: the two largest so far, and that of the design that is chosen last.
+    """
+
+    def __init__(self, scaled: Array) -> None:
+        """Begin with none chosen."""
+        self.room = np.ascontiguousarray(REFERENCE - scaled.T)
+        self.boxes = self.room.prod(axis=0)
+        self.largest, self.second = np.zeros(self.room.shape), np.zeros(self.room.shape)
+        n = len(scaled)
+        self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
+
+    def after(self, index: int) -> Array:
+        """Return the bounds (n,) once another design is chosen, too."""
+        shared = np.minimum(self.room, self.room[:, index : index + 1])
+        size = shared.prod(axis=0)
+        with_largest = np.minimum(self.largest, shared)
+        common = with_largest.prod(axis=0)
+        all_three = np.minimum(self.second, with_largest).prod(axis=0)
+        union = self.most + self.more + size - self.both - common
+        union += all_three - np.minimum(self.second, shared).prod(axis=0)
+        rows = np.flatnonzero(size > self.more)
+        above = size[rows] > self.most[rows]
+        first, next_ = rows[above], rows[~above]
+        self.second[:, first], self.more[first] = self.largest[:, first], self.most[first]
+        self.largest[:, first], self.most[first] = shared[:, first], size[first]
+        self.second[:, next_], self.more[next_] = shared[:, next_], size[next_]
+        self.both[rows] = common[rows]
+        return np.asarray(self.boxes - union + _ROUNDING)
+
+
 def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: Stand = unheard) -> Whole:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
-    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978). The gain is the box of the
-    design less what it shares with those chosen, whose corners are few (L. While et al., "A fast way of calculating
-    exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). stand: called for every gain, with the designs chosen.
+    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978), nor one of which some of those
+    chosen leave less. The gain is the box of the design less what it shares with those chosen, whose corners are few
+    (L. While et al., "A fast way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). stand:
+    called for every gain, with the designs chosen.
     """
     n = len(values)
     if n <= count:
@@ -95,21 +131,28 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
 
     ideal, span = scaling(values)
     scaled = np.ascontiguousarray((values - ideal) / span)
-    boxes = np.prod(REFERENCE - scaled, axis=1)
-    picked = list(dict.fromkeys(always))[:count]
+    bounds = Bounds(scaled)
+    gains, fresh = bounds.boxes.copy(), np.full(n, -1)
     taken, corners = np.empty((count, scaled.shape[1])), np.empty((count, scaled.shape[1]))
-    taken[: len(picked)] = scaled[picked]
-    heap = [(-float(boxes[index]), index, -1) for index in sorted(set(range(n)) - set(picked))]
-    heapq.heapify(heap)
+    picked: list[int] = []
+
+    def pick(index: int) -> None:
+        taken[len(picked)] = scaled[index]
+        picked.append(index)
+        if n <= _BOUNDED:
+            np.minimum(gains, bounds.after(index), out=gains)
+        gains[index] = -np.inf
+
+    for index in list(dict.fromkeys(always))[:count]:
+        pick(index)
     volume = moocore.Hypervolume(ref=np.full(scaled.shape[1], REFERENCE))
-    while len(picked) < count and heap:
+    while len(picked) < count:
         stand(len(picked), count)
-        _, index, age = heapq.heappop(heap)
-        if age == len(picked):
-            taken[age] = scaled[index]
-            picked.append(index)
+        index = int(np.argmax(gains))
+        if fresh[index] == len(picked):
+            pick(index)
         else:
             shared = corners[: _shared(taken, len(picked), scaled[index], corners)]
-            gain = float(boxes[index]) - (float(volume(shared)) if len(shared) else 0.0)
-            heapq.heappush(heap, (-gain, index, len(picked)))
+            gains[index] = bounds.boxes[index] - (float(volume(shared)) if len(shared) else 0.0)
+            fresh[index] = len(picked)
     return np.array(sorted(picked))

@@ -31,19 +31,28 @@ def _search(points: Table, begin: int, end: int, distance: Table, found: Integer
     count = distance.shape[1]
     for i in range(begin, end):
         distance[i, 0], found[i * count] = 0.0, i
-        for way in range(2):
-            k = i + 1 if way else i - 1
-            while 0 <= k < n and (points[k, 0] - points[i, 0]) ** 2 < distance[i, count - 1]:
+        worst, below, above = distance[i, count - 1], i - 1, i + 1
+        while below >= 0 or above < n:  # in turn, so that near ones on either side end the way of both
+            for k in (below, above):
+                if not 0 <= k < n:
+                    continue
+                if (points[k, 0] - points[i, 0]) ** 2 >= worst:
+                    if k < i:
+                        below = -1
+                    else:
+                        above = n
+                    continue
                 square = 0.0
                 for column in range(m):
                     square += (points[k, column] - points[i, column]) ** 2
-                if square < distance[i, count - 1]:
+                if square < worst:
                     place = count - 1
                     while place > 1 and distance[i, place - 1] > square:
                         distance[i, place] = distance[i, place - 1]
                         found[i * count + place] = found[i * count + place - 1]
                         place -= 1
                     distance[i, place], found[i * count + place] = square, k
-                k += 1 if way else -1
+                    worst = distance[i, count - 1]
+            below, above = below - 1, above + 1
         for place in range(count):
             distance[i, place] = np.sqrt(distance[i, place])

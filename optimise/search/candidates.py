@@ -54,10 +54,14 @@ def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
     """Return arrays under each other; those of points with fewer columns are padded with zeros."""
     if parts[0].ndim == 2:
         width = max(part.shape[1] for part in parts)
-        parts = tuple(
-            part if part.shape[1] == width else np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts
-        )
+        parts = tuple(part if part.shape[1] == width else _widened(part, width) for part in parts)
     return np.concatenate(parts)
+
+
+def _widened(part: NDArray[Any], width: int) -> NDArray[Any]:
+    found = np.zeros((len(part), width), part.dtype)
+    found[:, : part.shape[1]] = part
+    return found
 
 
 def ragged(parts: Iterable[object]) -> NDArray[np.object_]:

@@ -86,8 +86,9 @@ class Sheet:
         for column, name in enumerate(self.free):
             known[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
         with np.errstate(all="ignore"):
+            as_many = 0.0 * u.sum(axis=1)
             for step in self.steps:
-                known[step.target] = step.formula(*(known[name] for name in step.sources)) + 0.0 * u.sum(axis=1)
+                known[step.target] = step.formula(*(known[name] for name in step.sources)) + as_many
         offset = self.sign * known["offset"]
         if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
             offset = np.where(offset == 0.0, offset - ZERO, offset)

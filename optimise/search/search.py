@@ -151,7 +151,8 @@ class Run:
         told is not told again, only that it is repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        feasible = np.concatenate([archive.values[archive.met], self.finished.values])
+        own = archive.values if archive.met.all() else archive.values[archive.met]
+        feasible = np.concatenate([own, self.finished.values]) if len(self.finished) else own
         entry = Progress(
             stage,
             self._passed + len(self.told) + 1,
@@ -162,7 +163,7 @@ class Run:
             self.checkpoints.seconds,
         )
         self.told.append(entry)
-        self.fronts.append(_some(feasible))
+        self.fronts.append(_some(feasible).copy())  # not a view, which would keep all of them
         if self.checkpoints.turn():
             self._say(entry, self.progress)
         else:

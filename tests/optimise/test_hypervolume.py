@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import moocore
 import numpy as np
 import pytest
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, choose, hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import REFERENCE, Bounds, choose, hypervolume, scaling
 
 UNIT = (np.zeros(3), np.ones(3))
 
@@ -38,3 +39,21 @@ def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:
         ]
         picked.append(int(np.argmax(gains)))
     assert choose(values, 6, always=(0,)).tolist() == sorted(picked)
+
+
+@pytest.mark.parametrize("objectives", [2, 3, 4, 6])
+def test_no_design_gains_more_than_its_bound(objectives: int) -> None:
+    random = np.random.default_rng([7, objectives])
+    values = random.random((60, objectives))
+    values = values[nondominated(values)]
+    ideal, span = scaling(values)
+    scaled, bounds = (values - ideal) / span, Bounds((values - ideal) / span)
+    chosen: list[int] = []
+    for index in random.permutation(len(values))[:12].tolist():
+        chosen.append(index)
+        found = bounds.after(index)
+        before = moocore.hypervolume(scaled[chosen], ref=REFERENCE)
+        gains = [moocore.hypervolume(scaled[[*chosen, row]], ref=REFERENCE) - before for row in range(len(values))]
+        assert (found >= gains).all()
+        if len(chosen) <= 2:  # of two boxes inclusion and exclusion is the whole truth
+            np.testing.assert_allclose(found, gains, atol=1e-11)

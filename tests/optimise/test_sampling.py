@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.search.sampling import FACES, around, first_samples, generator
+from slidercrank.optimise.search.sampling import FACES, around, drawn, first_samples, generator
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])
@@ -76,3 +76,13 @@ def test_a_single_parent_has_children_too() -> None:
     children = around(np.array([[0.5, 0.5]]), np.array([[1.0, 2.0]]), 50, 0.1, generator(3))
     assert children.shape == (50, 2)
     assert children.std() > 0.01
+
+
+def test_rows_are_drawn_as_the_generator_draws_them() -> None:
+    random = np.random.default_rng(5)
+    for count in (1, 7, 500):
+        chances = random.random(40) ** 4
+        chances /= chances.sum()
+        one, other = np.random.default_rng(count), np.random.default_rng(count)
+        np.testing.assert_array_equal(drawn(chances, count, one), other.choice(40, size=count, p=chances))
+        assert one.random() == other.random()
