@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +42,9 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True) -> PymooProblem:
                 xu=form.upper,
             )
             self.form = form
+
+        def __reduce__(self) -> tuple[object, ...]:
+            return partial(pymoo_problem, eliminate=eliminate), (problem,)  # a class within a function is no name
 
         def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
             found = form.arrays(x)

@@ -1,5 +1,7 @@
 """pymoo: arrays as it wants them, and the known optimum by its genetic algorithm."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -30,3 +32,11 @@ def test_populations_are_evaluated_as_the_standard_form_says(eliminate: bool) ->
     for given, wanted in ((f, found.F), (g, found.G), (h, found.H)):
         np.testing.assert_array_equal(given, np.minimum(wanted, 1e30))
     assert np.isinf(found.F).any()
+
+
+@pytest.mark.parametrize("eliminate", [False, True])
+def test_it_goes_to_other_processes_and_into_files(eliminate: bool) -> None:
+    stated = sc.pymoo_problem(problem(), eliminate=eliminate)
+    again = pickle.loads(pickle.dumps(stated))
+    x = np.random.default_rng(3).uniform(stated.xl, stated.xu, (8, stated.n_var))
+    np.testing.assert_array_equal(again.evaluate(x, return_values_of=["F"]), stated.evaluate(x, return_values_of=["F"]))
