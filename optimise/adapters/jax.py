@@ -53,5 +53,14 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         lambda x: (outside(x), slopes(x)),
         lambda jacobian, pushed: (jax.numpy.einsum("...q,...qd->...d", pushed, jacobian),),
     )
-    function: JaxFunction = found
+
+    def function(x: jax.Array) -> jax.Array:
+        given = jax.numpy.asarray(x)
+        if given.shape[-1:] != (width,):
+            raise InputError(
+                f"designs need {width} numbers each, as the last axis; got an array of shape {given.shape}"
+            )
+        values: jax.Array = found(given)
+        return values
+
     return function

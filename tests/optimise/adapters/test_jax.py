@@ -62,3 +62,12 @@ def test_single_precision_is_refused() -> None:
     jax.config.update("jax_enable_x64", False)
     with pytest.raises(InputError, match="jax_enable_x64"):
         sc.jax_function(problem())
+
+
+def test_lists_are_taken_and_other_widths_refused_before_jax_calls_back() -> None:
+    function = sc.jax_function(problem(), ["stroke"])
+    assert function([0.04, 0.1, 0.02]).shape == (1,)
+    with pytest.raises(
+        sc.InputError, match=r"designs need 3 numbers each, as the last axis; got an array of shape \(2,\)"
+    ):
+        function(np.array([0.04, 0.1]))
