@@ -58,7 +58,7 @@ class StandardForm:
     names: of the numbers of a design. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: what
     each column of F, G and H is of. Objectives to be maximised are negated; for one with a target it is the distance.
     Each requirement is divided by the size of its bound. The first two inequalities keep the crank turning:
-    crank + offset and crank - offset below the rod.
+    crank + offset and crank - offset below the rod. A swing has none of them: its crank need not turn through.
     With eliminated equalities x is what these leave free, each from 0 to 1; `designs` gives the designs of it, and the
     ranges of the dimensions that follow come last among the inequalities.
     """
@@ -85,7 +85,8 @@ class StandardForm:
         """Return F, G and H of points x (n, 3 + k), and with `gradients` their Jacobians.
 
         F, G and H of a design that does not turn fully are infinite but for the first two of G, which say by how much
-        it fails; its Jacobians are NaN but for these two rows. Raises `InputError` as `Problem.evaluate` does.
+        it fails; its Jacobians are NaN but for these two rows. Of a swing all are that it cannot make. Raises
+        `InputError` as `Problem.evaluate` does.
         """
         points = given_designs(x, self.names)
         x = self.designs(points)
@@ -97,7 +98,7 @@ class StandardForm:
         )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
         f = [_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
-        g, h = _turning(x, self._asked, slopes.shape[-1]), list[Row]()
+        g, h = _turning(x, self._asked, slopes.shape[-1]) if self._turns else [], list[Row]()
         for asked in self._asked:
             value, slope = at[asked.quantity]
             for word, bound in reversed(asked.sides):
@@ -128,7 +129,7 @@ class StandardForm:
             raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
         constraints: list[LinearConstraint | NonlinearConstraint] = []
         first = 0
-        if self._sheet is None:
+        if self._sheet is None and self._turns:
             share, rest = _share(self._asked), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
@@ -148,13 +149,18 @@ class StandardForm:
         )
 
     def start(self) -> Array:
-        """Return a point that turns fully, near the middle of the bounds. Raises `InputError` if none does."""
-        if self._sheet is not None:
-            grid = np.random.default_rng(1).random((4096, len(self.names)))
+        """Return a point that turns fully, near the middle of the bounds; of a swing one that makes it.
+
+        Raises `InputError` if none does.
+        """
+        if self._sheet is not None or not self._turns:
+            grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
             found = self.arrays(grid)
-            worst = np.concatenate([found.G, np.abs(found.H)], axis=1).max(axis=1)
+            worst = np.concatenate([found.G, np.abs(found.H)], axis=1).max(axis=1, initial=-1e300)
+            worst[~np.isfinite(found.F).all(axis=1)] = np.inf
             if not np.isfinite(worst).any():
-                raise InputError("no design of the ranges meets the equalities; got none of 4,096; widen the ranges")
+                what = "makes the swing" if self._sheet is None else "meets the equalities"
+                raise InputError(f"no design of the ranges {what}; got none of 4,096; widen the ranges")
             return np.asarray(grid[np.argmin(worst)])
         middle = 0.5 * (self.lower + self.upper)
         near = min(max(0.0, self.lower[2]), self.upper[2])
@@ -169,6 +175,10 @@ class StandardForm:
             "no design of the ranges turns fully; got a rod of at most "
             f"{1e3 * self.upper[1]:g} mm; allow a longer rod or a shorter crank"
         )
+
+    @property
+    def _turns(self) -> bool:
+        return self.problem.motion is None
 
     def _column(self, objective: str | None) -> int:
         if objective is None and len(self.objectives) == 1:
@@ -220,7 +230,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
         lower,
         upper,
         tuple(objective.quantity for objective in problem.objectives),
-        ("turning", "turning", *bounded, *computed),
+        (*(() if problem.motion else ("turning", "turning")), *bounded, *computed),
         tuple(c.quantity for c in asked if c.equality),
         asked,
         sheet,

@@ -1,6 +1,7 @@
 """Problems in the form of other optimisers: what they take, and that they find what `solve` finds."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy.optimize import check_grad, minimize
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from tests.optimise.adapters.the_problem import NEAR, best_angle, degrees_of, problem
+from tests.optimise.problems import RUNS
 
 
 def test_the_known_optimum_is_that_of_solve() -> None:
@@ -130,3 +132,25 @@ def test_what_has_no_standard_form_is_refused() -> None:
     )
     with pytest.raises(InputError, match="one sign of the offset"):
         sc.standard_form(stated, eliminate=True)
+
+
+def test_a_swing_need_not_turn_and_its_form_says_so() -> None:
+    support = sc.load_job(RUNS / "support.toml")
+    form = sc.standard_form(support)
+    assert "turning" not in form.inequalities
+    assert np.isfinite(form.arrays(form.start()).F).all()
+    x = np.random.default_rng(5).uniform(form.lower, form.upper, (4000, 3))
+    found = form.arrays(x)
+    feasible = np.isfinite(found.F).all(axis=1) & (found.G <= 0.0).all(axis=1)
+    makes_it = np.isfinite(support.evaluate(x)).all(axis=1)
+    margin, travel = support.evaluate(x, ["swing_transmission_angle", "actuator_travel"]).T
+    np.testing.assert_array_equal(feasible, makes_it & (margin >= np.radians(15.0)) & (travel <= 2.4))
+    turns = x[:, 1] > x[:, 0] + np.abs(x[:, 2])
+    assert (feasible & ~turns).any()
+
+
+def test_slsqp_finds_the_best_swing_that_solve_finds() -> None:
+    support = sc.load_job(RUNS / "support.toml")
+    one = replace(support, objectives=support.objectives[:1])
+    found = minimize(**sc.standard_form(one).scipy()._asdict(), method="SLSQP", options={"ftol": 1e-12})
+    assert found.fun == pytest.approx(one.evaluate(sc.solve(one).dimensions)[0, 0], rel=1e-5)
