@@ -343,9 +343,11 @@ class Problem:
         return side if self.slow_stroke == "inward" else -side
 
     def part(self, variant: int) -> Problem:
-        """Return the problem of one variant, with nothing left to be chosen."""
+        """Return the problem of one variant, with nothing left to be chosen. Raises `InputError` for none of them."""
         if not self.variants:
             return self
+        if not isinstance(variant, Integral) or not -len(self.variants) <= variant < len(self.variants):
+            raise InputError(f"a variant is one of 0 to {len(self.variants) - 1}, see `variants`; got {variant!r}")
         chosen = self.variants[variant]
         return replace(
             self,

@@ -260,6 +260,7 @@ def disk(place: Path) -> Iterator[None]:
                 f"a run needs room on its disk; {room(place)}; make room, or choose another place"
             ) from error
         reason = error.strerror or str(error)
+        remedy = "make the folder" if isinstance(error, FileNotFoundError) else "free or permit it"
         raise RunError(
-            f"{place} must be a folder that can be written; got: {reason}; free or permit it, or choose another place"
+            f"{place} must be a folder that can be written; got: {reason}; {remedy}, or choose another place"
         ) from error

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.optimise.job import load_job
+from tests.optimise.problems import RUNS
 
 PRESS = load_job(Path(__file__).parents[2] / "runs/press.toml").part(0)
 LENGTHS = (0.0263, 0.126, 0.059)
@@ -40,3 +43,11 @@ def test_the_slow_stroke_is_the_loaded_one() -> None:
 
 def stroke() -> float:
     return float(Linkage(*LENGTHS).stroke)
+
+
+@pytest.mark.parametrize("variant", [7, -3, "GM 40", None])
+def test_a_variant_that_is_none_is_refused(variant: Any) -> None:
+    press = load_job(RUNS / "press.toml")
+    with pytest.raises(InputError, match="a variant is one of 0 to 1, see `variants`; got"):
+        press.part(variant)
+    assert press.part(-1) == press.parts()[1]

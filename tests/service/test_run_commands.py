@@ -154,7 +154,7 @@ def test_export_writes_to_standard_output(stored: Result, command: Command) -> N
     [
         ((), "say what to export"),
         (("--csv", "-", "--json", "-"), "only one of"),
-        (("--csv", "none/there/a.csv"), "must be a folder that can be written"),
+        (("--csv", "none/there/a.csv"), "No such file or directory; make the folder, or choose another place"),
     ],
 )
 def test_an_export_to_nowhere_is_refused(
