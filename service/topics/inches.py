@@ -10,8 +10,9 @@ from functools import cache
 from ...objectives.kinds import PRESSURE, SHOWN, TIME, unit_text
 from ..figures.sheets import Line, Panel, Sheet
 from .block import Block
+from .exact_numbers import TAG, changed, plain
 
-_NUMBER = r"[-+−]?\d[\d.]*(?:e[-+]?\d+)?"
+_NUMBER = rf"[-+−]?\d[\d.]*(?:e[-+]?\d+)?{TAG}"
 _JOINED = rf"{_NUMBER}(?:(?:, | to | and | or | x | / | ± ){_NUMBER})*"
 _FIRST = re.compile(rf"({_NUMBER})( without .+)", re.DOTALL)  # a remark that compares with another value of the line
 _LEAST_DIGITS = 4  # 0.7 mm is 0.02756 in
@@ -35,13 +36,13 @@ def _units() -> dict[str, tuple[str, float]]:
 def _patterns() -> tuple[re.Pattern[str], re.Pattern[str]]:
     """Return what finds values with a unit in a sentence, and the unit at the end of a head."""
     units = "|".join(map(re.escape, sorted(_units(), key=len, reverse=True)))
-    values = rf"(?<![\"“'\w.^])({_JOINED}\)?) ({units})(?![\w^/²³])"
+    values = rf"(?<![\"“'\w.^])(?<![\"“'][-+−])(?<!\de[-+])({_JOINED}\)?) ({units})(?![\w^/²³])"
     return re.compile(values), re.compile(rf"(?:^|(?<=[\s,]))({units})$")
 
 
 def sentence_in_inches(sentence: str) -> str:
     """Return a sentence with its values in inch units; what is quoted was typed by somebody, and stays."""
-    return _patterns()[0].sub(lambda found: _with_unit(found[1], found[2]), sentence)
+    return plain(_patterns()[0].sub(lambda found: _with_unit(found[1], found[2]), sentence))
 
 
 def block_in_inches(block: Block) -> Block:
@@ -53,7 +54,7 @@ def block_in_inches(block: Block) -> Block:
     heads = [None if sentence_in_inches(head) != head else _patterns()[1].search(head) for head in block.heads]
     of_column = [None if found is None else found[1] for found in heads]
     told = tuple(
-        sentence_in_inches(head) if found is None else f"{head[: found.start()]}{_units()[found[1]][0]}"
+        sentence_in_inches(head) if found is None else f"{plain(head[: found.start()])}{_units()[found[1]][0]}"
         for head, found in zip(block.heads, heads, strict=True)
     )
     rows = tuple(_row(cells, of_column) for cells in block.rows)
@@ -107,7 +108,7 @@ def _cell(cell: str, unit: str | None, *, own: bool) -> str:
     if re.fullmatch(_JOINED, cell):
         return _scaled(cell, unit)
     compared = _FIRST.fullmatch(cell)
-    return f"{_scaled(compared[1], unit)}{compared[2]}" if compared else sentence_in_inches(cell)
+    return f"{_scaled(compared[1], unit)}{plain(compared[2])}" if compared else sentence_in_inches(cell)
 
 
 def _with_unit(numbers: str, unit: str) -> str:
@@ -116,12 +117,14 @@ def _with_unit(numbers: str, unit: str) -> str:
 
 def _scaled(numbers: str, unit: str) -> str:
     """Return numbers in the inch unit, with as many digits as they have, four at least."""
-    return re.sub(_NUMBER, lambda found: _number(found[0], _units()[unit][1]), numbers)
+    return plain(re.sub(_NUMBER, lambda found: _number(found[0], _units()[unit][1]), numbers))
 
 
 def _number(text: str, factor: float) -> str:
     if factor == 1.0:
         return text
+    if exact := changed(text, factor, _LEAST_DIGITS):
+        return exact
     value = float(text.replace("−", "-")) * factor
     digits = max(len(re.sub(r"e.*|[-+−.]", "", text).lstrip("0")), _LEAST_DIGITS)
     if "e" not in text:

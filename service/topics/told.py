@@ -38,11 +38,13 @@ class _Collecting(Console):
 def told(topic: TopicOfDesign, numbers: dict[str, Any], units: System = "metric") -> Sequence[Block]:
     """Return the text of a topic on its numbers, metric as they are, as sentences and tables in units."""
     screen = _Collecting()
-    topic.show(screen, numbers)
     if units == "metric":
+        topic.show(screen, numbers)
         return screen.blocks
+    from .exact_numbers import exact
     from .inches import block_in_inches
 
+    topic.show(screen, exact(numbers))
     return [block_in_inches(block) for block in screen.blocks]
 
 

@@ -15,6 +15,7 @@ from slidercrank.objectives.kinds import SHOWN, unit_text
 from slidercrank.service.figures.sheets import Line, Panel, Sheet
 from slidercrank.service.topics.block import Block
 from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.exact_numbers import exact
 from slidercrank.service.topics.inches import block_in_inches, sentence_in_inches, sheet_in_inches
 from slidercrank.service.topics.told import told
 from tests.service import fronts
@@ -34,7 +35,7 @@ QUICK = [name for name in TOPICS if name not in ("clearance", "start_up", "toler
         ("crank from 25.4 to 50.8 mm, rod 254 mm", "crank from 1 to 2 in, rod 10 in"),
         ("0.7 mm; 0 mm; -2.54e-05 mm", "0.02756 in; 0 in; -1e-06 in"),
         ("50 % within 0.0254 mm at 300 rpm", "50 % within 0.001 in at 300 rpm"),
-        ('got "60 mm"; 2 N m is possible', 'got "60 mm"; 17.7 lbf in is possible'),
+        ('got "60 mm", "-60 mm"; 2 N m is possible', 'got "60 mm", "-60 mm"; 17.7 lbf in is possible'),
         ("1 MPa m/s, 8 bar, 3 kg m²", "28551 psi ft/min, 116 psi, 10252 lb in²"),
         ("bar 25.4 x 50.8 mm, (0, 25.4) mm", "bar 1 x 2 in, (0, 1) in"),
         ("Nm of 3 N/mm, 7 Nails", "Nm of 3 N/mm, 7 Nails"),
@@ -102,3 +103,25 @@ def test_the_command_line_tells_a_topic_in_the_units_that_are_asked_for(tmp_path
     assert re.search(r"peak torque +[\d.]+ +lbf in +at ", found)
     assert "metric units" not in found
     assert re.search(r"peak torque +[\d.]+ +N m +at ", command(*given).stdout)
+
+
+def test_text_in_inches_has_every_digit_of_its_numbers() -> None:
+    """Random values, plain and calculated with, in sentences, lists, cells and remarks: not those of metric text."""
+    random = np.random.default_rng(7)
+    for value in 10.0 ** random.uniform(-6.0, 6.0, 400) * random.choice([-1.0, 1.0], 400):
+        given = exact({"mm": float(value), "all": [float(value), "as it is", 3, None], "deg": float(value)})
+        one, other = given["mm"], 1e-3 * given["all"][0]
+        inch = value / 25.4
+        told = sentence_in_inches(f"it is {one:.4g} mm, {one:+.5g} and {abs(one):g} mm at {given['deg']:.3g} deg")
+        assert told == f"it is {inch:.4g} in, {inch:+.5g} and {abs(inch):g} in at {value:.3g} deg"
+        assert (
+            sentence_in_inches(f'"{one:.4g} mm" typed, {-other:.6g} m')
+            == f'"{value:.4g} mm" typed, {-1e-3 * value:.6g} m'
+        )
+        rows = (("a", f"{one:.3g}", f"{one:.6g} without it {one:.4g}", f"{one:.2f} x"),)
+        heads = ("what", "size, mm", "of, mm", f"at {one:.4g} deg")
+        block = block_in_inches(Block(heads=heads, right=(False,) * 4, rows=rows))
+        assert block.rows == (("a", f"{inch:.4g}", f"{inch:.6g} without it {value:.4g}", f"{value:.2f} x"),)
+        assert block.heads[1:] == ("size, in", "of, in", f"at {value:.4g} deg")
+    assert exact(float("inf")) == np.inf
+    assert f"{exact(float('nan')):.4g} {exact(float('-inf')):.3g}" == "nan -inf"
