@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from ...model.errors import InputError
+from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.units import shown, to_si
 from ..front.front import ParetoFront
 from ..problem.violation import minimised
@@ -85,6 +86,10 @@ def _read(front: ParetoFront, column: int, given: object) -> Wish:
     except InputError as error:
         words = "" if text[:1] in _VALUE else f"; a wish is {_WORDS.format(example=kind.example)}"
         raise InputError(f"the wish for {of.name} {error}{words}") from None
+    turning = front.problem.motion is None or isinstance(of, SwingQuantity)  # below one, proportions may swing
+    if turning and of.domain is not None and value > of.domain.upper:  # degrees without their unit, a share in percent
+        got = f"{value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
+        raise InputError(f"the wish for {of.name}: {of.domain.rule}; got {got}; {of.domain.remedy}")
     return Wish("limit" if limit else "value", value)
 
 
