@@ -17,6 +17,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
+from ...model.machine.two_turns import cycle_turns
 from ..kinds import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, POWER, SPEED, TORQUE, Face, face, per
 from ..quantity import Array
 
@@ -94,12 +95,18 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike = 360) -> pd.DataFrame:
     """Return the curves of one fully turning linkage as a table in SI, a row for each crank angle.
 
-    angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns: the names of `cycle_curves` with the
-    unit, such as torque_Nm. Raises `InputError` for too few or too many angles, and for ones that are not finite.
+    angles: how many, evenly spaced over the cycle from 0, two turns where a load has a cycle of two; or crank angles
+    (n,), rad. Columns: the names of `cycle_curves` with the unit, such as torque_Nm. Raises `InputError` for too few or
+    too many angles, and for ones that are not finite.
     """
-    theta = even_angles(int(angles)) if isinstance(angles, int | np.integer) else numbers(angles, "a crank angle")
-    if theta.ndim != 1:
-        raise InputError(f"crank angles are a list of numbers, rad; got an array of shape {theta.shape}")
+    if isinstance(angles, int | np.integer) and not isinstance(angles, bool):
+        theta = cycle_turns(mechanism) * even_angles(int(angles))
+    else:
+        theta = numbers(angles, "a crank angle")
+    if theta.ndim != 1 or np.iscomplexobj(theta):
+        raise InputError(
+            f"crank angles are a list of real numbers, rad, or how many; got {angles!r:.60}; write for example [1.0]"
+        )
     import pandas as pd
 
     return pd.DataFrame(

@@ -16,6 +16,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing, require_swing
 from ...objectives.formula.meant import meant
 from ...objectives.formula.quantity import FormulaQuantity
@@ -115,9 +116,10 @@ class Analysis(Mapping[str, float]):
     def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:
         """Return the curves over the cycle, a row for each crank angle, in SI.
 
-        angles: how many, evenly spaced from 0; or crank angles (n,), rad. Columns carry their unit: crank_angle_rad,
-        slider_position_m, slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad,
-        transmission_angle_rad, torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
+        angles: how many, evenly spaced over the cycle from 0, which is of two turns where a load has a cycle of 720
+        deg; or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
+        slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
+        torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
         Raises `InputError` for a design that swings.
         """
         self._require_turning("a cycle")
@@ -151,8 +153,9 @@ class Analysis(Mapping[str, float]):
         self._require_turning("a figure of the cycle")
         from matplotlib.figure import Figure
 
-        turn = np.append(even_angles(360), 2.0 * np.pi)  # curves close
-        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, turn)}
+        turns = cycle_turns(self.mechanism)
+        whole = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)  # curves close
+        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, whole)}
         found = Figure(figsize=(6.4, 8.0), layout="constrained")
         angle = curves["crank_angle"]
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
@@ -160,7 +163,7 @@ class Analysis(Mapping[str, float]):
             axes.plot(angle.shown.factor * angle.values, curve.shown.factor * curve.values)
             axes.set_ylabel(f"{curve.title},\n{unit_text(curve.shown.symbol)}")
             axes.set_xlabel("crank angle, deg")
-            axes.set_xticks(range(0, 361, 60))
+            axes.set_xticks(range(0, 360 * turns + 1, 60 * turns))
             axes.label_outer()
         found.suptitle(self.title or self.linkage.label)
         return found

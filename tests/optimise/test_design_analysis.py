@@ -119,7 +119,7 @@ def test_crank_angles_may_be_any(problem: sc.Problem) -> None:
     assert table["crank_angle_rad"].tolist() == [0.5, -7.0]
     for angles, words in (
         (3, "4 to 100000"),
-        ([[0.1]], "a list of numbers"),
+        ([[0.1]], "a list of real numbers"),
         ([np.nan], "finite"),
         ("all", "got 'all'"),
     ):
@@ -189,3 +189,31 @@ def test_the_curves_of_a_figure_close() -> None:
         angles, values = (np.asarray(part) for part in axes.lines[0].get_data())
         assert (angles[0], angles[-1]) == (0.0, 360.0)
         assert values[-1] == pytest.approx(values[0], rel=1e-9, abs=1e-9)
+
+
+def test_a_cycle_of_two_turns_is_told_whole() -> None:
+    load = {"bore": "54 mm", "compression_ratio": 8, "intake": "1 bar", "peak_pressure": "40 bar", "cycle": "720 deg"}
+    engine = sc.problem(
+        {
+            "name": "Four strokes",
+            "mechanism": {"speed": "3000 rpm", "slider": {"mass": "0.3 kg"}, "rod": {"mass": "0.2 kg"}},
+            "load": [load],
+            "variables": {"crank": "30 mm", "rod": "120 mm", "offset": "2 mm"},
+            "objectives": {"peak_torque": "minimise"},
+        }
+    )
+    analysis = engine.analyse([0.03, 0.12, 0.002])
+    cycle = analysis.cycle(1440)
+    assert cycle["crank_angle_rad"].iloc[-1] == pytest.approx(np.radians(719.5))
+    assert cycle["torque_Nm"].abs().max() == pytest.approx(analysis["peak_torque"], rel=1e-3)
+    assert cycle["torque_Nm"].mean() == pytest.approx(analysis["mean_torque"], rel=1e-3)
+    figure = analysis.plot()
+    angles, torque = (np.asarray(part) for part in figure.axes[3].lines[0].get_data())
+    assert angles[-1] == 720.0
+    assert np.abs(torque).max() == pytest.approx(analysis["peak_torque"], rel=1e-2)
+
+
+@pytest.mark.parametrize("angles", [1.0, "360", True, [[0.0, 1.0]], [1j], None])
+def test_crank_angles_that_are_none_are_refused(angles: Any) -> None:
+    with pytest.raises(InputError, match="crank angle"):
+        sc.analyse(sc.Mechanism(speed=3.0), DESIGN).cycle(angles)
