@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
@@ -14,10 +15,13 @@ from ..search.checkpoints import Checkpoints
 from ..search.elimination import sheets
 from ..search.evaluation import Evaluator
 from ..search.mirror import once
-from ..search.search import Callback, Run
+from ..search.sampling import first_samples
+from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, out_of_reach, share
 
 _SAMPLES = 2048
 """Designs of a round where only the dimensions count."""
+_FEW = 1024
+"""The same where all requirements do: a cycle for each takes long, and the best of a few lead down as those of many."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +43,32 @@ def best_of(
     checkpoints, engine: of the search that wants to know it. stand: called with how far this one is.
     """
     own = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
-    front = searched_by(AUTO, problem, own, Run(problem, 1, stand, checkpoints or Checkpoints(), stages=stand))
+    run = Run(problem, 1, stand, checkpoints or Checkpoints(), stages=stand)
+    light = replace(problem, settings=replace(problem.settings, samples=problem.settings.samples or _FEW))
+    front = searched_by(replace(AUTO, search=partial(_sampled, problem)), light, own, run)
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
     value = float(quantity.evaluate(front.part(0).mechanism, front.dimensions[:1]).values[0])
     return Best(value, front.dimensions[0])
+
+
+def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+    """Return the archive of few samples if enough of them are feasible, or none can be; else that of a whole search.
+
+    Of one objective the best few of any samples lead down to its best value.
+    """
+    if not any(evaluator.loose for evaluator in evaluators):
+        archive = run.archive = Archive.empty(1)
+        count = share(light.settings.samples or _FEW, evaluators)
+        found = archive.screen_all(
+            (index, evaluator, first_samples(count, evaluator.dimension, light.settings.seed, index))
+            for index, evaluator in enumerate(evaluators)
+        )
+        if found >= ENOUGH or (not found and out_of_reach(light, evaluators, BANDS[-2])):
+            run.tell("sampling", evaluators, archive)
+            return archive
+    return explore(full, evaluators, run)
 
 
 def best_on_dimensions(problem: Problem) -> Best | None:

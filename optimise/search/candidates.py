@@ -182,25 +182,25 @@ class Finished(Candidates):
         )
         doubtful = self.residual > STATIONARY
         worth = ~doubtful
-        proven = values[~doubtful]
+        proven = np.ascontiguousarray(values[~doubtful].T)
         for row in np.flatnonzero(doubtful).tolist():
             stand(0, len(values))
             worth[row] = not _as_good(proven, values[row], covered).any()
         rows = np.flatnonzero(worth)
         rows = rows[nondominated(values[rows])]
         kept: list[int] = []
-        theirs = np.empty((len(rows), len(self.span)))
+        theirs = np.empty((len(self.span), len(rows)))
         # What is proven first, then what is best in an objective.
         scaled = values[rows] / self.span
         leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
         for done, row in enumerate(rows[order].tolist()):
             stand(done, len(rows))
-            if not _as_good(theirs[: len(kept)], values[row], same if free[row] else equal).any():
-                theirs[len(kept)] = values[row]
+            if not _as_good(theirs[:, : len(kept)], values[row], same if free[row] else equal).any():
+                theirs[:, len(kept)] = values[row]
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
-        theirs, alone = theirs[: len(kept)], []
+        theirs, alone = theirs[:, : len(kept)], []
         for row in kept:
             stand(len(rows), len(rows))
             if _as_good(theirs, values[row], equal).sum() == 1:
@@ -209,5 +209,5 @@ class Finished(Candidates):
 
 
 def _as_good(values: Array, row: Array, within: Array) -> Mask:
-    """Return which designs (n, m) are nowhere worse than one (m,) by more than these differences."""
-    return np.asarray((values - row <= within).all(axis=1))
+    """Return which designs are nowhere worse than one (m,) by more than these differences; values: (m, n), of them."""
+    return np.asarray((values - row[:, None] <= within[:, None]).all(axis=0))

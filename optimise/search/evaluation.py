@@ -126,6 +126,17 @@ class Evaluator:
         """Return which points give a linkage that turns fully, or makes the swing of the problem."""
         return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
 
+    def light_violation(self, u: Array) -> Array:
+        """Return the greatest violation (n,) of what needs no cycle computed, of points where `valid` holds."""
+        dimensions = self.sheet.dimensions(u)
+        violation = self._geometry_violation(dimensions)
+        for constraint in self.constraints:
+            quantity = self.problem.quantity(constraint.quantity)
+            if not costly(quantity):
+                values = quantity.evaluate(self.mechanism, dimensions).values
+                violation = np.maximum(violation, violated_by(constraint, values))
+        return violation
+
     def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
         """Return objective rows, none if not asked for, and constraint rows of points where `valid` holds.
 

@@ -254,7 +254,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             for index, evaluator in enumerate(evaluators)
         )
         if found >= min(ENOUGH, samples) or (
-            not attempt and not found and _out_of_reach(problem, evaluators, bands[-1])
+            not attempt and not found and out_of_reach(problem, evaluators, bands[-1])
         ):
             break
     run.tell("sampling", evaluators, archive)
@@ -287,7 +287,7 @@ def _near(
     return around(parents.u[own][:, :dimension], parents.values[own], count, width, random)
 
 
-def _out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
+def out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
     """Whether descent from the best samples stays farther from the requirements than the band of the last samples.
 
     Sixteen times as many samples in that band would cost more, and say less: their best are no local optima. Not told

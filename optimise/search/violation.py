@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Mask
+from ...model.arrays import Array, Mask, Whole
+from ..problem.violation import FEASIBLE
 from .candidates import Polished
 from .evaluation import Evaluator
 from .pieces import Rows
 from .recorded import polished
 from .sampling import apart
+
+_AT_ONCE = 256  # points looked at between two questions whether the best are among them
 
 
 class _Violations:
@@ -34,14 +37,28 @@ def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int)
     """
     u = u[evaluator.valid(u)]
     u = u[:: max(1, len(u) // ranked)]
-    best = u[apart(_greatest(evaluator, u), u, np.zeros(len(u), np.int64), starts)] if len(u) else u
+    best = u[apart(greatest_of_starts(evaluator, u, starts), u, _one_sheet(u), starts)] if len(u) else u
     return polished(evaluator, best, np.ones(1), shown=_Violations(evaluator))
 
 
-def _greatest(evaluator: Evaluator, u: Array) -> Array:
-    """Return the greatest relative violation (n,) of points."""
+def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
+    """Return the greatest relative violation (n,) of points; infinite of some that are not among the best `count`.
+
+    Those that violate what needs no cycle the least come first, until the best of them are better than any other.
+    """
 
     def greatest() -> tuple[Array]:
-        return (evaluator.exact(u, goals=False)[1].values.max(axis=1, initial=0.0),)
+        worth, bound = np.full(len(u), np.inf), evaluator.light_violation(u)
+        order = np.argsort(bound, kind="stable")
+        for rows in np.split(order, range(_AT_ONCE, len(u), _AT_ONCE)):
+            best = apart(worth, u, _one_sheet(u), count)
+            if len(best) == count and worth[best].max() < bound[rows[0]] - FEASIBLE:
+                break
+            worth[rows] = evaluator.exact(u[rows], goals=False)[1].values.max(axis=1, initial=0.0)
+        return (worth,)
 
-    return evaluator.step("violation", (u,), greatest)[0]
+    return evaluator.step("violation", (u, np.array([count])), greatest)[0]
+
+
+def _one_sheet(u: Array) -> Whole:
+    return np.zeros(len(u), np.int64)
