@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array
+from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.machine.mechanism import Mechanism
 from .designs import Designs, Peaks
@@ -57,6 +58,8 @@ def apply(
     try:
         with np.errstate(all="ignore"):
             found = np.asanyarray(function(make(mechanism, given)))
+    except InputError as error:  # of what the designs of this machine do not have
+        raise Refused(f"cannot be had of this machine: {error}{place(error, function)}") from None
     except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
         kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
         remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"

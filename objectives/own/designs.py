@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array
+from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
@@ -113,18 +114,18 @@ class Designs:
 
     def velocity(self, angle: Numbers) -> Numbers:
         """Return the slider velocity along x, m/s."""
-        return cast(Numbers, self._motion(angle).x_1 * self.mechanism.speed)
+        return cast(Numbers, self._motion(angle).x_1 * self._pace(angle)[0])
 
     def acceleration(self, angle: Numbers) -> Numbers:
         """Return the slider acceleration along x, m/s^2."""
-        m, speed = self._motion(angle), self.mechanism.speed
-        return cast(Numbers, m.x_2 * speed**2 + m.x_1 * self.mechanism.acceleration)
+        m, (speed, acceleration, _) = self._motion(angle), self._pace(angle)
+        return cast(Numbers, m.x_2 * speed**2 + m.x_1 * acceleration)
 
     def jerk(self, angle: Numbers) -> Numbers:
-        """Return the slider jerk along x, m/s^3; the crank's acceleration is the same at every angle."""
-        m, speed = self._motion(angle), self.mechanism.speed
+        """Return the slider jerk along x, m/s^3."""
+        m, (speed, acceleration, bend) = self._motion(angle), self._pace(angle)
         third = third_derivative(np.sin(angle), np.cos(angle), m, self.crank)
-        return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * self.mechanism.acceleration)
+        return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * acceleration + m.x_1 * speed * bend)
 
     def rod_angle(self, angle: Numbers) -> Numbers:
         """Return the angle between rod and slider line, rad, positive where the rod rises outward."""
@@ -136,7 +137,15 @@ class Designs:
         return cast(Numbers, 0.5 * np.pi - magnitude(self.rod_angle(angle)))
 
     def forces(self, angle: Numbers) -> Reactions:
-        """Return drive torque and joint forces, friction included; NaN where friction locks."""
+        """Return drive torque and joint forces of one cylinder, friction included; NaN where friction locks.
+
+        Raises `InputError` along a speed profile, and for a cycle of two turns.
+        """
+        if self.mechanism.speed_profile is not None:
+            raise InputError(
+                "forces of a function of your own are at a constant speed; got a speed profile; leave it out, or use "
+                "quantities that come with the software, also in a formula"
+            )
         shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
         found, load = follow_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
         parts: list[Numbers] = [*found, load]
@@ -188,6 +197,20 @@ class Designs:
     def _motion(self, angle: Numbers) -> Motion:
         sine, cosine = np.sin(angle), np.cos(angle)
         return motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
+
+    def _pace(self, angle: Numbers) -> tuple[Any, Any, Any]:
+        """Return crank speed and acceleration, and the slope of the acceleration over the angle."""
+        profile, mean = self.mechanism.speed_profile, self.mechanism.speed
+        if profile is None:
+            return mean, self.mechanism.acceleration, 0.0
+        at = np.real(angle)
+        ratio: Any = profile.ratio(at)
+        slope: Any = profile.slope(at)
+        curvature = profile.curvature(at)
+        if np.iscomplexobj(angle):
+            step = 1j * np.imag(angle)
+            ratio, slope = ratio + step * slope, slope + step * curvature
+        return mean * ratio, mean**2 * ratio * slope, mean**2 * (slope**2 + ratio * curvature)
 
     def _uncrowded(self, tau: Numbers) -> tuple[Array, Array]:
         """Return crank angles (n, k) of crowded ones, and their derivative by them; see `segments.crowding`."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
+import slidercrank as sc
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -225,3 +227,65 @@ def test_field_carries_the_unit(symbol: str, field: str) -> None:
 def test_quantity_can_be_copied_and_sent() -> None:
     quantity = OwnQuantity(name="mine", function="a:b", title="mine", kind=RATIO)
     assert copy.deepcopy(quantity) == pickle.loads(pickle.dumps(quantity)) == quantity
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [{"cosines": [0.05, 0.03], "sines": [0.04]}, {"crank_angles": ["0 deg", "80 deg", "190 deg", "270 deg"]}],
+    ids=["harmonics", "points"],
+)
+def test_motion_of_a_function_follows_a_speed_profile(profile: dict[str, list[Any]]) -> None:
+    if "crank_angles" in profile:
+        profile = profile | {"speeds": [60.0, 62.0, 58.0, 59.0]}
+    functions: dict[str, tuple[Callable[[Designs], Any], str]] = {
+        "peak_slider_speed": (lambda designs: designs.peaks(lambda t: magnitude(designs.velocity(t))), "m/s"),
+        "peak_slider_acceleration": (
+            lambda designs: designs.peaks(lambda t: magnitude(designs.acceleration(t))),
+            "m/s^2",
+        ),
+        "peak_slider_jerk": (lambda designs: designs.peaks(lambda t: magnitude(designs.jerk(t))), "m/s^3"),
+    }
+    tables: dict[str, Any] = {
+        "name": "Uneven",
+        "mechanism": {"speed": 60.0, "slider": {"mass": "1 kg"}, "speed_profile": profile},
+        "quantity": {f"own_{name}": {"function": f, "unit": unit} for name, (f, unit) in functions.items()},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["90 mm", "250 mm"], "offset": ["-20 mm", "20 mm"]},
+        "objectives": {"time_ratio": "maximise"},
+    }
+    if "speeds" in profile:  # the mean of a table over the crank angle must be that of the job
+        with pytest.raises(sc.JobError, match="the mean of speed_profile") as told:
+            sc.problem(tables)
+        tables["mechanism"]["speed"] = re.findall(r'give speed = "(.*)"', str(told.value))[0]
+    problem = sc.problem(tables)
+    designs = [[0.03, 0.12, 0.01], [0.05, 0.11, -0.015]]
+    own, own_slopes = problem.evaluate(designs, [f"own_{name}" for name in functions], gradients=True)
+    known, slopes = problem.evaluate(designs, [*functions], gradients=True)
+    np.testing.assert_allclose(own, known, rtol=1e-9)
+    size = np.abs(slopes).max(axis=(0, 2), keepdims=True)
+    np.testing.assert_allclose(own_slopes / size, slopes / size, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("machine", ["a profile", "two turns"])
+def test_forces_that_a_function_cannot_have_are_refused_without_blame(machine: str) -> None:
+    mechanism: dict[str, Any] = {"speed": 60.0, "slider": {"mass": "1 kg"}}
+    load: list[dict[str, Any]] = []
+    if machine == "a profile":
+        mechanism["speed_profile"] = {"cosines": [0.05]}
+    else:
+        load = [{"crank_angles": ["0 deg", "90 deg", "400 deg"], "forces": ["1 N", "2 N", "3 N"], "cycle": "720 deg"}]
+    problem = sc.problem(
+        {
+            "name": "Refused",
+            "mechanism": mechanism,
+            "load": load,
+            "quantity": {
+                "pin": {"function": lambda designs: designs.peaks(lambda t: designs.forces(t).guide), "unit": "N"}
+            },
+            "variables": {"crank": "30 mm", "rod": ["90 mm", "250 mm"], "offset": "10 mm"},
+            "objectives": {"pin": "minimise"},
+        }
+    )
+    with pytest.raises(
+        InputError, match=r"cannot be had of this machine: .*; got a (speed profile|load with one of 720)"
+    ):
+        problem.evaluate([0.03, 0.1, 0.01])
