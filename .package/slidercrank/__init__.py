@@ -91,7 +91,7 @@ if TYPE_CHECKING:
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
     from slidercrank.optimise.problem.problem import Problem
     from slidercrank.optimise.problem.requirements import Constraint, Objective
-    from slidercrank.optimise.questions.like import like_design as like
+    from slidercrank.optimise.questions.like import like
     from slidercrank.optimise.questions.quantities import quantities
     from slidercrank.optimise.questions.wish import wish
     from slidercrank.optimise.solve import solve
@@ -123,7 +123,6 @@ else:
         "optimise.questions.wish": ("wish",),
         "optimise.solve": ("solve",),
     }
-    _INSIDE = {"like": "like_design"}  # where a name is another one inside
 
     def __getattr__(name):
         home = next((home for home, names in _HOMES.items() if name in names), None)
@@ -132,7 +131,7 @@ else:
 
             value = version(__name__)
         elif home is not None:
-            value = getattr(import_module(f".{home}", __name__), _INSIDE.get(name, name))
+            value = getattr(import_module(f".{home}", __name__), name)
         else:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         globals()[name] = value

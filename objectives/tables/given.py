@@ -67,7 +67,7 @@ def shortly(given: object) -> str:
 
 
 def _by_name(designs: object, names: Sequence[str]) -> object:
-    pandas = sys.modules.get("pandas")
+    pandas = None if isinstance(designs, np.ndarray) else sys.modules.get("pandas")
     if pandas is None or not isinstance(designs, pandas.DataFrame | pandas.Series):
         return designs
     labels = designs.columns if isinstance(designs, pandas.DataFrame) else designs.index

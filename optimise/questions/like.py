@@ -51,7 +51,7 @@ def distance(values: Array, given: Array, span: Array) -> Array:
     return np.asarray(np.linalg.norm((values - given) / span, axis=1))
 
 
-def like(
+def nearest(
     problem: Problem,
     row: Mapping[str, object],
     values: Array,
@@ -87,12 +87,12 @@ def like(
     return assemble(asked, evaluators, finished[_ranked(finished, archive, values)[:1]], run)
 
 
-def like_design(
+def like(
     front: ParetoFront, row: int, *constraints: Constraint, ranges: Mapping[str, Ends] | None = None
 ) -> ParetoFront:
     """Return the design most like one of a front that also meets further requirements, as a front of its own.
 
-    It is Pareto-optimal for the problem with them, and of those designs the nearest, see `like`; empty, with the reason
+    It is Pareto-optimal for the problem with them, and of those designs the nearest; empty, with the reason
     in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
     `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
     """
@@ -106,7 +106,7 @@ def like_design(
     ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # refuses what is no row
     table = {name: values[row] for name, values in front.columns.items()}
-    return like(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
+    return nearest(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
 
 
 def extended(

@@ -49,8 +49,7 @@ def like(
     their range over the run's front. Nothing is saved.
     """
     from ...optimise.front.hypervolume import scaling
-    from ...optimise.questions.like import distance
-    from ...optimise.questions.like import like as nearest
+    from ...optimise.questions.like import distance, nearest
 
     folder, result, front = front_of_run(run, runs, number)
     problem = replace(front.problem, name=result.name)

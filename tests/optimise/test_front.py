@@ -14,7 +14,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
-from slidercrank.optimise.questions.like import like_design
+from slidercrank.optimise.questions.like import like
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem, shipped_front
@@ -240,7 +240,7 @@ def test_every_front_says_how_it_was_made() -> None:
 @pytest.mark.parametrize("row", [999, -999, 1.5, "knee"])
 def test_a_row_that_is_none_of_the_front_is_refused_in_a_sentence(row: Any) -> None:
     front = pair()
-    asks = (front.part, front.mechanism, front.rates, front.trade_offs, lambda row: like_design(front, row))
+    asks = (front.part, front.mechanism, front.rates, front.trade_offs, lambda row: like(front, row))
     for ask in asks:
         with pytest.raises(InputError, match=f"a row must be one of the front, which has rows 0 to 29; got {row!r}"):
             ask(row)

@@ -15,7 +15,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import scaling
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Sense
-from slidercrank.optimise.questions.like import Ends, distance, extended, like_design
+from slidercrank.optimise.questions.like import Ends, distance, extended, like
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem
 
@@ -42,7 +42,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
     torque, constraints, ranges = CASES[case]
     given = front(torque)
     row = len(given) // 2
-    found = like_design(given, row, *constraints, ranges=ranges)
+    found = like(given, row, *constraints, ranges=ranges)
     span = scaling(given.values)[1]
     assert len(found) == 1
     assert found.designs["residual"][0] <= 1e-6
@@ -86,7 +86,7 @@ def test_conditions_join_those_of_the_problem() -> None:
 
 def test_what_contradicts_the_problem_outright_is_said() -> None:
     given = front(False)
-    found = like_design(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
+    found = like(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
     assert (found.status, len(found)) == ("infeasible", 0)
     assert "stroke at least 250 mm, where exactly 200 mm is asked already" in found.message
     assert (
@@ -96,7 +96,7 @@ def test_what_contradicts_the_problem_outright_is_said() -> None:
 
 def test_what_no_design_can_meet_is_diagnosed() -> None:
     """A crank of 150 mm makes a stroke of 300 mm or more."""
-    found = like_design(front(False), 3, ranges={"crank": (0.15, None)})
+    found = like(front(False), 3, ranges={"crank": (0.15, None)})
     assert (found.status, len(found)) == ("infeasible", 0)
     assert "stroke exactly 200 mm is asked" in found.message
 
@@ -104,10 +104,10 @@ def test_what_no_design_can_meet_is_diagnosed() -> None:
 def test_what_asks_for_nothing_new_is_refused() -> None:
     given = front(False)
     with pytest.raises(InputError, match="say what is to be different"):
-        like_design(given, 0)
+        like(given, 0)
     with pytest.raises(InputError, match="already meets what is added"):
-        like_design(given, 0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
+        like(given, 0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
     with pytest.raises(InputError, match="crank, rod or offset; got 'speed'"):
-        like_design(given, 0, ranges={"speed": (1.0, None)})
+        like(given, 0, ranges={"speed": (1.0, None)})
     with pytest.raises(InputError, match="a range of crank rises; got 50 mm to 40 mm"):
-        like_design(given, 0, ranges={"crank": (0.05, 0.04)})
+        like(given, 0, ranges={"crank": (0.05, 0.04)})

@@ -20,7 +20,7 @@ from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.job import files_beside, load_job, parse_job
 from slidercrank.optimise.job.own import FormulaPart, named
 from slidercrank.optimise.problem.requirements import Constraint, Objective
-from slidercrank.optimise.questions.like import like_design
+from slidercrank.optimise.questions.like import like
 from slidercrank.optimise.solve import solve
 
 PAGE = Path(__file__).parents[2] / "docs" / "own-quantities.md"
@@ -280,7 +280,7 @@ def test_a_design_like_another_needs_gradients() -> None:
         replace(base, own=(ROUNDED,), objectives=(Objective(quantity="mine", sense="minimise"), *base.objectives))
     )
     with pytest.raises(InputError, match=r"a design like another needs the gradient .* got mine .*; set gradient ="):
-        like_design(front, 0, ranges={"crank": (0.055, None)})
+        like(front, 0, ranges={"crank": (0.055, None)})
 
 
 def test_no_quantity_takes_the_column_of_another_number() -> None:

@@ -117,3 +117,9 @@ def test_a_torque_without_speed_says_what_is_missing() -> None:
         '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
     )
     assert "peak_torque" in sc.analyse(sc.Mechanism(slider_mass=1.0, speed=3.0), [0.04, 0.1, 0.02])
+
+
+def test_public_functions_are_called_what_they_are_called() -> None:
+    for name in sc.__all__:
+        found = getattr(sc, name)
+        assert getattr(found, "__name__", name) == name
