@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -92,6 +92,16 @@ class OwnQuantity(Quantity):
     def has_gradient(self) -> bool:
         """Whether its job says how its derivatives are had."""
         return self.gradient != "none"
+
+    def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
+        """Return rule, value and remedy for machines with numbers that vary: a function gets the dimensions alone."""
+        varying = next((machine.varying for machine in machines if machine.varying), ())
+        if not varying:
+            return None
+        return (
+            "a function of your own is one of crank, rod and offset alone; got other variables, "
+            f"{', '.join(item.name for item in varying)}; fix them, or use other quantities"
+        )
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3); see `Quantity`."""

@@ -289,3 +289,29 @@ def test_forces_that_a_function_cannot_have_are_refused_without_blame(machine: s
         InputError, match=r"cannot be had of this machine: .*; got a (speed profile|load with one of 720)"
     ):
         problem.evaluate([0.03, 0.1, 0.01])
+
+
+@pytest.mark.parametrize("asked", ["links", "links / crank"])
+@pytest.mark.parametrize("table", ["objectives", "constraints"])
+def test_with_other_variables_a_function_is_refused_before_anything_runs(asked: str, table: str) -> None:
+    tables: dict[str, Any] = {
+        "name": "Others vary",
+        "mechanism": {"speed": 60.0, "slider": {"mass": "1 kg"}},
+        "quantity": {"links": {"function": lambda designs: designs.crank + designs.rod, "unit": "mm"}},
+        "variables": {
+            "crank": "30 mm",
+            "rod": ["90 mm", "250 mm"],
+            "offset": "10 mm",
+            "mechanism.slider.mass": ["1 kg", "3 kg"],
+        },
+        "objectives": {"peak_torque": "minimise"},
+    }
+    one: Any = "minimise" if table == "objectives" else {"max": 9.0}
+    with pytest.raises(
+        sc.JobError, match=r"alone; got other variables, mechanism\.slider\.mass; fix them, or use other"
+    ):
+        sc.problem({**tables, table: {**tables.get(table, {}), asked: one}})
+    problem = sc.problem(tables)
+    analysis = problem.analyse([0.03, 0.1, 0.01, 2.0])
+    assert "links" not in analysis
+    assert "got other variables" in analysis.undefined["links"]
