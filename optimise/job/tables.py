@@ -41,7 +41,10 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
     given: dict[str, Function] = {}
     if not isinstance(tables, Mapping):
         raise JobError(f"a job is a dict of tables; got {type(tables).__name__}; a file is read by load_job")
-    data = {key: _plain(item) for key, item in tables.items()}
+    try:
+        data = {key: _plain(item) for key, item in tables.items()}
+    except RecursionError:
+        raise JobError("a job is a dict of tables; got one that holds itself, or tables without end") from None
     own = data.get("quantity")
     if isinstance(own, dict):
         for name, part in own.items():

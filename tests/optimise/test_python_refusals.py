@@ -123,3 +123,10 @@ def test_public_functions_are_called_what_they_are_called() -> None:
     for name in sc.__all__:
         found = getattr(sc, name)
         assert getattr(found, "__name__", name) == name
+
+
+def test_tables_that_hold_themselves_are_refused() -> None:
+    endless: dict[str, object] = dict(TABLES)
+    endless["load"] = [endless]
+    with pytest.raises(sc.JobError, match="got one that holds itself"):
+        sc.problem(endless)
