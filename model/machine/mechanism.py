@@ -110,6 +110,8 @@ _KINDS = {
 class Mechanism:
     """A slider-crank but for crank, rod and offset.
 
+    That of the tables of a job is `problem({...}).mechanism`.
+
     speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.

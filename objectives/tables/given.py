@@ -61,7 +61,7 @@ def countable(designs: Array) -> Mask:
 
 
 def shortly(given: object) -> str:
-    """Return what was given as it prints, on one line, or only its type where that is long."""
+    """Return a value as it prints, or only its type where that is long."""
     text = repr(given)
     return text if len(text) <= 60 and "\n" not in text else type(given).__name__
 
