@@ -198,7 +198,8 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
 
     The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
     and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
-    for one with discrete values, and with `eliminate` for an offset of both signs.
+    for one with discrete values, and with `eliminate` for an offset of both signs with equalities; without, there is
+    nothing to eliminate, and x are designs.
     """
     require_problem(problem, "standard_form")
     if problem.variants:
@@ -237,12 +238,15 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
     )
 
 
-def _sheet(problem: Problem) -> Sheet:
-    """Return the one sheet of a problem whose equalities are eliminated. Raises `InputError`."""
+def _sheet(problem: Problem) -> Sheet | None:
+    """Return the one sheet of a problem whose equalities are eliminated; None if it has none. Raises `InputError`."""
     found = sheets(problem)
     if len(found) > 1:
+        if not any(constraint.equality for constraint in problem.constraints):
+            return None
         raise InputError(
-            "equalities are eliminated for one sign of the offset; got a range on both sides of 0; keep it on one side"
+            "equalities are eliminated for one sign of the offset; got a range on both sides of 0; keep it on one "
+            "side, or leave them in, with eliminate=False"
         )
     if not found[0].free:
         raise InputError("the equalities and ranges leave nothing free; got no unknown; widen a range, or use solve")

@@ -154,3 +154,16 @@ def test_slsqp_finds_the_best_swing_that_solve_finds() -> None:
     one = replace(support, objectives=support.objectives[:1])
     found = minimize(**sc.standard_form(one).scipy()._asdict(), method="SLSQP", options={"ftol": 1e-12})
     assert found.fun == pytest.approx(one.evaluate(sc.solve(one).dimensions)[0, 0], rel=1e-5)
+
+
+def test_offsets_of_both_signs_need_no_elimination_where_there_are_no_equalities() -> None:
+    support = sc.load_job(RUNS / "support.toml")
+    form = sc.standard_form(support, eliminate=True)
+    assert form.names == ("crank", "rod", "offset")
+    x = np.random.default_rng(6).uniform(form.lower, form.upper, (50, 3))
+    np.testing.assert_array_equal(form.designs(x), x)
+    np.testing.assert_array_equal(form.arrays(x).F, sc.standard_form(support).arrays(x).F)
+    tables = {"name": "both", "mechanism": {"speed": 3.0}, "objectives": {"time_ratio": "maximise"}}
+    tables |= {"variables": {"crank": [0.02, 0.06], "rod": [0.1, 0.3], "offset": [-0.05, 0.05]}}
+    with pytest.raises(InputError, match="keep it on one side, or leave them in, with eliminate=False"):
+        sc.standard_form(sc.problem(tables | {"constraints": {"stroke": {"equals": 0.08}}}), eliminate=True)
