@@ -200,16 +200,19 @@ class ParetoFront:
         objective = self.column_of(best)
         if not len(self):
             raise InputError(f"a pick needs the designs of a front; got none: {self.message}")
-        keep = np.ones(len(self), dtype=bool)
+        keep, there = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
             least, greatest = pair(column, ends)
             values = self.columns[column] if column in self.columns else self._of(column)
+            if values.dtype.kind not in "fiu":
+                raise InputError(f"bounds are of numbers; got {column}, a column of words; see front.designs")
             if least is not None:
                 keep &= values >= least
             if greatest is not None:
                 keep &= values <= greatest
+            there.append(f"{column} is {values.min():.6g} to {values.max():.6g}")
         if not keep.any():
-            raise InputError(f"no design of the front lies within {bounds}; widen a bound")
+            raise InputError(f"no design of the front lies within {bounds}, whose {' and '.join(there)}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
 

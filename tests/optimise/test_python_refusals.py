@@ -70,6 +70,14 @@ SLIPS: dict[str, tuple[Any, str]] = {
         lambda: door.Constraint(quantity="stroke", lower="80 mm"),
         "the constraint on stroke must be a finite number, SI; got '80 mm'",
     ),
+    "degrees": (
+        lambda: front().pick("peak_torque", transmission_angle=(40, None)),
+        "lies within {'transmission_angle': (40, None)}, whose transmission_angle is ",
+    ),
+    "words": (
+        lambda: front().pick("peak_torque", status=(1, None)),
+        "bounds are of numbers; got status, a column of words",
+    ),
     "no designs": (lambda: nothing().pick("peak_torque"), "a pick needs the designs of a front; got none: no design"),
     "direction": (
         lambda: door.Linkage(0.04, 0.1, 0.02).slow_stroke(direction="clockwise"),
