@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from time import perf_counter
+from time import perf_counter, process_time
 from timeit import timeit
 
 import numpy as np
@@ -74,10 +74,13 @@ def public(count: int = 100_000, pairs: int = 7) -> list[Row]:
         _seconds(evaluate, designs, angles=64, crowd=True) / _seconds(problem.evaluate, designs, gradients=True)
         for _ in range(pairs)
     ]
-    single = [1e6 * timeit(lambda: problem.evaluate(one, gradients=True), number=1_000) / 1_000 for _ in range(pairs)]
+    single = [
+        1e6 * timeit(lambda: problem.evaluate(one, gradients=True), timer=process_time, number=1_000) / 1_000
+        for _ in range(pairs)
+    ]
     return [
         Row("problem.evaluate with gradients: rate over that of the kernels alone", shares, at_least=0.7),
-        Row("a single design by problem.evaluate with gradients, microseconds", single, at_most=100.0),
+        Row("a single design by problem.evaluate with gradients, processor's microseconds", single, at_most=100.0),
     ]
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import dropwhile
 from time import perf_counter
 
 import numpy as np
@@ -55,6 +57,12 @@ def _explored(problem: Problem) -> list[tuple[float, Array]]:
     return found
 
 
+def _least(ours: list[tuple[float, Array]], wanted: float, ideal: Array, range_: Array) -> float:
+    """Return the least time of the searches from the first on that reaches a hypervolume."""
+    reached = dropwhile(lambda search: hypervolume(search[1], ideal, range_) < wanted, ours)
+    return min((seconds for seconds, _ in reached), default=math.inf)
+
+
 def compare(job: str, seeds: tuple[int, ...] = (1, 2, 3, 4, 5)) -> list[Row]:
     """Return how many times sooner the same archive hypervolume is reached, and the ratio of delivered hypervolumes."""
     given = load_job(job)
@@ -71,8 +79,7 @@ def compare(job: str, seeds: tuple[int, ...] = (1, 2, 3, 4, 5)) -> list[Row]:
             together = np.concatenate([archive, *(values for _, values in ours)])
             ideal, range_ = scaling(together[nondominated(together)])
             wanted = hypervolume(archive, ideal, range_)
-            reached = [time for time, values in ours if hypervolume(values, ideal, range_) >= wanted]
-            sooner[name].append(seconds / min(reached) if reached else 0.0)
+            sooner[name].append(seconds / _least(ours, wanted, ideal, range_))
             if name == NSGA2_:
                 delivered.append(hypervolume(front.values, ideal, range_) / hypervolume(population, ideal, range_))
     name = given.name

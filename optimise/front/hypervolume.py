@@ -120,7 +120,7 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
     lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978), nor one of which some of those
     chosen leave less. The gain is the box of the design less what it shares with those chosen, whose corners are few
     (L. While et al., "A fast way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). stand:
-    called for every gain, with the designs chosen.
+    called for every design and gain, with the designs chosen.
     """
     n = len(values)
     if n <= count:
@@ -144,6 +144,7 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
         gains[index] = -np.inf
 
     for index in list(dict.fromkeys(always))[:count]:
+        stand(len(picked), count)
         pick(index)
     volume = moocore.Hypervolume(ref=np.full(scaled.shape[1], REFERENCE))
     while len(picked) < count:
