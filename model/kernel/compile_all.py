@@ -107,7 +107,7 @@ def _task(of: Kernel, folder: Path) -> _Task:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
-        gc.set_threshold(50_000, 20, 20)  # a fifth sooner, for 60 MB
+        gc.set_threshold(50_000, 1000, 1000)  # a fifth sooner, for 80 MB
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:
         compile_beside(place, " ".join(sys.argv[1:]) or MODEL)

@@ -15,6 +15,11 @@ import numba
 from numba import njit, typeof, types
 from numba.core import event
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import PassManager
+from numba.core.typed_passes import InlineOverloads, IRLegalization, NopythonRewrites
+from numba.core.typing.context import BaseContext
+from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables
 from numba.extending import overload, register_jitable
 
 from .arithmetic import FORMULAS, arcsine, inverse, magnitude, power, root
@@ -27,20 +32,62 @@ _OPTIONS: Any = {
     "no_cpython_wrapper": True,  # nobody calls them from outside
     "no_cfunc_wrapper": True,
 }
+_NEEDLESS = (InlineClosureLikes, InlineInlinables, InlineOverloads, NopythonRewrites, IRLegalization)
+
+
+class _FormulaCompiler(CompilerBase):
+    """Numba's compiler for formulas, without its passes for closures and expressions of arrays."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        """Return the passes."""
+        manager: PassManager = cast(Any, DefaultPassBuilder).define_nopython_pipeline(self.state)
+        manager.passes = [each for each in manager.passes if each[0] not in _NEEDLESS]
+        cast(Any, manager).finalize()
+        return [manager]
+
+
 # Formulas neither make arrays nor return any: counting who refers to one would be half of their code.
-_FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False}
+_FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
-_TRIED = "0.68."  # of numba: `_linked` reaches into it
+_TRIED = "0.68."  # of numba: `_linked` and `_resolved_once` reach into it
 
-_known: list[Callable[..., Any]] = []
+_known: dict[Callable[..., Any], None] = {}
+_resolved: dict[Any, Any] = {}
 
 
 def know_formulas() -> None:
     """Tell numba of all formulas marked so far."""
     for formula in FORMULAS[len(_known) :]:
         register_jitable(**_FORMULA)(formula)
-        _known.append(formula)
+        _known[formula] = None
+
+
+@contextmanager
+def _resolved_once() -> Iterator[None]:
+    """Resolve each call once for the same types of arguments.
+
+    Else numba tries all that + may stand for at every +, and compiles a formula again for a call from a kernel, and for
+    one with a number instead of a variable.
+    """
+    contexts = cast(Any, BaseContext)
+    whole, own = contexts.resolve_function_type, get_ident()
+
+    def resolve(context: Any, function: Any, arguments: Any, keywords: Any) -> Any:
+        if get_ident() != own or keywords or not isinstance(function, types.Function):
+            return whole(context, function, arguments, keywords)
+        formula = function.typing_key in _known
+        call = function, tuple(map(types.unliteral, arguments)) if formula else tuple(arguments)
+        if call not in _resolved:
+            _resolved[call] = whole(context, *call, keywords)
+        return _resolved[call]
+
+    if numba.__version__.startswith(_TRIED):
+        contexts.resolve_function_type = resolve
+    try:
+        yield
+    finally:
+        contexts.resolve_function_type = whole
 
 
 @contextmanager
@@ -94,7 +141,7 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     know_formulas()
     signature = tuple(map(typeof, examples))
     dispatcher: Any = njit(**_KERNEL)(function)
-    with _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
+    with _resolved_once(), _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     symbol = compiled.fndesc.llvm_func_name
@@ -103,6 +150,12 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     functions = compiled.library.get_function(symbol).module.functions
     calls = tuple(each.name for each in functions if each.is_declaration and not each.name.startswith("llvm."))
     return MachineCode(symbol, arguments[2:], calls, code)
+
+
+# Python keeps its frames in pieces of 16 kB, and fetches and returns a piece at every call that crosses from one to the
+# next: a quarter of a million times a kernel, an eighth of the time. A frame that takes a megabyte for itself has all
+# others within the rest of its piece of two.
+compile_kernel.__code__ = compile_kernel.__code__.replace(co_stacksize=1 << 17)
 
 
 @overload(inverse, jit_options=_FORMULA)
