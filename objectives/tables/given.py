@@ -39,6 +39,8 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
     wanted = ", ".join(names)
     given = _by_name(designs, names)
     try:
+        if isinstance(given, np.ma.MaskedArray):  # what is masked is not there
+            given = np.ma.filled(np.ma.asarray(given, dtype=np.float64), np.nan)
         found = np.asarray(given)
         if np.iscomplexobj(found):
             raise TypeError
