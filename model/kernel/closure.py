@@ -62,7 +62,13 @@ def _surroundings() -> bytes:
     ).encode()
 
 
-_ASIDE = ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING")
+_ASIDE = (
+    "NUMBA_CACHE_DIR",
+    "NUMBA_DISABLE_JIT",
+    "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING",
+    "NUMBA_NUM_THREADS",  # which joblib sets in its processes; a kernel runs in one thread
+    "NUMBA_THREADING_LAYER",
+)
 
 
 def _parts(function: Any) -> tuple[bytes, list[Any]]:
