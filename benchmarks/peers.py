@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -47,9 +47,9 @@ class Reduced(PymooProblem):  # type: ignore[misc]
 
     def _evaluate(self, x: Array, out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
         _, objectives, violation = self.evaluator.screen(x)
-        begin = perf_counter()
+        begin = process_time()
         self.seen.append(objectives[violation <= FEASIBLE])
-        self.keeping += perf_counter() - begin
+        self.keeping += process_time() - begin
         violation = np.where(np.isfinite(violation), np.maximum(violation, 0.0), 1e3)
         if self.penalised is None:
             out["F"] = np.where(np.isfinite(objectives), objectives, 1e9)

@@ -1,11 +1,14 @@
-"""Time to the front and its quality, against peers on the same kernel and reduced problem."""
+"""Processor time to the front and its quality, against peers on the same kernel and reduced problem.
+
+That of all threads: ours take turns on all cores, for which no credit is given, as the load of a machine would decide.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 from itertools import dropwhile
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -36,9 +39,9 @@ def _archive(name: str, problem: Problem, span: Array, seed: int) -> tuple[float
         nonlocal last
         last = values
 
-    begin = perf_counter()
+    begin = process_time()
     reduced = run_peer(name, problem, span, generation, seed=seed)
-    seconds = perf_counter() - begin - reduced.keeping
+    seconds = process_time() - begin - reduced.keeping
     seen = np.concatenate(reduced.seen)
     return seconds, seen[nondominated(seen)], last
 
@@ -50,9 +53,9 @@ def _explored(problem: Problem) -> list[tuple[float, Array]]:
         sized = replace(problem, settings=replace(problem.settings, samples=samples))
         times = []
         for _ in range(3):
-            begin = perf_counter()
+            begin = process_time()
             archive = explore(sized, [Evaluator(sized, sheet) for sheet in sheets(sized)])
-            times.append(perf_counter() - begin)
+            times.append(process_time() - begin)
         found.append((min(times), archive.values[archive.met]))
     return found
 
@@ -64,7 +67,7 @@ def _least(ours: list[tuple[float, Array]], wanted: float, ideal: Array, range_:
 
 
 def compare(job: str, seeds: tuple[int, ...] = (1, 2, 3, 4, 5)) -> list[Row]:
-    """Return how many times sooner the same archive hypervolume is reached, and the ratio of delivered hypervolumes."""
+    """Return how many times sooner the same archive hypervolume is reached, and ratios of delivered hypervolumes."""
     given = load_job(job)
     sooner: dict[str, list[float]] = {name: [] for name in _SOONER}
     delivered = []
