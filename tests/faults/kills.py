@@ -18,14 +18,18 @@ from .verdict import Verdict, judge
 
 LEASE = 1.0
 GRACE = 2.0  # s beyond the lease within which another worker goes on
-_BETWEEN = 0.8  # s between two blows, on average
+_BETWEEN = 0.6  # s between two blows, on average
+_AT_WORK = 0.6  # s, at most, from the submission of jobs to the next blow: they take no longer
 _ALL = 0.1  # share of the blows that hit all workers and the API
 _API = 0.2  # share of those that hit the API only; both if it answers: else it would never come to that
 _BUSY = 0.8  # share of the others that hit a worker that has a job
 
 
 def kills(kind: Kind, count: int, seed: int) -> Verdict:
-    """Kill workers and the API `count` times while jobs are submitted and solved, and return what came of the jobs."""
+    """Kill workers and the API `count` times while jobs are submitted and solved, and return what came of the jobs.
+
+    It goes on until one of those killed had a job.
+    """
     chance = random.Random(seed)
     expected = undisturbed()
     with place(kind) as where, Store(where.address) as store, api(where.address) as server:
@@ -33,12 +37,14 @@ def kills(kind: Kind, count: int, seed: int) -> Verdict:
         feed = Feed(store, chance)
         journal = where.folder / "journal"
         with crew(where.address, journal, lease=LEASE) as workers, Caller(server.url, feed.jobs, seed) as caller:
-            struck = 0
-            while struck < count:
+            struck, at_work = 0, False
+            while struck < count or not at_work:
                 time.sleep(chance.expovariate(1.0 / _BETWEEN))
                 feed.fill()
+                time.sleep(chance.uniform(0.0, _AT_WORK))
                 victims, with_api = _victims(chance, workers, feed, server)
                 workers.kill(*victims)
+                at_work = at_work or not set(victims).isdisjoint(feed.busy())
                 if with_api:
                     server.kill()
                 struck += len(victims) + with_api
