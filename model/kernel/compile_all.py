@@ -50,7 +50,9 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas
     of kernels that this process has compiled, then what is urgent. How far it is stands in the file of `building`.
     """
-    everything = _tasks(folder, packages, modules, seldom=False)
+    names = wanted_files(folder)
+    found = _tasks(folder, packages, modules)
+    everything = [task for task in found if not task.seldom or task.file.name in names]
     tasks = [*everything]
     compiled: set[int] = set()
     parent, complete = os.getppid(), False
@@ -58,9 +60,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         names = wanted_files(folder)
         known = {task.file.name for task in everything}
         if not complete and (not tasks or not known.issuperset(names)):
-            found = _tasks(
-                folder, packages, [name for package in packages.split() for name in _modules(package)], seldom=True
-            )
+            found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
             new = [task for task in found if task.file.name not in known]
             tasks, everything, complete = [*tasks, *new], [*everything, *new], True
         if not tasks:
@@ -91,13 +91,12 @@ def _modules(package: str) -> list[str]:
     return [package, *(found.name for found in pkgutil.walk_packages(parts, f"{package}."))]
 
 
-def _tasks(folder: Path, packages: str, modules: Iterable[str], *, seldom: bool) -> list[_Task]:
-    """Return the kernels of packages that modules have, or import. seldom: those too that few jobs need."""
+def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
+    """Return the kernels of packages that modules have, or import."""
     for name in modules:
         import_module(name)
     here = tuple(packages.split())
-    asked = [each for each in KERNELS if each.function.__module__.startswith(here) and (seldom or not each.seldom)]
-    return [_task(each, folder) for each in asked]
+    return [_task(each, folder) for each in KERNELS if each.function.__module__.startswith(here)]
 
 
 def _task(of: Kernel, folder: Path) -> _Task:
