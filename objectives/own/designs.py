@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -77,9 +78,8 @@ class Designs:
     def __init__(self, mechanism: Mechanism, dimensions: Numbers) -> None:
         """Take designs (n, 3)."""
         self.mechanism = mechanism
-        self.crank, self.rod, self.offset = (dimensions[:, v, None] for v in range(3))
-        self._dimensions = dimensions
         self._branch = mechanism.sign
+        self._take(dimensions)
 
     def __len__(self) -> int:
         return len(self._dimensions)
@@ -110,7 +110,7 @@ class Designs:
 
     def position(self, angle: Numbers) -> Numbers:
         """Return the slider position x, m."""
-        return cast(Numbers, self._motion(angle).x)
+        return cast(Numbers, self._motion(angle).x.copy())
 
     def velocity(self, angle: Numbers) -> Numbers:
         """Return the slider velocity along x, m/s."""
@@ -194,9 +194,28 @@ class Designs:
         result.angles = np.take_along_axis(angle, order, axis=1)
         return result
 
+    def _take(self, dimensions: Numbers) -> None:
+        self.crank, self.rod, self.offset = (dimensions[:, v, None] for v in range(3))
+        self._dimensions = dimensions
+        self._known: tuple[Numbers, Motion] | None = None
+
+    @contextmanager
+    def _real(self) -> Iterator[None]:
+        """Be real designs meanwhile: where a curve peaks needs no derivative, and real numbers are quicker."""
+        given = self._dimensions
+        self._take(given.real)
+        try:
+            yield
+        finally:
+            self._take(given)
+
     def _motion(self, angle: Numbers) -> Motion:
-        sine, cosine = np.sin(angle), np.cos(angle)
-        return motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
+        """Return the motion, that of the call before where the angles are the same: a curve takes several of it."""
+        if self._known is None or not np.array_equal(self._known[0], angle):
+            sine, cosine = np.sin(angle), np.cos(angle)
+            found = motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
+            self._known = np.array(angle), found
+        return self._known[1]
 
     def _pace(self, angle: Numbers) -> tuple[Any, Any, Any]:
         """Return crank speed and acceleration, and the slope of the acceleration over the angle."""
@@ -222,7 +241,8 @@ class Designs:
         return angle, kappa / (cosine**2 + (kappa * sine) ** 2)
 
     def _sampled(self, curve: Curve, tau: Numbers) -> Array:
-        values = np.asarray(curve(self._uncrowded(tau)[0]))
+        with self._real():
+            values = np.asarray(curve(self._uncrowded(tau)[0]))
         if values.shape != tau.shape:
             raise ValueError(
                 f"a curve must give as many values as it gets crank angles, {tau.shape}; got {values.shape}; "

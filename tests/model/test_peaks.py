@@ -24,7 +24,17 @@ from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import KEPT, find_peaks
 from slidercrank.model.signals.screening import screen
 from slidercrank.model.signals.signals import Signal
-from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, linkage_of, random_designs
+from tests.model.cases import (
+    MACHINES,
+    SMOOTH,
+    TABLES,
+    TOLERANCES,
+    Array,
+    linkage_of,
+    random_designs,
+    random_friction,
+    random_machine,
+)
 from tests.model.sweep import greatest
 from tests.model.virtual_work import drive_torque, position_error
 
@@ -142,6 +152,26 @@ def test_a_design_is_judged_alike_alone_and_in_a_batch(name: str) -> None:
         np.testing.assert_array_equal(alone.values[0], together.values[n])
         assert alone.gradients is not None
         np.testing.assert_array_equal(alone.gradients[0], together.gradients[n])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_one_peak_asked_for_is_the_highest_of_all(seed: int) -> None:
+    """Where one is asked for, samples far below the highest are not followed."""
+    random = np.random.default_rng([seed, 20261126])
+    machine = dataclasses.replace(random_machine(random), tolerances=TOLERANCES)
+    knots = np.sort(random.uniform(0.0, random.uniform(0.02, 0.3), 120))
+    forces = random.uniform(-300.0, 300.0, len(knots))
+    spikes = PositionTable(positions=tuple(knots), forces=tuple(forces), datum="inner dead centre")
+    designs = random_designs(60, seed=seed, least_margin=1e-4)
+    for other in (
+        machine,
+        dataclasses.replace(machine, friction=random_friction(random)),
+        dataclasses.replace(machine, loads=(spikes,)),
+    ):
+        for signal in OF_ONE:
+            one, all_of_them = (find_peaks(other, signal, designs, kept=kept) for kept in (1, KEPT))
+            np.testing.assert_array_equal(one.values, all_of_them.values[:, :1])
+            np.testing.assert_array_equal(one.angles, all_of_them.angles[:, :1])
 
 
 def test_no_designs_have_no_peaks() -> None:

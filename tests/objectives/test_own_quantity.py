@@ -125,6 +125,30 @@ def test_pieces_are_the_peaks_and_keep_their_angles() -> None:
     np.testing.assert_allclose(np.where(np.isfinite(known.values[:, :2]), away, 0.0), 0.0, atol=1e-6)
 
 
+def test_a_curve_may_write_into_its_angles_and_into_what_it_gets() -> None:
+    def writing(designs: Designs) -> Any:
+        def curve(angle: Any) -> Any:
+            place = designs.position(angle)
+            place *= designs.acceleration(angle)
+            angle = np.array(angle)
+            ahead = designs.position(angle)
+            angle += 0.3
+            return place + ahead * designs.velocity(angle)
+
+        return designs.peaks(curve)
+
+    def plain(designs: Designs) -> Any:
+        def curve(angle: Any) -> Any:
+            bend = designs.acceleration(angle) + designs.velocity(angle + 0.3)
+            return designs.position(angle) * bend
+
+        return designs.peaks(curve)
+
+    written, known = own(writing).pieces(SMOOTH, DESIGNS), own(plain).pieces(SMOOTH, DESIGNS)
+    np.testing.assert_allclose(written.values, known.values, rtol=1e-12)
+    np.testing.assert_allclose(written.gradients, known.gradients, rtol=1e-9, atol=1e-9)
+
+
 def test_a_curve_with_one_peak_is_one_piece() -> None:
     pieces = own(lambda d: d.peaks(lambda angle: d.position(angle))).pieces(SMOOTH, DESIGNS)
     assert np.all(pieces.values[:, 1:] == -np.inf)
