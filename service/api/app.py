@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from starlette.middleware import Middleware
+from starlette.routing import BaseRoute
 
 from ..page import router as page
 from ..store import Store
@@ -58,7 +60,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # its pages come from other sites
         redoc_url=None,
-        generate_unique_id_function=lambda route: route.name,
+        routes=_routes(),
         middleware=[
             Middleware(Timed),
             Middleware(Guard, settings=settings),
@@ -74,9 +76,6 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    for part in _PARTS:
-        app.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
-    app.include_router(page.router)
     found = app.openapi
 
     def described() -> dict[str, Any]:
@@ -86,6 +85,16 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
 
     app.openapi = described  # type: ignore[method-assign]
     return app
+
+
+@cache
+def _routes() -> list[BaseRoute]:
+    """Return the endpoints for all applications of a process; FastAPI reads signatures anew where it adds them."""
+    whole = APIRouter(generate_unique_id_function=lambda route: route.name)
+    for part in _PARTS:
+        whole.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
+    whole.include_router(page.router)
+    return whole.routes
 
 
 def _version() -> str:
