@@ -22,6 +22,7 @@ from ..machine.derived import derived
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
+from ..machine.remembered import remembered_batch
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signals import Signal, design_motion
@@ -139,7 +140,7 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = Watch(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
-    _curves(_block(mechanism, linkage, loads), loads, watch, at, w, a, out, rubs(mechanism))
+    _curves(_block(mechanism, linkage), loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
@@ -152,7 +153,7 @@ def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds:
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
     """Return the numbers of one linkage for the equations of motion; dead centres that it lacks are NaN."""
-    found: Design = design_at(_block(mechanism, linkage, load_structure(mechanism)), 0)
+    found: Design = design_at(_block(mechanism, linkage), 0)
     return found
 
 
@@ -160,16 +161,22 @@ def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) of one fully turning linkage at which a load has kinks or jumps."""
     require_one_turn(mechanism, "a swing")
     loads = load_structure(mechanism)
-    block = _block(mechanism, linkage, loads)
+    block = _block(mechanism, linkage).copy()
     block[_SPEED] = 0.0  # valves open in both senses of rotation
     found = breakpoints_of(block[None], loads, watch_of(mechanism, Signal.TORQUE), rubbing=False)
     return found.angle[0, : found.many[0]]
 
 
-def _block(mechanism: Mechanism, linkage: Linkage, loads: Loads) -> Table:
+def _block(mechanism: Mechanism, linkage: Linkage) -> Table:
+    return _blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
+
+
+@remembered_batch  # searches along the curves of one linkage ask a thousand times
+def _blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
-    raw[:3] = linkage.crank, linkage.rod, linkage.offset
-    block: Table = derived(raw, loads)[0][0]
+    raw[:3] = design[0]
+    block: Table = derived(raw, load_structure(mechanism))[0][0]
+    block.flags.writeable = False
     return block
 
 

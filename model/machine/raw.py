@@ -125,6 +125,7 @@ def _factors(load: Load) -> tuple[float, float, float]:
     return (outward, inward, 0.0)
 
 
+@remembered
 def load_structure(mechanism: Mechanism) -> Loads:
     """Return kinds, datums and tables of a mechanism's loads. Raises `InputError` for a cycle of two turns."""
     require_one_turn(mechanism, "this analysis")

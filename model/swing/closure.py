@@ -50,7 +50,7 @@ def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
         sign = _sign(mechanism)
         found &= ~_dead(ends, sign, designs)
         own = ends.take(found)
-        found[found] = _angles(swing, own, sign, designs[found]).values.min(axis=1) > 0.0
+        found[found] = _angles(swing, own, sign, designs[found], slopes=False).values.min(axis=1) > 0.0
     return found
 
 
@@ -104,7 +104,7 @@ def _dead(ends: Ends, sign: float, designs: Array) -> Mask:
     return found
 
 
-def _angles(swing: Swing, ends: Ends, sign: float, designs: Array) -> DrivenAngles:
+def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bool = True) -> DrivenAngles:
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
         asked = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.by or swing.inside(angle)]
@@ -124,36 +124,38 @@ def _angles(swing: Swing, ends: Ends, sign: float, designs: Array) -> DrivenAngl
         across = e - r * np.sin(theta)
         return np.where(across.real < 0.0, -across, across) / l
 
-    values, slopes = [], []
+    found: list[tuple[Array, Array]] = []
     for theta, end in places:
         there = np.isfinite(theta)
-        size, slope = _derived(measure, designs, ends, (np.where(there, theta, ends.start), end))
+        size, slope = _derived(measure, designs, ends, (np.where(there, theta, ends.start), end), slopes=slopes)
         steep = np.sqrt(np.maximum(1.0 - size * size, _FLAT))[:, None]
         if swing.driver == "crank":
             value, slope = np.arccos(np.minimum(size, 1.0)), -slope / steep
         else:
             value, slope = np.arcsin(np.clip(size, -1.0, 1.0)), slope / steep
-        values.append(np.where(there, value, np.inf))
-        slopes.append(np.where(there[:, None], slope, 0.0))
-    return DrivenAngles(np.stack(values, axis=1), np.stack(slopes, axis=1))
+        found.append((np.where(there, value, np.inf), np.where(there[:, None], slope, 0.0)))
+    return DrivenAngles(*(np.stack(parts, axis=1) for parts in zip(*found, strict=True)))
 
 
-def _derived(of: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None]) -> tuple[Array, Array]:
+def _derived(
+    of: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None], slopes: bool = True
+) -> tuple[Array, Array]:
     """Return a function (n,) of sizes and crank angles, and its derivatives (n, 3 + k) by complex steps.
 
-    angles: each (n,) with the end, 0 or 1, of the swing that it moves with; None where it stays.
+    angles: each (n,) with the end, 0 or 1, of the swing that it moves with; None where it stays. slopes: whether the
+    derivatives are asked for; else they are zero.
     """
     sizes = designs[:, :3].astype(np.complex128)
     values = of(sizes, *(angle for angle, _ in angles)).real
-    slopes = np.zeros(designs.shape)
-    for v in sorted({0, 1, 2, *ends.by}):
+    found = np.zeros(designs.shape)
+    for v in sorted({0, 1, 2, *ends.by}) if slopes else ():
         moved = sizes + 1j * STEP * np.eye(3)[v] if v < 3 else sizes
         at: list[Any] = [angle for angle, _ in angles]
         if v in ends.by and ends.slopes is not None:
             slips = ends.slopes[:, ends.by.index(v)]
             at = [angle if end is None else angle + 1j * STEP * slips[:, end] for angle, end in angles]
-        slopes[:, v] = of(moved, *at).imag / STEP
-    return values, slopes
+        found[:, v] = of(moved, *at).imag / STEP
+    return values, found
 
 
 def _bend(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:

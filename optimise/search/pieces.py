@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, Mask, Whole
 
 ACTIVE = 1e-8
 """Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
@@ -43,8 +43,8 @@ def greatest(rows: Rows, count: int) -> Array:
     return np.stack([rows.values[..., rows.owner == owner].max(axis=-1) for owner in range(count)], axis=-1)
 
 
-def alone(rows: Rows, row: int) -> Rows:
-    """Return the rows of one design."""
+def alone(rows: Rows, row: int | slice) -> Rows:
+    """Return the rows of one design, or of some."""
     return Rows(rows.values[row], rows.gradients[row], rows.labels[row], rows.owner)
 
 
@@ -64,33 +64,43 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, within: float = ACTIV
     return np.concatenate(pieces)
 
 
-def partners(here: Rows, there: Rows, of: Whole) -> list[tuple[int, int]]:
-    """Return rows (p,) of a design that another has too, each with its row there, matched by labels.
+def partners(here: Rows, there: Rows, of: Whole) -> tuple[Whole, Mask]:
+    """Return for rows (p,) of one design the same rows of others (..., p), and whether these have them.
 
-    Peaks may swap their order. Rows of one owner with equal labels (lower and upper bound) keep their place.
+    Matched by labels, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
+    keep their place.
     """
-    same = (here.owner[of, None] == here.owner) & np.isfinite(there.values)
-    apart = np.abs(there.labels - here.labels[of, None])
+    same = (here.owner[of, None] == here.owner) & np.isfinite(there.values)[..., None, :]
+    apart = np.abs(there.labels[..., None, :] - here.labels[of, None])
     apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
     near = same & (apart < _SAME)
     count = len(there.owner)
     steps = np.abs(np.arange(count) - of[:, None])
     rank = np.where(near, np.rint(1e3 * np.where(near, apart, 0.0)) * (count + 1.0) + steps, np.inf)
-    rows = zip(of.tolist(), rank, near.any(axis=1), strict=True)
-    return [(index, int(row.argmin())) for index, row, has in rows if has]
+    return rank.argmin(axis=-1), near.any(axis=-1)
 
 
 def difference(here: Rows, there: Rows, weight: Array) -> Array:
-    """Return the weighted change of gradients."""
-    total = np.zeros(here.gradients.shape[1])
-    for index, twin in partners(here, there, np.flatnonzero(weight > 0.0)):
-        total = total + weight[index] * (there.gradients[twin] - here.gradients[index])
+    """Return the weighted change of gradients (n, k) from one design to n others."""
+    n = len(there.values)
+    total, of = np.zeros((n, here.gradients.shape[1])), np.flatnonzero(weight > 0.0)
+    if not len(of):
+        return total
+    twins, had = partners(here, there, of)
+    changes = weight[of, None] * (there.gradients[np.arange(n)[:, None], twins] - here.gradients[of])
+    if not had.all():
+        changes = np.where(had[..., None], changes, 0.0)
+    for place in range(len(of)):  # in order, as sums of pairs round otherwise
+        total = total + changes[:, place]
     return total
 
 
 def bent(here: Rows, there: Rows, step: Array) -> Array:
     """Return the values of rows whose linearisation meets their values at the end of a step."""
     values = here.values.copy()
-    for index, twin in partners(here, there, np.flatnonzero(np.isfinite(values))):
-        values[index] = there.values[twin] - here.gradients[index] @ step
+    of = np.flatnonzero(np.isfinite(values))
+    if len(of):
+        for index, twin, had in zip(of.tolist(), *(found.tolist() for found in partners(here, there, of)), strict=True):
+            if had:
+                values[index] = there.values[twin] - here.gradients[index] @ step
     return values

@@ -24,7 +24,7 @@ from ...model.arrays import Array, Mask, Whole
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
-from .programme import LOSS, ROUNDING, VIOLATION, Step, solve_step
+from .programme import LOSS, ROUNDING, VIOLATION, Step, roots, solve_step
 
 ITERATIONS = 100
 CONVERGED = 1e-9
@@ -90,7 +90,8 @@ class _Batch:
         self.goals, self.limits = self._evaluate(self.u)
         n, k = start.shape
         self.weight = np.full(n, VIOLATION)
-        self.hessians = np.tile(np.eye(k), (n, 1, 1))
+        self.roots = np.tile(np.eye(k), (n, 1, 1))
+        """Of the Hessians, see `programme.roots`."""
         self._begin()
         self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
 
@@ -114,8 +115,8 @@ class _Batch:
 
     def advance(self) -> bool:
         """Take one step with every open design; return whether any was open."""
-        for row in np.flatnonzero(self.open & self.moved).tolist():
-            if np.max(self.limits.values[row], initial=0.0) <= ROUNDING and self._residual(row) < CONVERGED:
+        for row in np.flatnonzero(self.open & self.moved & self._feasible()).tolist():
+            if self._residual(row) < CONVERGED:
                 self.open[row] = False
         rows = np.flatnonzero(self.open)
         if not len(rows):
@@ -124,7 +125,7 @@ class _Batch:
         if len(fresh):
             # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one serve.
             drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
-            self.hessians[fresh] = self._hessians(fresh, drafts)
+            self.roots[fresh] = roots(self._hessians(fresh, drafts))
         steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
         self._search(rows, np.array(steps), self.chosen, correct=True)
         self.open &= self.stalls < 2
@@ -192,7 +193,7 @@ class _Batch:
             self.u[row],
             goals,
             limits,
-            self.hessians[row] if chosen else np.eye(self.u.shape[1]),
+            self.roots[row] if chosen else np.eye(self.u.shape[1]),
             radius=self.radius[row],
             chosen=chosen,
             tops=self.held[row],
@@ -210,12 +211,10 @@ class _Batch:
         moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
         goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
-            here, edge = alone(self.goals, row), alone(self.limits, row)
-            for column in range(k):
-                at = column * n + i
-                change = difference(here, alone(goals, at), np.minimum(draft.goals, LOSS))
-                change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
-                hessians[i, column] = change / steps[i, column]
+            here, edge, at = alone(self.goals, row), alone(self.limits, row), slice(i, None, n)
+            change = difference(here, alone(goals, at), np.minimum(draft.goals, LOSS))
+            change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
+            hessians[i] = change / steps[i, :, None]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         return np.stack([convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 

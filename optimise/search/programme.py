@@ -49,7 +49,7 @@ def solve_step(
     u: Array,
     goals: Rows,
     limits: Rows,
-    hessian: Array,
+    root: Array,
     *,
     radius: float,
     chosen: tuple[int, ...],
@@ -59,8 +59,8 @@ def solve_step(
 ) -> Step:
     """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
 
-    hessian: B, positive definite. chosen: objectives to improve. tops: (m,), F of every objective. violation: C.
-    hold: whether the loss of each objective is penalised, besides the sum.
+    root: transposed inverse of L with B = L L', see `roots`. chosen: objectives to improve. tops: (m,), F of every
+    objective. violation: C. hold: whether the loss of each objective is penalised, besides the sum.
 
     With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
     its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
@@ -90,7 +90,7 @@ def solve_step(
     bounds[above], bounds[below] = high, -low
     rows[above, :k], rows[below, :k] = edge, -edge
     weights = np.concatenate([np.ones(count), np.full(holding, LOSS), [violation]])
-    move, dual = _least_distance(rows, bounds, hessian, weights)
+    move, dual = _least_distance(rows, bounds, root, weights)
     held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
     limit_weight[near] = dual[limiting]
@@ -109,17 +109,25 @@ def solve_step(
     return Step(np.clip(move, low, high), goal_weight, limit_weight, np.concatenate(normals))
 
 
-def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) -> tuple[Array, Array]:
+def roots(hessians: Array) -> Array:
+    """Return the transposed inverses (n, k, k) of L for positive definite matrices L L'."""
+    return np.linalg.inv(np.linalg.cholesky(hessians)).transpose(0, 2, 1)
+
+
+def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> tuple[Array, Array]:
     """Return d and the multipliers of all rows; zeros where rounding leaves no solution."""
-    k, size = len(hessian), rows.shape[1]
+    k, size = len(root), rows.shape[1]
     scale = np.zeros((size, size))  # z = scale x + shift
-    scale[:k, :k] = np.linalg.inv(np.linalg.cholesky(hessian)).T
-    scale[k:, k:] = np.diag(1.0 / weights)
-    shift = np.concatenate([np.zeros(k), -1.0 / weights])
+    scale[:k, :k] = root
+    scale.flat[k * (size + 1) :: size + 1] = 1.0 / weights
+    shift = np.zeros(size)
+    shift[k:] = -1.0 / weights
     g, h = -rows @ scale, rows @ shift - bounds
-    lengths = np.linalg.norm(g, axis=1)
+    lengths = np.sqrt(np.add.reduce(g * g, axis=1))
     lengths[lengths == 0.0] = 1.0
-    matrix = np.vstack([(g / lengths[:, None]).T, h / lengths])
+    columns = np.empty((len(rows), size + 1))
+    columns[:, :-1], columns[:, -1] = g / lengths[:, None], h / lengths
+    matrix = columns.T
     target = np.zeros(size + 1)
     target[-1] = 1.0
     dual = nonnegative_least_squares(matrix, target)
@@ -130,5 +138,6 @@ def _least_distance(rows: Array, bounds: Array, hessian: Array, weights: Array) 
         return np.zeros(k), np.zeros(len(rows))
     x, held = -rest[:-1] / rest[-1], dual > 0.0
     # Between pieces that oppose each other large multipliers cancel: what holds the step places it more exactly.
-    x = x + np.linalg.lstsq(g[held], h[held] - g[held] @ x, rcond=1e-12)[0]
+    holding = g[held]
+    x = x + np.linalg.lstsq(holding, h[held] - holding @ x, rcond=1e-12)[0]
     return (scale @ x)[:k], dual / lengths / -rest[-1]

@@ -161,13 +161,7 @@ class Descent:
             return np.zeros((k, k))
         goals, limits = self.evaluator.exact(moved)
         goals = replace(goals, gradients=goals.gradients / self.scale)
-        hessian = np.stack(
-            [
-                difference(point.goals, alone(goals, i), step.goals)
-                + difference(point.limits, alone(limits, i), step.limits)
-                for i in range(k)
-            ]
-        )
+        hessian = difference(point.goals, goals, step.goals) + difference(point.limits, limits, step.limits)
         return _convex_root(0.5 * (hessian / moves[:, None] + (hessian / moves[:, None]).T), _normals(point, step))
 
 
