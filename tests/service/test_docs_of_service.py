@@ -21,9 +21,12 @@ import cloudpickle  # type: ignore[import-untyped]
 import pytest
 from distributed import Client
 from sqlalchemy import create_engine
+from typer.testing import CliRunner
 
 from slidercrank.service.api.server import listen
+from slidercrank.service.cli import app
 from slidercrank.service.store import Store
+from tests.faults.dask_cluster import CALM
 from tests.faults.dask_faults import ROBUST
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -37,6 +40,7 @@ evaluations = 60000
 designs = 58
 """
 """A job whose Monte Carlo is worth the way to a cluster."""
+OURS = ("SLIDERCRANK_RUNS", "SLIDERCRANK_STORE", "SLIDERCRANK_TOKEN")
 STAYS = ("slidercrank serve", "slidercrank worker", "dask ")
 
 
@@ -62,18 +66,26 @@ class Terminal:
     def __init__(self, folder: Path, programs: Path | None = None, job: str = fronts.JOB) -> None:
         self.folder = folder
         places = [str(Path(sys.executable).parent), *([str(programs)] if programs else []), os.environ["PATH"]]
-        self.environment = {**os.environ, "PATH": os.pathsep.join(places)}
-        for name in ("SLIDERCRANK_RUNS", "SLIDERCRANK_STORE", "SLIDERCRANK_TOKEN"):
-            self.environment.pop(name, None)
+        self.changed = {"PATH": os.pathsep.join(places), **CALM, **dict.fromkeys(OURS)}
         (folder / "runs").mkdir()
         (folder / "runs" / "feeder.toml").write_text(job)
 
-    def run(self, line: str, code: int = 0) -> str:
-        """Run a command to its end and return its output."""
+    def environment(self) -> dict[str, str]:
+        """Return the variables of its processes."""
+        return {name: value for name, value in {**os.environ, **self.changed}.items() if value is not None}
+
+    def run(self, line: str) -> str:
+        """Run a command to its end and return its output; one of slidercrank in this process, where it is imported."""
+        words = shlex.split(line)
+        if words[0] == "slidercrank":
+            with contextlib.chdir(self.folder):
+                own = CliRunner().invoke(app, words[1:], env=self.changed)
+            assert own.exit_code == 0, f"{line}: {own.output}"
+            return own.stdout
         done = subprocess.run(
-            ["sh", "-c", line], cwd=self.folder, env=self.environment, capture_output=True, text=True, check=False
+            ["sh", "-c", line], cwd=self.folder, env=self.environment(), capture_output=True, text=True, check=False
         )
-        assert done.returncode == code, f"{line}: {done.stdout}{done.stderr}"
+        assert done.returncode == 0, f"{line}: {done.stdout}{done.stderr}"
         return done.stdout
 
     @contextlib.contextmanager
@@ -84,7 +96,7 @@ class Terminal:
             subprocess.Popen(
                 ["sh", "-c", f"exec {line}"],
                 cwd=self.folder,
-                env=self.environment,
+                env=self.environment(),
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
@@ -187,7 +199,7 @@ def test_postgresql_with_two_workers_and_a_dask_cluster(
         'pip install "slidercrank[service,postgres,dask]"',
         "export SLIDERCRANK_STORE=postgresql://slidercrank@127.0.0.1/jobs",
     ]
-    terminal.environment["SLIDERCRANK_STORE"] = address
+    terminal.changed["SLIDERCRANK_STORE"] = address
     assert lines[4] == "slidercrank doctor"
     assert "PostgreSQL" in terminal.run(lines[4])
     with contextlib.ExitStack() as running:
