@@ -19,6 +19,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, Array, fitted, random_designs, random_friction, random_machine
 from tests.objectives.richardson import Function, derivatives, steps_to_the_nearest_edge
 
+pytestmark = pytest.mark.usefixtures("shared_batches")
 DESIGNS = random_designs(1000, seed=1)
 """Margins from 1e-3 to 3."""
 

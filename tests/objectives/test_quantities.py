@@ -14,6 +14,7 @@ from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, TABLES, TOLERANCES, Array, fitted, random_designs
 
+pytestmark = pytest.mark.usefixtures("shared_batches")
 DESIGNS = random_designs(200, seed=12)
 CASES = [
     pytest.param(quantity, fitted(quantity, machine), id=f"{quantity.name}-{name}")
