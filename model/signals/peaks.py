@@ -50,8 +50,8 @@ ANGLES = 128
 of loads (64 angles: on 19), then off by up to 2e-4; hence the finer row of samples around near-highest tops."""
 _FINER, _NEAR = 16, 0.95  # samples of that row, and how near the highest a sample must be to get one
 _HOPELESS = 0.8
-"""Share of the highest sample below which none is followed where one peak is asked for: of a million random peaks of all
-signals, on machines with all kinds of loads, long tables, cylinders and friction, not one was lost."""
+"""Share of the highest sample below which none is followed where one peak is asked for: of a million random peaks of
+all signals, on machines with all loads, long tables, cylinders and friction, not one was lost."""
 KEPT = 6
 """Peaks kept of a design, highest first."""
 _ITERATIONS = 60
