@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.arrays import Array
 from ..model.errors import InputError
-from ..objectives.own.interruption import interrupted_by
+from ..model.kernel.interruption import interrupted_by
 from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best import Best, best_of
@@ -85,14 +85,8 @@ class _One:
     resumes: bool
     runs: list[Run] = field(default_factory=list)
 
-    def begun(self, problem: Problem) -> tuple[list[Evaluator], Run]:
-        """Return the evaluators of a problem and its run."""
-        evaluators = [
-            Evaluator(problem, sheet, self.checkpoints, self.engine) for sheet in once(problem, sheets(problem))
-        ]
-        require_eliminated(problem, searched(evaluators))
-        if not self.runs:
-            require_finite(problem, searched(evaluators))
+    def begun(self, problem: Problem) -> Run:
+        """Return the run of a problem, before anything is computed."""
         heard = self.fronts is not None or self.told is not None
 
         def with_front(entry: Progress) -> None:
@@ -104,15 +98,27 @@ class _One:
         last = self.runs[-1] if self.runs else None
         run = Run(problem, 1, with_front if heard else None, self.checkpoints, stages=self.stages, after=last)
         self.runs.append(run)
-        return evaluators, run
+        return run
+
+    def evaluators(self, problem: Problem) -> list[Evaluator]:
+        """Return the evaluators of a problem, which is found to have values."""
+        evaluators = [
+            Evaluator(problem, sheet, self.checkpoints, self.engine) for sheet in once(problem, sheets(problem))
+        ]
+        require_eliminated(problem, searched(evaluators))
+        if len(self.runs) == 1:
+            require_finite(problem, searched(evaluators))
+        return evaluators
 
     def solve(self, problem: Problem) -> ParetoFront:
         """Return the front, or what was found of it."""
-        evaluators, run = self.begun(problem)
-        if self.resumes:
-            run.stand(REPEATING, 0, 1, now=True)
+        run = self.begun(problem)
+        evaluators: list[Evaluator] = []
         try:
             with interrupted_by(self.checkpoints.interrupt) as interruption:
+                evaluators = self.evaluators(problem)
+                if self.resumes:
+                    run.stand(REPEATING, 0, 1, now=True)
                 return _searched(problem, evaluators, run)
         except Cancelled:
             return so_far(problem, evaluators, run, silent=interruption.killed)
@@ -122,12 +128,15 @@ def _with_values(problem: Problem, one: _One) -> ParetoFront:
     """Return the front of a problem with discrete numbers."""
     from .discrete.front import discrete_front
 
-    evaluators, run = one.begun(problem)
+    run = one.begun(problem)
+    evaluators: list[Evaluator] = []
 
     def nothing(status: Status, message: str) -> ParetoFront:
         return empty(problem, evaluators, run, status, message)
 
     try:
+        with interrupted_by(one.checkpoints.interrupt):
+            evaluators = one.evaluators(problem)
         return discrete_front(problem, one.solve, nothing, run.stage("judging combinations"))
     except Cancelled:
         return nothing("cancelled", "cancelled while combinations of discrete values were judged")

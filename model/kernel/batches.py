@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextvars import copy_context
 from functools import lru_cache
 from threading import Lock
 from typing import Any
@@ -65,6 +66,13 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -
         return
     bounds = range(0, count, size)
     with _handing_out:
-        done = threads().map(lambda begin: work(begin, min(begin + size, count)), bounds)
-    for _ in done:
-        pass
+        # Each in a context of its own: it knows what may end the wait for a kernel.
+        done = [threads().submit(copy_context().run, work, begin, min(begin + size, count)) for begin in bounds]
+    try:
+        for chunk in done:
+            chunk.result()
+    except Exception:
+        for chunk in done:
+            chunk.cancel()
+        wait(done)  # what ended one ends those under way
+        raise

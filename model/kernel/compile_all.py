@@ -7,13 +7,15 @@ import gc
 import os
 import pkgutil
 import sys
+import time
 from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import NamedTuple
 
 from .closure import codes
-from .disk import INTO, MODEL, Wanted, building, compile_beside, keep, locked, read, wanted_files
+from .disk import INTO, MODEL, Wanted, building, compile_beside, keep, locked, read_any, wanted_files
 from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
@@ -53,10 +55,10 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     names = wanted_files(folder)
     found = _tasks(folder, packages, modules)
     everything = [task for task in found if not task.seldom or task.file.name in names]
-    tasks = [*everything]
+    tasks, asked = [*everything], {task.file.name for task in everything}
     compiled: set[int] = set()
-    parent, complete = os.getppid(), False
-    while os.getppid() == parent:  # it may have been killed
+    complete = False
+    while True:
         names = wanted_files(folder)
         known = {task.file.name for task in everything}
         if not complete and (not tasks or not known.issuperset(names)):
@@ -77,12 +79,22 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         )
         tasks.remove(task)
         with locked(task.file.with_suffix(".lock")) as lock:
-            if lock is not None and read(task.file) is None:
-                with contextlib.suppress(OSError):
-                    number, name = len(everything) - len(tasks), task.wanted.name.rpartition(".")[2]
-                    building(folder, packages).write_text(f"{number} of {len(everything)}, {name}")
+            if lock is not None and read_any(task.file.name, folder) is None:
+                told = [each for each in everything if each.file.name in asked.union(names)]
+                if task in told:  # what is compiled for later is nobody's wait
+                    number, name = sum(each.file.exists() for each in told), task.wanted.name.rpartition(".")[2]
+                    with contextlib.suppress(OSError):
+                        building(folder, packages).write_text(f"{number} of {len(told)} done, now {name}")
                 keep(task.file, task.wanted.compile())
                 compiled.update(task.codes)
+
+
+def _end_with_parent() -> None:
+    """End this process, also in the middle of a kernel, once the one that has started it is gone."""
+    parent = os.getppid()
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)  # what is kept is whole
 
 
 def _modules(package: str) -> list[str]:
@@ -106,6 +118,7 @@ def _task(of: Kernel, folder: Path) -> _Task:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
+        Thread(target=_end_with_parent, daemon=True).start()
         gc.set_threshold(50_000, 1000, 1000)  # a fifth sooner, for 80 MB
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:

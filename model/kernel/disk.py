@@ -12,13 +12,15 @@ import sys
 import time
 import uuid
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
 from .closure import digest
-from .folder import kernel_folder
+from .folder import kernel_folder, other_folders, tell_refusals
+from .interruption import ask
 from .machine_code import MachineCode
 
 _log = logging.getLogger(__name__)
@@ -65,25 +67,32 @@ def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
     packages among those of other kernels' modules, the last ones first: of both what is in these modules before the
     rest.
     """
-    folder = kernel_folder()
+    folder, name = kernel_folder(), wanted.file(Path()).name
+    found = read_any(name, folder)
+    if found is not None:
+        return found
+    tell_refusals()
     if folder is None:
         return wanted.compile()
-    file = wanted.file(folder)
-    found = read(file)
-    if found is None:
-        own, root = _package(wanted.module), wanted.module.partition(".")[0] + "."
-        related = [module for module in reversed(list(modules)) if module.startswith(root)]
-        packages = dict.fromkeys([*map(_package, related), own])
-        compile_beside(folder, " ".join(packages), file, dict.fromkeys([*related, wanted.module]))
-        found = read(file)
+    own, root = _package(wanted.module), wanted.module.partition(".")[0] + "."
+    related = [module for module in reversed(list(modules)) if module.startswith(root)]
+    packages = dict.fromkeys([*map(_package, related), own])
+    compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, wanted.module]))
+    found = read(folder / name)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()
-        keep(file, found)
+        keep(folder / name, found)
     return found
 
 
 def _package(module: str) -> str:
     return ".".join(module.split(".")[:2])
+
+
+def read_any(name: str, folder: Path | None) -> MachineCode | None:
+    """Return the machine code that is kept under a name in a folder, or in one that can only be read."""
+    found = (read(place / name) for place in (folder, *other_folders()) if place is not None)
+    return next((code for code in found if code is not None), None)
 
 
 def read(file: Path) -> MachineCode | None:
@@ -99,13 +108,15 @@ def read(file: Path) -> MachineCode | None:
 
 
 def keep(file: Path, found: MachineCode) -> None:
-    """Keep machine code, if there is room, and of earlier ones the last few."""
+    """Keep machine code, and of earlier ones the last few; where there is no room, say so."""
     head = found._asdict() | {"code": None, "sha256": sha256(found.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
     with contextlib.suppress(OSError):
         try:
             unfinished.write_bytes(json.dumps(head).encode() + b"\n" + found.code)
             unfinished.replace(file)
+        except OSError as error:
+            _tell_unkept(file.parent, error.strerror or str(error))
         finally:
             unfinished.unlink(missing_ok=True)
         earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda other: other.stat().st_mtime)
@@ -113,45 +124,63 @@ def keep(file: Path, found: MachineCode) -> None:
             other.unlink(missing_ok=True)
 
 
+@cache
+def _tell_unkept(folder: Path, reason: str) -> None:
+    _log.warning(
+        f"slidercrank cannot keep what it compiles in {folder} ({reason}) and will do it again; make room there"
+    )
+
+
 def compile_beside(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
     """Have the missing kernels of packages compiled by other processes; return when there is a file, or they ended.
 
     packages: names with blanks between. They do that file's next, and those of modules before the others. Processes
-    that are at it already are waited for.
+    that are at it already are waited for. `interruption` ends the wait.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as wanted:
             wanted.write(f"{file.name}\n")
     begun = told = time.monotonic()
+    before = sum(_waits)
+    _waits.append(0.0)
     workers = _ahead.pop(packages, None)
     if workers:
-        _log.warning(_ONCE)
+        _tell_once()
     while (file is None or read(file) is None) and time.monotonic() < begun + _PATIENCE:
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
             with locked(building(folder, packages)) as lock:
                 if lock is not None:
-                    _log.warning(_ONCE)
+                    _tell_once()
                     workers = _start(folder, packages, modules, lock)
+        _waits[-1] = time.monotonic() - begun
         if time.monotonic() > told + _TELL:
             told = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
-                    _log.warning(f"slidercrank compiles its formulas: {far}; {told - begun:.0f} s so far")
+                    _log.warning(f"slidercrank compiles its formulas: {far}; {before + _waits[-1]:.0f} s so far")
         time.sleep(_TICK)
+        ask()
 
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     """Begin to compile the kernels of modules, if none is compiled yet; who waits for them says so."""
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
-    if folder is not None and not any(folder.glob(f"{packages.partition('.')[0]}.*.*")):
+    begins = f"{packages.partition('.')[0]}.*.*"
+    if folder is not None and not any(any(place.glob(begins)) for place in (folder, *other_folders())):
         with locked(building(folder, packages)) as lock:
             if lock is not None:
                 _ahead[packages] = _start(folder, packages, modules, lock)
 
 
-_ONCE = "slidercrank compiles its formulas, once after installation"
+@cache
+def _tell_once() -> None:
+    _log.warning("slidercrank compiles its formulas, once after installation")
+
+
+_waits: list[float] = []
+"""Times that this process has waited for kernels, s."""
 _ahead: dict[str, list[subprocess.Popen[bytes]]] = {}
 """Processes that `compile_ahead` has started, and that nobody has waited for yet."""
 

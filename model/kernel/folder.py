@@ -21,27 +21,40 @@ _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 
 
 class Chosen(NamedTuple):
-    """Choice of a folder for kernels: the folder if any, whether it is new, and why places were refused."""
+    """Choice of a folder for kernels: the folder if any, whether it is empty, why places were refused, what to read.
+
+    others: folders that came first, of which kernels can be read but nothing be written there.
+    """
 
     folder: Path | None
-    new: bool
+    empty: bool
     refused: str
+    others: tuple[Path, ...] = ()
+
+
+_chosen = cache(lambda: choose_folder())
+
+
+def kernel_folder() -> Path | None:
+    """Return the folder of kernels of this process, None where no place can be written."""
+    return _chosen().folder
+
+
+def other_folders() -> tuple[Path, ...]:
+    """Return folders of kernels that can only be read, as in an image."""
+    return _chosen().others
 
 
 @cache
-def kernel_folder() -> Path | None:
-    """Return the folder of kernels of this process, None where no place can be written.
-
-    What was refused is logged when the folder is made, or else in every process.
-    """
-    folder, new, refused = choose_folder()
+def tell_refusals() -> None:
+    """Log once which places were refused, where the folder is empty or there is none. For who has to compile."""
+    folder, empty, refused, _ = _chosen()
     if folder is None:
         _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
-    elif new and refused:
+    elif empty and refused:
         _log.warning(
             f"slidercrank keeps compiled kernels in {folder.parent}: {refused}; to keep them longer, {_REMEDY}"
         )
-    return folder
 
 
 def choose_folder() -> Chosen:
@@ -50,21 +63,23 @@ def choose_folder() -> Chosen:
     Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
     """
     refused: list[str] = []
+    others: list[Path] = []
     for place in _places():
         folder = place / "kernels"
-        new = not folder.is_dir()
         reason = _refusal(folder)
         if reason is None:
-            return Chosen(folder, new, "; ".join(refused))
+            return Chosen(folder, not any(folder.iterdir()), "; ".join(refused), tuple(others))
         refused.append(f"{place} {reason}")
-    return Chosen(None, False, "; ".join(refused))
+        if _readable(folder):
+            others.append(folder)
+    return Chosen(None, False, "; ".join(refused), tuple(others))
 
 
 def _places() -> Iterator[Path]:
     """Yield the places where the folder may be."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given:
-        yield Path(given).absolute() / "slidercrank"
+        yield Path(os.path.expanduser(given)).absolute() / "slidercrank"  # noqa: PTH111 - raises for no home
     from platformdirs import user_cache_path
 
     with contextlib.suppress(RuntimeError):  # of later releases, for a user without a home; earlier ones keep its "~"
@@ -94,6 +109,15 @@ def _refusal(folder: Path) -> str | None:
             return None
     except OSError as error:
         return f"cannot be written ({error.strerror or error})"
+
+
+def _readable(folder: Path) -> bool:
+    """Whether kernels of a folder may be run: no stranger can have put them there."""
+    if folder.parent.parent == _temporary() or not os.access(folder, os.R_OK | os.X_OK):
+        return False
+    trusted = {0, os.getuid()} if hasattr(os, "getuid") else None
+    found = (folder.stat(), folder.parent.stat())
+    return all((trusted is None or each.st_uid in trusted) and not each.st_mode & 0o022 for each in found)
 
 
 def _private(place: Path) -> bool:

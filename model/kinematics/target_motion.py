@@ -68,7 +68,8 @@ class TargetMotion:
         for before, after in itertools.pairwise(angles):
             if after <= before:
                 raise InputError(
-                    f"crank angles of a target motion must increase; got {after:g} after {before:g} rad; sort the table"
+                    f"crank angles of a target motion must increase; got {after:g} after {before:g} rad; sort the "
+                    "table and drop what repeats"
                 )
         if angles[-1] - angles[0] >= _TURN:
             raise InputError(

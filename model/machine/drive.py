@@ -96,7 +96,8 @@ class TorqueTable:
         for before, after in pairwise(self.speeds):
             if after <= before:
                 raise InputError(
-                    f"speeds of a torque table must increase; got {after:g} after {before:g}; sort the table"
+                    f"speeds of a torque table must increase; got {after:g} after {before:g}; sort the table and drop "
+                    "what repeats"
                 )
         if self.speeds[0] > 0.0:
             raise InputError(

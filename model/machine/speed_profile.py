@@ -116,7 +116,7 @@ class SpeedTable:
             if after <= before:
                 raise InputError(
                     f"crank angles of a table of speeds must increase; got {math.degrees(after):.6g} deg after "
-                    f"{math.degrees(before):.6g} deg; sort the table"
+                    f"{math.degrees(before):.6g} deg; sort the table and drop what repeats"
                 )
         self._require_open()
         for angle, speed in zip(self.angles, self.speeds, strict=True):

@@ -55,6 +55,7 @@ def apply(
     if column is not None:
         given = given.astype(np.complex128)
         given[:, column] += STEP * 1j
+    given.flags.writeable = False
     try:
         with np.errstate(all="ignore"):
             found = np.asanyarray(function(make(mechanism, given)))

@@ -24,10 +24,10 @@ from typing import IO, Any
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.kernel.interruption import ask, farewell, killed
 from ...model.machine.mechanism import Mechanism
 from .apply import Answer, Refused
 from .child import HEAD, unpacked
-from .interruption import ask, farewell, killed
 
 _START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit after which the process is ended from here

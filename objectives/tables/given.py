@@ -42,7 +42,8 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
         if isinstance(given, np.ma.MaskedArray):  # what is masked is not there
             given = np.ma.filled(np.ma.asarray(given, dtype=np.float64), np.nan)
         found = np.asarray(given)
-        if np.iscomplexobj(found):
+        written = found.dtype.kind in "US" or (found.dtype.kind == "O" and any(isinstance(x, str) for x in found.flat))
+        if written or np.iscomplexobj(found):
             raise TypeError
         found = np.asarray(found, dtype=np.float64)
     except (TypeError, ValueError):

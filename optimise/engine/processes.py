@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, cast
 
 from ...model.errors import EngineError, InputError
-from ...objectives.own.interruption import ask, farewell, killed
+from ...model.kernel.interruption import ask, farewell, killed
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3

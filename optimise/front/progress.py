@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from threading import Event, Thread
 from typing import Any
 
 LOADING = "loading"
@@ -51,14 +54,37 @@ def standing(progress: Mapping[str, Any]) -> str:
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Callable[[Progress], None]]:
-    """Show a live bar while entered, on standard error or in a notebook; yield the callback that moves it."""
+    """Show a live bar while entered, on standard error or in a notebook; yield the callback that moves it.
+
+    Its clock goes on while nothing is told.
+    """
     from tqdm.auto import tqdm
 
-    with tqdm(desc="starting", unit="", bar_format="{desc} {bar:24} {unit} {elapsed}", total=1, leave=False) as bar:
+    form, ended, (columns, rows) = "{desc} {bar:24} {unit} {elapsed}", Event(), _size()
+    with tqdm(desc="starting", unit="", bar_format=form, total=1, leave=False, ncols=columns, nrows=rows) as bar:
 
         def tell(at: Progress) -> None:
             bar.total, bar.n = at.steps or at.rounds, at.step if at.steps else at.round
             bar.unit = f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}"
             bar.set_description_str(standing(vars(at)))
 
-        yield tell
+        def tick() -> None:
+            while not ended.wait(1.0):
+                bar.refresh()
+
+        clock = Thread(target=tick, daemon=True)
+        clock.start()
+        try:
+            yield tell
+        finally:
+            ended.set()
+            clock.join()
+
+
+def _size() -> tuple[int | None, int | None]:
+    """Return the columns and rows of a terminal where it says that it has none, as some remote ones; else None."""
+    try:
+        columns, rows = os.get_terminal_size(sys.stderr.fileno())
+    except (OSError, ValueError, AttributeError):
+        return None, None
+    return None if columns else 80, None if rows else 24

@@ -30,7 +30,10 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     points: tuple[float, ...] = handler(given)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:
-            raise InputError(f"must increase; got {shown(given[n + 1])} after {shown(given[n])}; sort the table")
+            raise InputError(
+                f"must increase; got {shown(given[n + 1])} after {shown(given[n])}; sort the table and drop what "
+                "repeats"
+            )
     return points
 
 

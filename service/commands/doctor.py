@@ -212,11 +212,12 @@ def _compiled() -> Check:
     """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
     from ...model.kernel.folder import choose_folder
 
-    folder, _, refused = choose_folder()
+    folder, _, refused, others = choose_folder()
     if not refused:
         return Check("compiled model", "ok", f"{folder} can be written")
     grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
-    text = f"{refused}; it is {f'kept in {folder}' if folder else 'compiled anew at every start'}"
+    kept = [f"read from {place}" for place in others] + ([f"kept in {folder}"] if folder else [])
+    text = f"{refused}; it is {', else '.join(kept) or 'compiled anew at every start'}"
     return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 

@@ -96,14 +96,15 @@ def optimise(
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
         front = _solve(problem, run, interruption, claim, opened.enter_context(engine_of(options)))
-        result = result_of(front, str(run.path))
-        versions = dict(front.versions)
-        if is_installed("matplotlib"):
-            from importlib.metadata import version
+        with waiting("writing the designs"):
+            result = result_of(front, str(run.path))
+            versions = dict(front.versions)
+            if is_installed("matplotlib"):
+                from importlib.metadata import version
 
-            versions["matplotlib"] = version("matplotlib")
-        run.keep_result(result, versions)
-        claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
+                versions["matplotlib"] = version("matplotlib")
+            run.keep_result(result, versions)
+            claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
         run.log(f"{result.status}: {result.message}")
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
         shown, lost = result_in(result, units, problem), None

@@ -6,9 +6,13 @@ import json
 import os
 import subprocess
 import sys
+import time
 from textwrap import dedent
 
 import pytest
+
+from slidercrank.model.kernel.batches import in_chunks
+from slidercrank.model.kernel.interruption import ask, interrupted_by
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
@@ -98,3 +102,24 @@ def test_processes_forked_after_first_use_compute_the_same(told: dict[str, str])
 
 def test_a_fork_waits_for_the_chunks_that_other_threads_have_under_way(told: dict[str, str]) -> None:
     assert told["threads"] == ""
+
+
+def test_what_ends_one_chunk_ends_those_under_way_too() -> None:
+    begun, ended = [], []
+
+    def stop() -> None:
+        raise TimeoutError
+
+    def work(begin: int, _: int) -> None:
+        begun.append(begin)
+        try:
+            ask()
+        finally:
+            time.sleep(0.01)
+            ended.append(begin)
+
+    with interrupted_by(stop), pytest.raises(TimeoutError):
+        in_chunks(100_000, work)
+    assert begun
+    assert sorted(begun) == sorted(ended)
+    assert len(begun) < 100_000 // 512

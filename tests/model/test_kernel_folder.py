@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.kernel.folder import choose_folder
+from slidercrank.model.kernel import folder
+from slidercrank.model.kernel.folder import Chosen, choose_folder
 
 pytestmark = pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="caches are where Linux keeps them")
 
@@ -33,8 +34,9 @@ def cannot_be_written(place: Path) -> None:
 def test_kernels_are_kept_with_the_caches_of_the_user(home: Path) -> None:
     found = choose_folder()
     assert found.folder is not None
-    assert (found.folder.parent, found.new, found.refused) == (home / "slidercrank", True, "")
-    assert choose_folder() == (found.folder, False, "")
+    assert (found.folder.parent, found.empty, found.refused) == (home / "slidercrank", True, "")
+    (found.folder / "kernel").touch()
+    assert choose_folder() == Chosen(found.folder, False, "")
 
 
 def test_a_folder_that_is_asked_for_comes_first(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,3 +88,28 @@ def test_a_user_without_a_home_keeps_nothing_in_the_current_folder(
     assert found.folder is not None
     assert found.folder.parent.parent == tmp_path / "temporary"
     assert list(home.iterdir()) == []
+
+
+def test_a_place_that_cannot_even_be_looked_at_is_refused_like_others(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / ("long" * 100)))  # stat raises
+    found = choose_folder()
+    assert found.folder == home / "slidercrank/kernels"
+    assert "cannot be written" in found.refused
+    assert found.others == ()
+
+
+@pytest.mark.parametrize("open_to_others", [False, True])
+def test_kernels_that_nobody_else_can_have_put_there_are_read_where_nothing_can_be_written(
+    open_to_others: bool, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernels = home / "slidercrank/kernels"
+    kernels.mkdir(parents=True)
+    kernels.parent.chmod(0o777 if open_to_others else 0o755)
+    refusal = folder._refusal
+    monkeypatch.setattr(folder, "_refusal", lambda of: "cannot be written" if of == kernels else refusal(of))
+    found = choose_folder()
+    assert found.folder is not None
+    assert found.folder.parent.name == f"slidercrank-{os.getuid()}"
+    assert found.others == (() if open_to_others else (kernels,))

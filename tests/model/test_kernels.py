@@ -8,6 +8,7 @@ import re
 import resource
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
@@ -16,6 +17,7 @@ from typing import Any
 
 import numba
 import numpy as np
+import psutil
 import pytest
 from numba.core import event
 
@@ -24,6 +26,7 @@ from slidercrank.model.kernel import compiler, disk
 from slidercrank.model.kernel.arithmetic import arcsine
 from slidercrank.model.kernel.closure import digest
 from slidercrank.model.kernel.disk import keep, read
+from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
 from slidercrank.model.kinematics import closed_forms
@@ -69,7 +72,9 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program:
     assert {output for output, _ in said} == {"12.0 False\n"}
     lines = [line for _, messages in said for line in messages.splitlines()]
     # On a busy machine they are told how far it is, too.
-    told = [line for line in lines if not re.fullmatch(r".* its formulas: 1 of 1, four_times; \d+ s so far", line)]
+    told = [
+        line for line in lines if not re.fullmatch(r".* its formulas: 0 of 1 done, now four_times; \d+ s so far", line)
+    ]
     assert told == ["slidercrank compiles its formulas, once after installation"]
     assert len(list((tmp_path / "slidercrank/kernels").glob("program.four_times.*"))) == 2  # and a lock
     again = started(program, tmp_path)
@@ -101,6 +106,34 @@ def test_a_kernel_is_compiled_where_nothing_can_be_kept_and_no_process_started(
     found, messages = started(command, tmp_path / "cache").communicate()
     assert found in ("12.0 True\n", "12.0 False\n")
     assert "cannot be written" in messages
+
+
+def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop() -> None:
+        raise TimeoutError
+
+    compiling = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    monkeypatch.setattr(disk, "_start", lambda *_: [compiling])
+    try:
+        with interrupted_by(stop), pytest.raises(TimeoutError):
+            disk.compile_beside(tmp_path, "some.package", tmp_path / "never")
+    finally:
+        compiling.kill()
+        compiling.wait()
+
+
+def test_who_compiles_ends_with_who_asked_for_it() -> None:
+    ends = "from slidercrank.model.kernel import compile_all as this; print(flush=True); this._end_with_parent()"
+    asks = f"""
+import os, subprocess, sys
+compiling = subprocess.Popen([sys.executable, "-c", {ends!r}], stdout=subprocess.PIPE)
+compiling.stdout.readline()
+print(compiling.pid, flush=True)
+os._exit(0)
+"""
+    asked = subprocess.run([sys.executable, "-c", asks], stdout=subprocess.PIPE, text=True, check=True)
+    with suppress(psutil.NoSuchProcess):
+        psutil.Process(int(asked.stdout)).wait(timeout=10.0)
 
 
 @pytest.mark.parametrize("harm", ["cut", "a bit turned", "no head", "empty"])

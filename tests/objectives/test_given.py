@@ -33,6 +33,8 @@ TAKERS: dict[str, Callable[[Any], object]] = {
     "fun": lambda given: FORM.scipy("peak_torque").fun(given),
 }
 NO_DESIGNS: dict[str, object] = {
+    "numbers as text": [["0.04", "0.1", "0.02"]],
+    "one as text among numbers": np.array([[0.04, "0.1", 0.02]], object),
     "text": ["40 mm", "100 mm", "20 mm"],
     "a dict": {"crank": 0.04, "rod": 0.1, "offset": 0.02},
     "ragged": [[0.04, 0.1], [0.04, 0.1, 0.02]],

@@ -15,9 +15,9 @@ import numpy as np
 import psutil
 import pytest
 
+from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.apply import Refused
-from slidercrank.objectives.own.interruption import interrupted_by
 from slidercrank.objectives.own.worker import Worker
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")

@@ -186,8 +186,14 @@ def crashing(_: Designs) -> Any:
     return pins["pin"]
 
 
+def writing(designs: Designs) -> Any:
+    designs.crank[:] = 1.0
+    return designs.crank
+
+
 BROKEN: dict[str, tuple[Callable[[Designs], Any], str]] = {
     "raises": (crashing, r"not raise; got KeyError: 'pin' \(test_own_quantity.py:\d+\)"),
+    "writes": (writing, r"not raise; got ValueError: assignment destination is read-only \(test_own_quantity.py:\d+\)"),
     "nan": (lambda d: d.crank[:, 0] * np.nan, "finite number for every design; got nan for crank"),
     "infinite": (lambda d: d.crank[:, 0] * 0.0 + np.inf, "got inf for crank .* rod .* offset .* correct the function"),
     "one number": (lambda d: 1.0, r"shape \(60,\) or \(60, k\); got shape \(\)"),

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.kernel.interruption import ask
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -49,6 +50,12 @@ def test_progress_counts_up_and_is_kept() -> None:
     assert [entry.round for entry in seen] == list(range(1, len(seen) + 1))
     assert all(one.evaluations <= two.evaluations for one, two in itertools.pairwise(seen))
     assert {entry.stage for entry in seen} >= {"sampling", "zooming", "polishing"}
+
+
+def test_cancelling_while_kernels_are_waited_for_gives_a_front_without_designs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slidercrank.optimise.solve.require_finite", lambda *_: ask())
+    front = solve(problem(WISHES), cancelled=lambda: True)
+    assert (front.status, len(front), front.evaluations) == ("cancelled", 0, 0)
 
 
 @pytest.mark.parametrize("after", [1, 2, 4, 6])

@@ -98,3 +98,24 @@ def test_a_copy_that_cannot_be_written_in_a_home_that_cannot_says_so_once(copy: 
     assert said.startswith(f"slidercrank keeps compiled kernels in {temporary}/slidercrank-{os.getuid()}: {home}")
     assert f"name a folder that can be written in NUMBA_CACHE_DIR\n{COMPILES}" in said
     assert used(copy, before=before, TMPDIR=str(temporary)) == (printed, "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions as in POSIX")
+def test_kernels_are_read_from_a_home_that_cannot_be_written_and_none_from_one_that_cannot_be_read(
+    first_use: FirstUse, tmp_path: Path
+) -> None:
+    copy, printed, _ = first_use
+    home = copy.parent.parent / "home"
+    folders = [home, *(found for found in home.rglob("*") if found.is_dir())]
+    before = ("setpriv", "--inh-caps=-all", "--bounding-set=-all") if os.getuid() == 0 else ()
+    try:
+        for folder in folders:
+            folder.chmod(0o555)
+        assert used(copy, before=before, TMPDIR=str(tmp_path)) == (printed, "")
+        home.chmod(0o000)
+        again, said = used(copy, before=before, TMPDIR=str(tmp_path))
+        assert again == printed
+        assert said.startswith(f"slidercrank keeps compiled kernels in {tmp_path}/slidercrank-{os.getuid()}: {home}")
+    finally:
+        for folder in folders:
+            folder.chmod(0o755)

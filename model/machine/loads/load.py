@@ -212,7 +212,9 @@ def require_table(what: str, at: Sequence[float], forces: Sequence[float], *, of
     require_all_finite(f"a table of {what} and {of}", (*at, *forces), "throughout")
     for before, after in itertools.pairwise(at):
         if after <= before:
-            raise InputError(f"{what} of a table must increase; got {after:g} after {before:g}; sort the table")
+            raise InputError(
+                f"{what} of a table must increase; got {after:g} after {before:g}; sort the table and drop what repeats"
+            )
 
 
 DURING = Entry("during", get_args(During), "when the load acts", "outward stroke", default="cycle")

@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 from ....model.arrays import Array, Whole
-from ....objectives.own.interruption import interrupted_by
+from ....model.kernel.interruption import interrupted_by
 from ....objectives.own.quantity import runs_own
 from ...front.front import ParetoFront
 from ...problem.problem import Problem

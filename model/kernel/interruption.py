@@ -1,4 +1,4 @@
-"""Interruption of a function of your own: a callback polled during a call ends it, and the process, by raising."""
+"""Interruption of waits, for a function of your own or a kernel: a callback polled meanwhile ends them by raising."""
 
 from __future__ import annotations
 
