@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
+from axe_playwright_python.base import AXE_SCRIPT  # type: ignore[import-untyped]
 from playwright.sync_api import Page
 
 # The rules that look at colours, which are all that a scheme changes.
@@ -15,7 +15,9 @@ def findings(page: Page, rules: Sequence[str] = ()) -> list[tuple[str, list[str]
     """Findings of axe-core: each broken rule with its places. rules: all unless given."""
     # Places that break no rule are not described: that takes longer than to find them.
     options = {"resultTypes": ["violations"], **({"runOnly": list(rules)} if rules else {})}
-    found = Axe().run(page, options=options).response["violations"]
+    if page.evaluate("!window.axe"):
+        page.evaluate(AXE_SCRIPT)
+    found = page.evaluate("async (options) => (await axe.run(options)).violations", options)
     return [(rule["id"], [node["html"][:200] for node in rule["nodes"]]) for rule in found]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import json
 from collections.abc import Callable, Collection, Iterator
@@ -22,14 +23,35 @@ PATIENCE = 30_000.0
 """ms, for what a page is to show: a busy machine takes many times as long as an idle one."""
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Return a browser for the tests of a file. Its driver keeps an event loop, which other tests must not meet."""
+@pytest.fixture(scope="session")
+def launched() -> Iterator[tuple[Browser, asyncio.AbstractEventLoop]]:
+    """Return one browser for all files, and the event loop that its driver has running."""
     if browser_path() is None:
         pytest.skip(f"no browser: the page is not tested; install one of {', '.join(BROWSERS)}")
     expect.set_options(timeout=PATIENCE)
     with chromium() as opened:
+        loop = asyncio.get_running_loop()
+        with _set_running(None):
+            yield opened, loop
+
+
+@pytest.fixture(scope="module")
+def browser(launched: tuple[Browser, asyncio.AbstractEventLoop]) -> Iterator[Browser]:
+    """Return a browser for the tests of a file. Tests of others must not meet the event loop of its driver."""
+    opened, loop = launched
+    with _set_running(loop):
         yield opened
+
+
+@contextlib.contextmanager
+def _set_running(loop: asyncio.AbstractEventLoop | None) -> Iterator[None]:
+    """Say which event loop runs in this thread, while entered: as the driver does between its calls."""
+    before = asyncio._get_running_loop()
+    asyncio._set_running_loop(loop)
+    try:
+        yield
+    finally:
+        asyncio._set_running_loop(before)
 
 
 @pytest.fixture
