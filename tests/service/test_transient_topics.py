@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,8 +35,7 @@ STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
 RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
 
 
-def shown(topic: ModuleType, machine: Mechanism) -> str:
-    numbers = topic.numbers(machine, LINKAGE)
+def shown(topic: ModuleType, numbers: dict[str, Any]) -> str:
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
     topic.show(Console(file=stream, width=100), numbers)
@@ -52,13 +52,13 @@ def test_the_start_is_told_with_its_steady_running() -> None:
     assert numbers["why_not_steady"] is None
     gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
     assert gained == pytest.approx(numbers["motor_work_J"] - numbers["load_work_J"], rel=1e-8)
-    text = shown(start_up, MACHINE)
+    text = shown(start_up, numbers)
     assert "runs steadily" in text
     assert "coefficient of speed fluctuation" in text
 
 
 def test_a_motor_that_cannot_start_is_told_as_such() -> None:
-    text = shown(start_up, STUCK)
+    text = shown(start_up, start_up.numbers(STUCK, LINKAGE))
     assert "cannot overcome the load" in text
     assert "No steady running" in text
 
@@ -75,7 +75,7 @@ def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> Non
     assert numbers["flywheels_kgm2"] == sorted(numbers["flywheels_kgm2"])
     assert numbers["fluctuations"][2] == 0.05
     assert numbers["flywheels_kgm2"][2] == numbers["flywheel_kgm2"]
-    assert "Flywheel on the crank shaft" in shown(flywheel, MACHINE)
+    assert "Flywheel on the crank shaft" in shown(flywheel, numbers)
     assert "constant torque" in flywheel.numbers(STROKES, LINKAGE)["motor"]
 
 
@@ -152,6 +152,7 @@ def test_the_heat_of_friction_is_told_of_a_start_with_friction_alone() -> None:
     gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
     spent = numbers["load_work_J"] + numbers["friction_work_J"]
     assert gained == pytest.approx(numbers["motor_work_J"] - spent, rel=1e-6)
-    assert "heat of friction" in shown(start_up, rubbing)
-    assert start_up.numbers(MACHINE, LINKAGE, turns=3)["friction_work_J"] == 0.0
-    assert "heat of friction" not in shown(start_up, MACHINE)
+    assert "heat of friction" in shown(start_up, numbers)
+    smooth = start_up.numbers(MACHINE, LINKAGE, turns=3)
+    assert smooth["friction_work_J"] == 0.0
+    assert "heat of friction" not in shown(start_up, smooth)

@@ -27,7 +27,7 @@ _SIZES = np.geomspace(0.25, 4.0, 33)
 def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> dict[str, Any]:
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     found = design_flywheel(mechanism, linkage, fluctuation)
-    tried = [design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
+    tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
     bare = _without(mechanism, linkage)
     return {
         "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,

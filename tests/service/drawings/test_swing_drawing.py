@@ -81,12 +81,12 @@ def test_what_is_read_back_from_dxf_is_the_swing(case: Case) -> None:
 def test_a_cylinder_reaches_from_the_slider_into_its_barrel_all_over_the_swing(case: Case) -> None:
     _, linkage, swing = case
     for angle in np.linspace(swing.start, swing.end, 5):
+        if swing.driver == "crank":
+            assert swing_drawing(*case, name="Support", crank_angle=float(angle)).on("ACTUATOR") == []
+            continue
         found = read(case, crank_angle=float(angle))
         outlines = found.modelspace().query('LWPOLYLINE[layer=="ACTUATOR"]')
         parts = [list(shape.vertices()) for shape in outlines if isinstance(shape, LWPolyline)]
-        if swing.driver == "crank":
-            assert parts == []
-            continue
         barrel, rod = (np.array(part) for part in parts)
         slider = pins(linkage, float(angle))[1]
         assert rod[:, 1].mean() == pytest.approx(slider[1], abs=1e-6)

@@ -213,7 +213,7 @@ def test_the_page_is_whole_and_nothing_in_it_runs_or_is_fetched() -> None:
 def test_nothing_on_a_page_of_the_pdf_is_cut_or_covers_something_else() -> None:
     assert 4 <= len(printed()) <= 12
     for page in printed():
-        page.figure.canvas.draw()
+        page.figure.draw_without_rendering()
         dots = page.figure.dpi
         boxes = [(item.get_text(), item.get_window_extent()) for item in page.figure.findobj(Text) if item.get_text()]
         for text, box in boxes:
