@@ -20,6 +20,9 @@ stroke = evaluate_closed_form(ClosedForm.STROKE, np.array([[0.1, 0.3, 0.0]]))[0]
 print(slidercrank.__file__, round(float(stroke[0]), 12))
 """
 
+ALONE = f"import os; os.cpu_count = lambda: 1{USE}"
+"""The same with one process that compiles: a second one would only begin what these tests do not wait for."""
+
 FirstUse = tuple[Path, str, str]
 """A copy, and what its first use put out and said."""
 
@@ -77,7 +80,7 @@ def test_a_damaged_kernel_is_compiled_anew(first_use: FirstUse) -> None:
     assert kernels
     for file in kernels:
         file.write_bytes(file.read_bytes()[:100])
-    again, said = used(copy)
+    again, said = used(copy, ALONE)
     assert again == printed
     assert said.startswith(COMPILES)
     assert 100 not in {file.stat().st_size for file in kernels}
@@ -93,7 +96,7 @@ def test_a_copy_that_cannot_be_written_in_a_home_that_cannot_says_so_once(copy: 
         folder.chmod(0o555)
     # Root may write everywhere unless it gives that up.
     before = ("setpriv", "--inh-caps=-all", "--bounding-set=-all") if os.getuid() == 0 else ()
-    printed, said = used(copy, before=before, TMPDIR=str(temporary))
+    printed, said = used(copy, ALONE, before=before, TMPDIR=str(temporary))
     assert printed == f"{copy / '__init__.py'} 0.2\n"
     assert said.startswith(f"slidercrank keeps compiled kernels in {temporary}/slidercrank-{os.getuid()}: {home}")
     assert f"name a folder that can be written in NUMBA_CACHE_DIR\n{COMPILES}" in said
