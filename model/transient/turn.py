@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -58,6 +59,25 @@ class Profile:
     memory: float
 
 
+@cache
+def _collocation() -> tuple[Array, Array, Array, Array, Array]:
+    """Return nodes, weights of means, the matrix of integrals to the nodes, and those of series and their integrals."""
+    nodes, weights = legendre.leggauss(_NODES)
+    series = np.linalg.inv(legendre.legvander(nodes, _NODES - 1))
+    integral = legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5
+    return nodes, 0.5 * weights, legendre.legval(nodes, integral).T @ series, series, integral
+
+
+def _sum(series: Array, x: float) -> float:
+    """Return the sum of a Legendre series by Clenshaw's recursion, as `legval` does, in plain numbers: sooner."""
+    numbers: list[float] = series.tolist()
+    before, last = numbers[-2:]
+    for degree in range(len(numbers) - 1, 1, -1):
+        share = (degree - 1) / degree
+        before, last = numbers[degree - 2] - last * share, before + last * x * ((2 * degree - 1) / degree)
+    return before + last * x
+
+
 class PeriodicTurn:
     """Terms of the equation of motion on the nodes of a cycle, in the order of the crank's passage.
 
@@ -75,11 +95,8 @@ class PeriodicTurn:
     ) -> None:
         self.equation, self.dimensions, self.cuts, self.contacts = equation, dimensions, cuts, contacts
         self.way = equation.direction
-        nodes, weights = legendre.leggauss(_NODES)
-        self.nodes, self.weights = nodes, 0.5 * weights
-        self._series = np.linalg.inv(legendre.legvander(nodes, _NODES - 1))
-        self._integral = legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5
-        self.sums = legendre.legval(nodes, self._integral).T @ self._series
+        self.nodes, self.weights, self.sums, self._series, self._integral = _collocation()
+        nodes = self.nodes
         kappa = crowding(*dimensions) if equation.crowds else 1.0
         low, width, angle, terms = [], [], [], []
         self.spans: list[tuple[Span, slice]] = []
@@ -118,8 +135,9 @@ class PeriodicTurn:
     def within(self, values: Array, panel: int, x: float) -> tuple[float, float]:
         """Return values within a panel, at x from -1 to 1, and their integral from its start."""
         series = self._series @ values[panel]
-        inside = self.width[panel] * float(legendre.legval(x, self._integral @ series))
-        return float(legendre.legval(x, series)), inside
+        x = float(x)
+        inside = float(self.width[panel]) * _sum(self._integral @ series, x)
+        return _sum(series, x), inside
 
     def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
         """Return dE / d(theta) and its derivative by E."""
