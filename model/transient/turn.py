@@ -63,9 +63,10 @@ class Profile:
 def _collocation() -> tuple[Array, Array, Array, Array, Array]:
     """Return nodes, weights of means, the matrix of integrals to the nodes, and those of series and their integrals."""
     nodes, weights = legendre.leggauss(_NODES)
-    series = np.linalg.inv(legendre.legvander(nodes, _NODES - 1))
-    integral = legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5
-    return nodes, 0.5 * weights, legendre.legval(nodes, integral).T @ series, series, integral
+    series: Array = np.asarray(np.linalg.inv(legendre.legvander(nodes, _NODES - 1)), np.float64)
+    integral: Array = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5, np.float64)
+    sums: Array = legendre.legval(nodes, integral).T @ series
+    return nodes, 0.5 * weights, sums, series, integral
 
 
 def _sum(series: Array, x: float) -> float:

@@ -89,7 +89,8 @@ def solve_step(
     rows[limiting, -1] = rows[violating, -1] = -1.0
     bounds[above], bounds[below] = high, -low
     rows[above, :k], rows[below, :k] = edge, -edge
-    weights = np.concatenate([np.ones(count), np.full(holding, LOSS), [violation]])
+    weights = np.ones(count + holding + 1)
+    weights[count:-1], weights[-1] = LOSS, violation
     move, dual = _least_distance(rows, bounds, root, weights)
     held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
