@@ -46,10 +46,10 @@ def job(**changes: Any) -> dict[str, Any]:
 def slow_by_positions(designs: Any, branch: str, speed: float) -> list[str]:
     """Return which stroke takes longer, from slider positions at evenly spaced times alone."""
     theta = math.copysign(1.0, speed) * 2.0 * math.pi * np.arange(40_001) / 40_000
-    found = []
+    sine, cosine, found = np.sin(theta), np.cos(theta), []
     for crank, rod, offset in np.asarray(designs)[:, :3]:
-        along = np.sqrt(rod**2 - (offset - crank * np.sin(theta)) ** 2)
-        x = crank * np.cos(theta) + (along if branch == "open" else -along)
+        along = np.sqrt(rod**2 - (offset - crank * sine) ** 2)
+        x = crank * cosine + (along if branch == "open" else -along)
         share = np.mean(np.diff(np.abs(x)) > 0.0)
         found.append("equal" if abs(share - 0.5) < 1e-4 else "outward" if share > 0.5 else "inward")
     return found
