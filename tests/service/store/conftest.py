@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,7 +34,9 @@ def address(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 
 
 @pytest.fixture
-def store(address: str) -> Iterator[Store]:
+def store(address: str, empty_file: Path) -> Iterator[Store]:
     """Return an open, empty store, once of each kind."""
+    if not address.startswith("postgresql:"):
+        shutil.copy(empty_file, address)
     with Store(address) as opened:
         yield opened
