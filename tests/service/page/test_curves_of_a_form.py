@@ -20,10 +20,8 @@ def job_of(page: Page) -> dict[str, Any]:
     return job
 
 
-def test_a_load_is_drawn_dragged_and_moved_by_keys_with_the_dead_centres_in_sight(
-    open_page: Open, store: Store
-) -> None:
-    page = open_page(store, "#/new")
+def test_a_load_is_drawn_dragged_and_moved_by_keys_with_the_dead_centres_in_sight(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     page.get_by_label("kind of load").select_option("positions")
     drawn = page.locator(".curve-drawn:visible")
@@ -56,8 +54,9 @@ def test_a_load_is_drawn_dragged_and_moved_by_keys_with_the_dead_centres_in_sigh
     assert job_of(page)["load"][0] == dragged
 
 
-def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(open_page: Open, store: Store) -> None:
-    page = open_page(store, "#/new")
+def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     with page.expect_response("**/preview") as answered:
         page.get_by_label("crank, from").fill("21")
     example = answered.value.json()["example"]
