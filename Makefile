@@ -16,8 +16,6 @@ export PYTHONDONTWRITEBYTECODE :=
 # Two a processor, since many tests wait for processes and pages; at most 8: each one loads its own numba.
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
-# Each worker is a thread for itself: those of OpenBLAS would wait for each other, a tenth of what algebra takes.
-test test-slow test-all test-changed test-rounding: export OPENBLAS_NUM_THREADS := 1
 MARKED := not slow
 test: $(VENV)/.installed-test
 	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.optimise slidercrank.model

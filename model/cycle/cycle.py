@@ -140,7 +140,8 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = Watch(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
-    _curves(_block(mechanism, linkage), loads, watch, at, w, a, out, rubs(mechanism))
+    block = _block(mechanism, linkage).copy()  # the kernel sets the speed of each angle
+    _curves(block, loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
