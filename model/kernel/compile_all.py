@@ -89,9 +89,8 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                 compiled.update(task.codes)
 
 
-def _end_with_parent() -> None:
+def end_with(parent: int) -> None:
     """End this process, also in the middle of a kernel, once the one that has started it is gone."""
-    parent = os.getppid()
     while os.getppid() == parent:
         time.sleep(0.5)
     os._exit(1)  # what is kept is whole
@@ -118,7 +117,7 @@ def _task(of: Kernel, folder: Path) -> _Task:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
-        Thread(target=_end_with_parent, daemon=True).start()
+        Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
         gc.set_threshold(50_000, 1000, 1000)  # a fifth sooner, for 80 MB
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:

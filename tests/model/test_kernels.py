@@ -123,7 +123,10 @@ def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_who_compiles_ends_with_who_asked_for_it() -> None:
-    ends = "from slidercrank.model.kernel import compile_all as this; print(flush=True); this._end_with_parent()"
+    ends = (
+        "import os; from slidercrank.model.kernel.compile_all import end_with; parent = os.getppid();"
+        "print(flush=True); end_with(parent)"
+    )
     asks = f"""
 import os, subprocess, sys
 compiling = subprocess.Popen([sys.executable, "-c", {ends!r}], stdout=subprocess.PIPE)
