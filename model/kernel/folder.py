@@ -32,9 +32,6 @@ class Chosen(NamedTuple):
     others: tuple[Path, ...] = ()
 
 
-_chosen = cache(lambda: choose_folder())
-
-
 def kernel_folder() -> Path | None:
     """Return the folder of kernels of this process, None where no place can be written."""
     return _chosen().folder
@@ -75,6 +72,9 @@ def choose_folder() -> Chosen:
     return Chosen(None, False, "; ".join(refused), tuple(others))
 
 
+_chosen = cache(choose_folder)
+
+
 def _places() -> Iterator[Path]:
     """Yield the places where the folder may be."""
     given = os.environ.get("NUMBA_CACHE_DIR")
@@ -102,7 +102,7 @@ def _refusal(folder: Path) -> str | None:
     place = folder.parent
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if place.parent == _temporary() and not _private(place):
+        if place.parent == _temporary() and not _private(place.lstat(), {os.getuid()}):
             return "is not a folder that this user alone can write"
         folder.mkdir(exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -113,13 +113,11 @@ def _refusal(folder: Path) -> str | None:
 
 def _readable(folder: Path) -> bool:
     """Whether kernels of a folder may be run: no stranger can have put them there."""
-    if folder.parent.parent == _temporary() or not os.access(folder, os.R_OK | os.X_OK):
+    if folder.parent.parent == _temporary() or not hasattr(os, "getuid") or not os.access(folder, os.R_OK | os.X_OK):
         return False
-    trusted = {0, os.getuid()} if hasattr(os, "getuid") else None
-    found = (folder.stat(), folder.parent.stat())
-    return all((trusted is None or each.st_uid in trusted) and not each.st_mode & 0o022 for each in found)
+    return all(_private(place.stat(), {0, os.getuid()}) for place in (folder, folder.parent))
 
 
-def _private(place: Path) -> bool:
-    found = place.lstat()
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
+def _private(place: os.stat_result, owners: set[int]) -> bool:
+    """Whether a place is a folder that only these owners can write."""
+    return stat.S_ISDIR(place.st_mode) and place.st_uid in owners and not place.st_mode & 0o022
