@@ -44,7 +44,7 @@ def test_no_random_design_is_better_than_the_best_of_the_search(
         offset=(0.001, 0.08),
         mechanism=fitted(QUANTITIES[name], RUBBING),
         designs=1,
-        samples=128,
+        samples=64,
     )
     front = solve(given)
     assert front.status == "done", front.message

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
@@ -26,8 +27,8 @@ from slidercrank.objectives.cycle_peak import CyclePeak
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.problem.violation import FEASIBLE, minimised
+from slidercrank.optimise.search.elimination import Sheet, sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from tests.optimise.problems import JOBS, MACHINE, Bounds, degrees, problem, shipped
 
@@ -107,6 +108,12 @@ MACHINES: dict[str, Mechanism] = {
 FREE: dict[str, Bounds] = {"transmission_angle": (degrees(25.0), None)}
 
 
+def judged(given: Problem, sheet: Sheet, u: Array) -> tuple[Array, Array]:
+    """Return the dimensions of points of a sheet and how far they violate what is asked, one objective computed."""
+    dimensions, _, violation = Evaluator(replace(given, objectives=given.objectives[:1]), sheet).screen(u)
+    return dimensions, violation
+
+
 def sampled(given: Problem, width: float, *, count: int = 60, inside: int = 40, seed: int = 5) -> Any:
     """Return bounds of random boxes, and samples in them: objectives and violation (boxes, samples, ...)."""
     random = np.random.default_rng(seed)
@@ -117,13 +124,12 @@ def sampled(given: Problem, width: float, *, count: int = 60, inside: int = 40, 
         low = random.random((count, k)) * (1.0 - width)
         found = boxes.bound(low, low + width)
         u = low[:, None] + width * random.random((count, inside, k))
-        dimensions, values, violation = evaluator.screen(u.reshape(-1, k))
+        dimensions, violation = judged(given, sheet, u.reshape(-1, k))
         rows = np.flatnonzero(violation <= FEASIBLE)
+        values = np.full((len(violation), len(given.objectives)), np.nan)
         for column, objective in enumerate(given.objectives):
             exact = QUANTITIES[objective.quantity].evaluate(given.mechanism, dimensions[rows]).values
-            sign = -1.0 if objective.sense == "maximise" else 1.0
-            if objective.target is None:
-                values[rows, column] = sign * exact
+            values[rows, column] = minimised(objective, exact)
         yield found, u, values.reshape(count, inside, -1), violation.reshape(count, inside)
 
 
@@ -167,11 +173,11 @@ def test_a_box_of_one_design_is_bounded_by_the_design_itself(machine: str) -> No
     """To a millionth: the ends of a part of the stroke are met by angles a little inside."""
     wishes: Any = dict.fromkeys((*CLOSED, *PEAKS), "minimise")
     given = problem(wishes, FREE, offset=(0.01, 0.15), mechanism=MACHINES[machine])
-    evaluator = Evaluator(given, sheets(given)[0])
+    sheet = sheets(given)[0]
     u = np.random.default_rng(6).random((300, 3))
-    dimensions, _, violation = evaluator.screen(u)
+    dimensions, violation = judged(given, sheet, u)
     rows = np.flatnonzero(violation <= FEASIBLE)
-    found = Boxes(evaluator, np.ones(len(wishes))).bound(u[rows], u[rows])
+    found = Boxes(Evaluator(given, sheet), np.ones(len(wishes))).bound(u[rows], u[rows])
     assert found.alive.all()
     for column, name in enumerate(wishes):
         exact = QUANTITIES[name].evaluate(given.mechanism, dimensions[rows]).values

@@ -45,9 +45,11 @@ def feasible(given: Problem, count: int, seed: int = 9) -> Array:
     evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
     while total < count:
         for evaluator in evaluators:
-            _, values, violation = evaluator.screen(random.random((60_000, evaluator.dimension)))
-            found.append(values[violation <= FEASIBLE])
-            total += len(found[-1])
+            for part in np.array_split(random.random((60_000, evaluator.dimension)), 20):
+                if total < count:
+                    _, values, violation = evaluator.screen(part)
+                    found.append(values[violation <= FEASIBLE])
+                    total += len(found[-1])
     return np.concatenate(found)[:count]
 
 
