@@ -82,22 +82,24 @@ clean:
 	rm -rf $(VENV) .package/typing build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
+# The pip that Python brings may be years old, and look for packages three times as long.
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
 	  "Python 3.11 or newer is needed, this is %d.%d; name another one: make PYTHON=python3.12" % sys.version_info[:2])'
 	@$(PYTHON) -m venv --clear $(VENV) || \
 	  { rm -rf $(VENV); echo 'Python without venv; on Debian: apt install python3-venv' >&2; exit 1; }
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt pip
 	@touch $@
 
 , := ,
 
 # Editable: the folders are used where they are, so that a change needs no new installation. pip would compile all
-# sources on one processor, which is half of its time.
+# sources on one processor, which is half of its time; the tests that packages bring are a third of them.
 define install
 	@echo 'Installing into $(VENV) (about a minute) ...'
 	@$(BIN)/python .package/links.py
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt -e '.$(1)'
-	@$(BIN)/python -m compileall -qq -j 0 '$(CURDIR)/$(VENV)/lib' || true
+	@$(BIN)/python -m compileall -qq -j 0 -x '[/\\]tests[/\\]' '$(CURDIR)/$(VENV)/lib' || true
 	@touch $(VENV)/.installed $@
 endef
 

@@ -2,6 +2,8 @@
 
 import gc
 import os
+from contextlib import suppress
+from importlib import import_module
 
 import pytest
 from hypothesis import settings
@@ -21,6 +23,21 @@ def pytest_configure(config: pytest.Config) -> None:
         # Another processor's kernels are for these tests alone: no processes besides compile those that none calls.
         pytest.MonkeyPatch().setattr("slidercrank.model.kernel.disk.compile_beside", lambda *_: None)
     gc.disable()  # while objects only come
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Import each worker's share of the test files first: what pytest makes of their asserts is kept for the others.
+
+    Otherwise all workers would be at the same file at the same time, and each make the same of it.
+    """
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if workers > 1:
+        first = int(os.environ["PYTEST_XDIST_WORKER"].removeprefix("gw"))
+        given = [session.config.rootpath / argument.partition("::")[0] for argument in session.config.args]
+        files = sorted({file for place in given for file in (place.rglob("test_*.py") if place.is_dir() else [place])})
+        for file in files[first::workers]:
+            with suppress(Exception, pytest.skip.Exception):  # collecting says it
+                import_module(".".join(file.relative_to(session.config.rootpath).with_suffix("").parts))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

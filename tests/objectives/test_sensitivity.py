@@ -43,6 +43,7 @@ def test_derivatives_are_those_of_differences_of_the_table_of_numbers(machine: M
             step = np.zeros(3)
             step[n] = 1e-7
             low, high = shown(machine, design - step), shown(machine, design + step)
+            row: Any  # of numbers; the other types that a table may hold take mypy seconds
             for name, row in table.iterrows():
                 if math.isnan(here[str(name)]):  # not defined
                     assert math.isnan(row["value"])

@@ -19,10 +19,10 @@ EXTRAS = {
 
 
 def given_to_pip(root: Path, *targets: str) -> list[str]:
-    """Return the requirement of each call of pip that make would run for targets if nothing were installed."""
+    """Return the requirement of each call of pip for the project that make would run if nothing were installed."""
     command = ["make", "--dry-run", "--always-make", "--no-print-directory", *targets]
     lines = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout
-    words = [shlex.split(line) for line in lines.splitlines() if " -m pip install " in line]
+    words = [shlex.split(line) for line in lines.splitlines() if " -m pip install " in line and " -e " in line]
     return [line[line.index("-e") + 1] for line in words]
 
 
