@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -85,9 +86,9 @@ def possible(problem: Problem) -> Possible:
     feasible = violation <= FEASIBLE
     return Possible(
         turning=float(turning.mean()),
-        stroke=_reach(problem, "stroke"),
-        time_ratio=_reach(problem, "time_ratio"),
-        transmission_angle=_reach(problem, "transmission_angle"),
+        stroke=_reach(light, "stroke"),
+        time_ratio=_reach(light, "time_ratio"),
+        transmission_angle=_reach(light, "transmission_angle"),
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
         hardest=_hardest(problem, box[turning]),
@@ -145,6 +146,7 @@ def screened(problem: Problem) -> tuple[Array, Array]:
     return np.concatenate(designs), np.concatenate(violations)
 
 
+@lru_cache(maxsize=48)  # most of what is typed between two looks leaves ranges and requirements as they are
 def _reach(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
     others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)

@@ -8,12 +8,15 @@ import time
 import tomllib
 from copy import deepcopy
 from typing import Any
+from unittest.mock import Mock
 
 import httpx
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job.file import MOST
+from slidercrank.optimise.search.polish import polish
+from slidercrank.service.preview import feasibility
 from tests.service.api.serving import refused
 
 Job = dict[str, Any]
@@ -87,6 +90,24 @@ def test_a_thin_band_allows_what_each_value_in_it_allows(shared: httpx.Client) -
     band = greatest({"min": "99 mm", "max": "101 mm"})
     assert band >= 0.995 * greatest({"equals": "100 mm"})
     assert band <= 1.2863  # what no linkage with 40 deg exceeds
+
+
+def test_what_is_typed_besides_the_ranges_searches_no_ends_anew(
+    shared: httpx.Client, feeder: Job, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    changed = deepcopy(feeder)
+    changed["mechanism"]["slider"]["mass"] = "7.25 kg"
+    wider = deepcopy(feeder)
+    wider["variables"]["crank"] = ["19.5 mm", "60 mm"]
+    first = preview(shared, feeder)
+    searched = Mock(side_effect=polish)
+    monkeypatch.setattr(feasibility, "polish", searched)
+    again = preview(shared, changed)
+    assert again["understood"] != first["understood"]
+    assert again["allowed"] == first["allowed"]
+    searched.assert_not_called()
+    preview(shared, wider)
+    searched.assert_called()
 
 
 def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: httpx.Client, feeder: Job) -> None:
