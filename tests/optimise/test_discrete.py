@@ -23,6 +23,8 @@ from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, random_job
 
+pytestmark = pytest.mark.usefixtures("few")
+
 JOBS = 40
 QUICK = {"method": "sobol", "evaluations": 64, "designs": 1000, "seed": 1}
 """Of the continuous front, which an exact answer does not follow from."""

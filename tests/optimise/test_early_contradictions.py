@@ -18,6 +18,8 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
 
+pytestmark = pytest.mark.usefixtures("few")
+
 NAMES = ("crank", "rod", "offset")
 
 

@@ -21,6 +21,8 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem
 
+pytestmark = pytest.mark.usefixtures("few")
+
 JOBS, AT_ONCE = 40, 10
 
 

@@ -19,6 +19,8 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem, shipped_front
 
+pytestmark = pytest.mark.usefixtures("few")
+
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
 WISHES: dict[str, Sense] = {"peak_torque": "minimise", "time_ratio": "maximise"}
 

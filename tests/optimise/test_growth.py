@@ -19,6 +19,8 @@ from slidercrank.optimise.solve import solve
 
 from .problems import JOBS, Bounds, degrees, problem, shipped
 
+pytestmark = pytest.mark.usefixtures("few")
+
 ONE, NONE = np.zeros((1, 2)), np.zeros((0, 2))
 MIXED: dict[str, Bounds] = {
     "stroke": 0.2,

@@ -16,6 +16,8 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 from tests.optimise.test_known_optima import best_transmission_angle, excess_angle
 
+pytestmark = pytest.mark.usefixtures("few")
+
 
 def reachable(front: ParetoFront, quantity: str) -> float:
     """Return the reachable value of a quantity that the message states, in its shown unit."""

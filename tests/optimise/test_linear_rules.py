@@ -17,6 +17,8 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.solve import solve
 
+pytestmark = pytest.mark.usefixtures("few")
+
 RUNS = Path(__file__).parents[2] / "runs"
 FEEDER = tomllib.loads((RUNS / "feeder.toml").read_text(encoding="utf-8"))
 NAMES = ("crank", "rod", "offset")

@@ -23,6 +23,8 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem
 
+pytestmark = pytest.mark.usefixtures("few")
+
 BARE = replace(MACHINE, gravity=(0.0, 0.0), loads=())
 SPRING = Spring(stiffness=500.0, free_position=0.2)
 WANTED: dict[str, Any] = {"peak_torque": "minimise", "time_ratio": "maximise"}

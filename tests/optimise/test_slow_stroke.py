@@ -20,6 +20,8 @@ from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 
+pytestmark = pytest.mark.usefixtures("few")
+
 JOB: dict[str, Any] = {
     "name": "Press",
     "mechanism": {"speed": "120 rpm", "slider": {"mass": "4 kg"}},

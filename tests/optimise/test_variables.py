@@ -25,6 +25,8 @@ from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, degrees, problem
 
+pytestmark = pytest.mark.usefixtures("few")
+
 HEAVY = Mechanism(
     speed=30.0,
     crank=RigidLink(mass=0.8),

@@ -12,6 +12,8 @@ from slidercrank.model.errors import InputError
 from tests.optimise.adapters.the_problem import NEAR, best_angle, degrees_of, problem
 from tests.optimise.problems import RUNS
 
+pytestmark = pytest.mark.usefixtures("few")
+
 
 def test_the_known_optimum_is_that_of_solve() -> None:
     front = sc.solve(problem())

@@ -13,6 +13,8 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import degrees, problem, shipped, shipped_front
 
+pytestmark = pytest.mark.usefixtures("few")
+
 
 def asked(given: Problem, method: str, evaluations: int, *, seed: int = 1, samples: int | None = None) -> Problem:
     """Return a problem that asks for a method."""
