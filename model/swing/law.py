@@ -127,11 +127,6 @@ def way(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, 
     return way_at(code_of(law), table, share, share)[:3]
 
 
-def share_of(law: Law, s: float, table: Array = NO_TABLE) -> float:
-    """Return the share of the time at which the share `s` of the way is made."""
-    return float(shares_of(law, np.array([s]), table)[0])
-
-
 def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
     """Return the shares of the time at which shares of the way are made; bisection, as s rises."""
     if law in ("slow", "constant"):

@@ -17,7 +17,7 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure
 from .forces import SwingCurves, driver_ends, swing_curves
-from .law import corners, mirrored, share_of
+from .law import corners, mirrored, shares_of
 from .swing import Swing, dead_points
 
 _SAMPLES = 721
@@ -79,6 +79,11 @@ class Over:
         share = np.linspace(0.0, 1.0, _SAMPLES)
         return self.at(share), self.at(share, back=True)
 
+    @cached_property
+    def _zoomed(self) -> dict[tuple[bool, float, float], SwingCurves]:
+        """Curves of a way between two shares: the extremes of many curves are at the same places, as at the ends."""
+        return {}
+
     def _extreme(self, name: str, back: bool, worth: np.ufunc, most: int = 1) -> At:
         """Return the extreme of one way. most: how many of the best local ones between the samples are followed."""
         curves = self._sampled[back]
@@ -92,7 +97,9 @@ class Over:
     def _refined(self, name: str, back: bool, worth: np.ufunc, curves: SwingCurves, best: int) -> At:
         for _ in range(_ZOOMS):
             low, high = curves.share[max(best - 1, 0)], curves.share[min(best + 1, len(curves.share) - 1)]
-            curves = self.at(np.linspace(low, high, _ZOOMED), back=back)
+            if (back, low, high) not in self._zoomed:
+                self._zoomed[back, low, high] = self.at(np.linspace(low, high, _ZOOMED), back=back)
+            curves = self._zoomed[back, low, high]
             best = int(np.argmax(_ranks(getattr(curves, name), worth)))
         return _place(curves, best, back, float(getattr(curves, name)[best]))
 
@@ -142,8 +149,7 @@ class Over:
 
     def _cuts(self, back: bool) -> Array:
         table = mirrored(self.swing.points) if back else self.swing.table
-        kinks = (self._share(angle, table) for angle in self._kinks())
-        shares = [0.0, 1.0, *corners(self.swing.law, table), *kinks]
+        shares = [0.0, 1.0, *corners(self.swing.law, table), *self._shares(self._kinks(), table)]
         if back:
             shares = [1.0 - share for share in shares]
         return np.unique([*shares, *self._changes(back)])
@@ -171,10 +177,14 @@ class Over:
                 found += [crank_angle_at(x, r, l, e, second) for second in (False, True)]
         return found
 
-    def _share(self, angle: float, table: Array) -> float:
+    def _shares(self, angles: list[float], table: Array) -> list[float]:
         first, last = driver_ends(self.linkage, self.swing)
-        place = angle if self.swing.driver == "crank" else float(self.linkage.at(angle).slider_position)
-        return share_of(self.swing.law, float(np.clip((place - first) / (last - first), 0.0, 1.0)), table)
+        places = np.array(angles)
+        if self.swing.driver == "slider":
+            places = self.linkage.at(places).slider_position
+        ways = np.clip((places - first) / (last - first), 0.0, 1.0)
+        found: list[float] = shares_of(self.swing.law, ways, table).tolist()
+        return found
 
     def _changes(self, back: bool) -> list[float]:
         """Return the shares at which friction changes sides: of the guide, and of a crank pin that turns back."""

@@ -12,9 +12,9 @@ from ...model.cycle.cycle import cycle
 from ...model.cycle.pace import bend, pace
 from ...model.cycle.several import whole_curves
 from ...model.errors import InputError
-from ...model.kinematics.position import motion, third_derivative
+from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import numbers
+from ...model.linkage.values import direction, numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
 from ...model.machine.two_turns import cycle_turns
@@ -72,7 +72,10 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     torque, of = acting.torque, ""
     if cylinder_count(mechanism) > 1:
         torque, of = whole_curves(mechanism, linkage, theta).torque, " of all cylinders"
-    jerk = _jerk(replace(mechanism, speed=speed or 1.0), linkage, theta)
+    sine, cosine = np.sin(theta), np.cos(theta)
+    m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    third = third_derivative(sine, cosine, m, linkage.crank)
+    jerk = _jerk(mechanism if speed else replace(mechanism, speed=1.0), m, third, theta)
     velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
     return [
         Curve("crank_angle", "crank angle", theta, *_ANGLE),
@@ -80,7 +83,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("slider_velocity", f"slider velocity{note}", velocity, *rates[0]),
         Curve("slider_acceleration", f"slider acceleration{note}", acceleration, *rates[1]),
         Curve("slider_jerk", f"slider jerk{note}", jerk, *rates[2]),
-        Curve("rod_angle", "rod angle", linkage.at(theta).rod_angle, *_ANGLE),
+        Curve("rod_angle", "rod angle", direction(m.across, m.along), *_ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, *_ANGLE),
         Curve("torque", f"drive torque{of}", torque, *_TORQUE),
         Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, *_POWER),
@@ -122,11 +125,8 @@ def even_angles(count: int, most: int = MOST) -> Array:
     return angles
 
 
-def _jerk(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Array:
-    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta), a the crank's acceleration."""
-    sine, cosine = np.sin(theta), np.cos(theta)
-    m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    third = third_derivative(sine, cosine, m, linkage.crank)
+def _jerk(mechanism: Mechanism, m: Motion, third: Array, theta: Array) -> Array:
+    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta), a the crank's acceleration; third: x''', m."""
     if mechanism.speed_profile is None:
         return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
     speed, acceleration = pace(mechanism, theta)
