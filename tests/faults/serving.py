@@ -40,6 +40,7 @@ class Serving:
             base_url=f"http://127.0.0.1:{port}/api/v1",
             headers={"Authorization": f"Bearer {TOKEN}"},
             trust_env=False,
+            verify=False,
             timeout=60.0,
         )
         self._over = threading.Event()
@@ -139,7 +140,7 @@ class Serving:
         return answer.is_success and answer.json()["workers"] > 0
 
     def _look(self) -> None:
-        with httpx.Client(base_url=str(self._client.base_url), trust_env=False, timeout=5.0) as client:
+        with httpx.Client(base_url=str(self._client.base_url), trust_env=False, verify=False, timeout=5.0) as client:
             while not self._over.wait(0.1):
                 begin = time.monotonic()
                 try:

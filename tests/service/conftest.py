@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import create_engine
+from sqlalchemy import create_engine, inspect
 from typer.testing import CliRunner, Result
 
 from slidercrank.service.cli import app
 from slidercrank.service.store import Store
+from slidercrank.service.store.database import Database
+from slidercrank.service.store.schema_version import LATEST, upgrade
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, solved_in
 
@@ -38,6 +40,34 @@ def _compiled_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("slidercrank.service.store.database.create_engine", engine)
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _tables_made_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Give a new store in a file the tables of another one: to make them by Alembic takes ten times as long."""
+    kept = Database(tmp_path_factory.mktemp("tables") / "store.db")
+    upgrade(kept)
+    with kept.reading() as connection:
+        told = connection.exec_driver_sql("SELECT sql FROM sqlite_master WHERE name NOT LIKE 'sqlite_%'")
+        statements = [*told.scalars(), f"INSERT INTO alembic_version VALUES ('{LATEST}')"]
+    kept.close()
+
+    def copied(database: Database) -> None:
+        if database.sqlite and not _tables(database):
+            with database.writing() as connection:
+                if not inspect(connection).get_table_names():
+                    for statement in statements:
+                        connection.exec_driver_sql(statement)
+        upgrade(database)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("slidercrank.service.store.store.upgrade", copied)
+        yield
+
+
+def _tables(database: Database) -> list[str]:
+    with database.reading() as connection:
+        return inspect(connection).get_table_names()
 
 
 @pytest.fixture

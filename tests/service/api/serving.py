@@ -42,7 +42,7 @@ def client_of(store: Store, **settings: Any) -> Iterator[httpx.Client]:
     """Serve a store with some settings while entered; gives a client of it."""
     with (
         serving(create_app(store, Settings(**settings))) as address,
-        httpx.Client(base_url=f"{address}/api/v1", timeout=30.0, trust_env=False) as client,
+        httpx.Client(base_url=f"{address}/api/v1", timeout=30.0, trust_env=False, verify=False) as client,
     ):
         yield client
 
