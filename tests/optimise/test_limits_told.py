@@ -60,7 +60,7 @@ def random_job(random: np.random.Generator) -> Job:
         "variables": variables,
         "constraints": rules,
         "objectives": {next(name for name in CLOSED if name not in rules): "minimise"},
-        "optimiser": {"samples": 2048, "designs": 2},
+        "optimiser": {"samples": 512, "designs": 2},
     }
 
 

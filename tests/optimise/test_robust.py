@@ -86,6 +86,7 @@ def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, ord
     assert (designs["time_ratio"] > designs["time_ratio_robust"]).all()
 
 
+@pytest.mark.usefixtures("few")
 def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requirements() -> None:
     cost = robust_cost(front("worst case", 2))
     assert cost is not None
@@ -96,6 +97,7 @@ def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requir
     assert (cost.within[:, 1] > cost.nominal[:, 1]).all()
 
 
+@pytest.mark.usefixtures("few")
 @pytest.mark.parametrize("kind", ["percentile", "worst case"])
 def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> None:
     exact = replace(plain(), mechanism=replace(TOLERANT, tolerances=Tolerances()))
@@ -180,6 +182,7 @@ def test_the_schema_describes_the_table_robust() -> None:
     json.dumps(job_schema())
 
 
+@pytest.mark.usefixtures("few")
 def test_the_figure_shows_nominal_and_robust_front_and_the_cost() -> None:
     from slidercrank.service.figures.comparison import robustness_figure
 

@@ -92,9 +92,9 @@ def test_a_process_with_one_core_gives_the_same_front_bit_for_bit() -> None:
 @pytest.mark.usefixtures("few")
 def test_constraints_on_peaks_hold_exactly_and_bind() -> None:
     wishes: dict[str, Sense] = {"time_ratio": "maximise", "peak_torque": "minimise"}
-    free = solve(problem(wishes, HELD))
+    free = solve(problem(wishes, HELD, samples=2048))
     limit = float(np.median(free.designs["peak_pivot_force_N"]))
-    limited = solve(problem(wishes, HELD | {"peak_pivot_force": (None, limit)}))
+    limited = solve(problem(wishes, HELD | {"peak_pivot_force": (None, limit)}, samples=2048))
     forces = QUANTITIES["peak_pivot_force"].evaluate(MACHINE, limited.dimensions).values
     assert forces.max() <= limit * (1.0 + 1e-8)
     assert forces.max() == pytest.approx(limit, rel=1e-6)

@@ -46,5 +46,6 @@ def random_problem(seed: int, objective: str = "peak_torque") -> Problem:
         rod=(l / 3.0, 3.0 * l),
         offset=(ends[0], ends[1]),
         mechanism=machine,
+        samples=2048,
         seed=seed + 1,
     )

@@ -36,6 +36,7 @@ PROBLEMS: dict[str, Problem] = {
     ),
     "a target within reach": problem({"time_ratio": 1.2}, HELD),
 }
+EQUALITY = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
 METHODS = ("slsqp", "trust_constr", "differential_evolution", "shgo")
 # The slow methods, seconds each, share out the problems; each has one with a limit that binds, or a target.
 PAIRS = [("slsqp", name) for name in PROBLEMS]
@@ -52,6 +53,12 @@ def default(name: str) -> float:
     front = solve(PROBLEMS[name])
     assert front.status == "done", front.message
     return float(front.values[0, 0])
+
+
+@cache
+def best_on_the_equality() -> float:
+    """Return the optimum that the default method finds on an equality that no rule eliminates."""
+    return float(solve(EQUALITY).values[0, 0])
 
 
 def violation(front: ParetoFront) -> float:
@@ -83,19 +90,18 @@ def test_the_longest_rod_without_offset_transmits_best(method: str) -> None:
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_an_equality_that_no_rule_eliminates_is_met(seed: int) -> None:
-    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
-    front, expected = solve(asking(given, "slsqp", seed=seed)), solve(given)
+    front = solve(asking(EQUALITY, "slsqp", seed=seed))
     speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
     assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
-    assert front.values[0, 0] == pytest.approx(expected.values[0, 0], rel=1e-8)
+    assert front.values[0, 0] == pytest.approx(best_on_the_equality(), rel=1e-8)
 
 
 def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
     """Not the best of many starts by luck: every one of a dozen ends where the default does."""
-    given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
+    given = EQUALITY
     evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
     begun = samples(given, evaluators)
-    best = solve(given).values[0, 0]
+    best = best_on_the_equality()
     for row in begun.leading(0, 12):
         programme = Programme(evaluators[0], Form.single(1, 0), np.zeros(1), np.ones(1))
         found = by_slsqp(programme, begun.u[row])
