@@ -7,8 +7,19 @@ const [WIDE, LEAST_TEXT, MOST_TEXT] = [1280, 12, 20]; // px: of the window, from
 export function measured(least) {
   const seen = (node) => node.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true }) && !node.closest(".hidden, .skip, #notices");
   const name = (node) => `${node.tagName.toLowerCase()}.${node.getAttribute("class") ?? ""} "${(node.textContent || node.value || "").trim().slice(0, 50)}"`;
-  const style = (node) => getComputedStyle(node);
-  const cutting = (node, kinds) => kinds.includes(style(node).overflowX) || kinds.includes(style(node).overflowY);
+  /** Return a function of a node that keeps what it found. */
+  const once = (find, kept = new Map()) => (node) => {
+    if (!kept.has(node)) kept.set(node, find(node));
+    return kept.get(node);
+  };
+  const style = once((node) => {
+    const { position, display, overflowX, overflowY } = getComputedStyle(node);
+    return { position, display, overflows: [overflowX, overflowY] };
+  });
+  const edges = once((node) => node.getBoundingClientRect());
+  const pictured = once((node) => node.tagName !== "svg" && node.closest("svg") !== null);
+  const lifted = once((node) => ["sticky", "fixed"].includes(style(node).position) || (style(node).position === "absolute" && !node.closest("svg, .plot, .layers")));
+  const cutting = (node, kinds) => style(node).overflows.some((one) => kinds.includes(one));
   const found = { wider: [], clipped: [], over: [], small: [], tiny: [], huge: [] };
   const width = document.documentElement.clientWidth;
   if (document.documentElement.scrollWidth > width) {
@@ -27,10 +38,9 @@ export function measured(least) {
     let boxes = [...range.getClientRects()].map(({ left, right, top, bottom }) => ({ left, right, top, bottom }));
     let layer = null;
     for (let above = node; above && above !== document.body; above = above.parentElement) {
-      const { position } = style(above);
-      if (!layer && (position === "sticky" || position === "fixed" || (position === "absolute" && !above.closest("svg, .plot, .layers")))) layer = above;
-      if (above.closest("svg") && above.tagName !== "svg") continue;
-      const edge = above.getBoundingClientRect();
+      if (!layer && lifted(above)) layer = above;
+      if (pictured(above)) continue;
+      const edge = edges(above);
       if (cutting(above, ["hidden", "clip"])) {
         const cut = boxes.some((box) => box.right > edge.right + 1.5 || box.left < edge.left - 1.5 || box.bottom > edge.bottom + 3 || box.top < edge.top - 3);
         if (cut && !above.classList.contains("hidden")) found.clipped.push(`${name(node)} in ${name(above).slice(0, 40)}`);
@@ -46,7 +56,7 @@ export function measured(least) {
   // Texts in pictures, as large as they are drawn; on a phone pictures shrink with the screen.
   for (const text of document.querySelectorAll("svg text")) {
     const drawn = text.getScreenCTM();
-    const size = drawn && seen(text) && text.textContent.trim() ? parseFloat(style(text).fontSize) * Math.hypot(drawn.a, drawn.b) : LEAST_TEXT;
+    const size = drawn && seen(text) && text.textContent.trim() ? parseFloat(getComputedStyle(text).fontSize) * Math.hypot(drawn.a, drawn.b) : LEAST_TEXT;
     if (width >= WIDE && size < LEAST_TEXT - 0.05) found.tiny.push(`${name(text)} of ${size.toFixed(1)} px`);
     if (size > MOST_TEXT) found.huge.push(`${name(text)} of ${size.toFixed(1)} px`);
   }
@@ -70,14 +80,14 @@ export function measured(least) {
     const more = label?.getBoundingClientRect() ?? own;
     return { node, left: Math.min(own.left, more.left), right: Math.max(own.right, more.right), top: Math.min(own.top, more.top), bottom: Math.max(own.bottom, more.bottom) };
   });
-  const layerOf = (node) => (!node || node === document.body ? null : ["sticky", "fixed"].includes(style(node).position) ? node : layerOf(node.parentElement));
+  const layerOf = once((node) => (!node || node === document.body ? null : ["sticky", "fixed"].includes(style(node).position) ? node : layerOf(node.parentElement)));
   const inText = (node) => node.matches("a") && style(node).display === "inline" && [...node.parentElement.childNodes].some((other) => other !== node && other.nodeType === 3 && other.data.trim());
   for (const target of targets) {
     if (target.right - target.left >= least - 0.5 && target.bottom - target.top >= least - 0.5) continue;
     if (inText(target.node)) continue;
     const [x, y] = [(target.left + target.right) / 2, (target.top + target.bottom) / 2];
-    const near = targets.find((other) => other !== target && layerOf(other.node) === layerOf(target.node) && !other.node.contains(target.node) && !target.node.contains(other.node)
-      && Math.hypot(Math.max(other.left - x, 0, x - other.right), Math.max(other.top - y, 0, y - other.bottom)) < least / 2 - 0.5);
+    const near = targets.find((other) => other !== target && Math.hypot(Math.max(other.left - x, 0, x - other.right), Math.max(other.top - y, 0, y - other.bottom)) < least / 2 - 0.5
+      && layerOf(other.node) === layerOf(target.node) && !other.node.contains(target.node) && !target.node.contains(other.node));
     if (near) found.small.push(`${name(target.node)} of ${Math.round(target.right - target.left)} x ${Math.round(target.bottom - target.top)} px beside ${name(near.node)}`);
   }
   return Object.fromEntries(Object.entries(found).map(([kind, all]) => [kind, [...new Set(all)]]).filter(([, all]) => all.length));
