@@ -7,20 +7,20 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 OWN = ("extremes", "sensitivity", "tolerances")
 """Topics that the page draws itself."""
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
+def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
     """Return a page and the address of its service; nothing but refusals may go wrong on the page."""
-    with watched(browser, solved.store, expected=("422",)) as found:
+    with watched(pages, solved.store, expected=("422",)) as found:
         yield found
 
 

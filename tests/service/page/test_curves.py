@@ -9,18 +9,18 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
 from tests.service.api.fixed_front import Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
-    with watched(browser, solved.store) as found:
+def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
+    with watched(pages, solved.store) as found:
         yield found
 
 

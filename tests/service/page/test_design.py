@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 import math
@@ -14,13 +13,13 @@ import ezdxf.filemanagement
 import httpx
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import Open, watch
+from tests.service.page.conftest import Open, Pages, watch
 
 Opened = Callable[..., Page]
 Shared = tuple[Page, list[str]]
@@ -46,12 +45,11 @@ def service(solved: Solved) -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def shared(browser: Browser, service: str) -> Iterator[Shared]:
+def shared(pages: Pages, service: str) -> Iterator[Shared]:
     """Return one page for all tests here, and what it may complain of."""
     wrong: list[str] = []
     expected: list[str] = []
-    with contextlib.closing(browser.new_context()) as context:
-        page = context.new_page()
+    with pages.fresh(service) as page:
         watch(page, service, wrong, expected)
         page.goto(service)
         yield page, expected

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
 from tests.service.api.fixed_front import Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 DESIGN = 3
 CELLS = """table => [...table.tBodies[0].rows].map(row => [row.cells[0].textContent,
@@ -29,9 +29,9 @@ def told(solved: Solved, *arguments: str) -> Any:
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved) -> Iterator[Page]:
+def opened(pages: Pages, solved: Solved) -> Iterator[Page]:
     """Return one page for all tests here, of which nothing may go wrong but refusals."""
-    with watched(browser, solved.store, expected=("422",)) as (page, address):
+    with watched(pages, solved.store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page
 

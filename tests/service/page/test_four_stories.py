@@ -46,7 +46,7 @@ def downloaded(page: Page, link: Locator, folder: Path) -> Path:
 def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     open_page: Open, store: Store, tmp_path: Path
 ) -> None:
-    page = open_page(store, "", accept_downloads=True, reduced_motion="reduce")
+    page = open_page(store, "", reduced_motion="reduce")
     page.get_by_role("navigation", name="Main").get_by_role("link", name="New run").press("Enter")
     typed(page.get_by_label("name", exact=True), "Press for bushings")
     typed(page.get_by_label("stroke, exactly"), "60")
@@ -86,7 +86,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
 def test_studying_a_published_case_to_a_curve_over_the_slider_position_by_keyboard(
     open_page: Open, solved: Solved, tmp_path: Path
 ) -> None:
-    page = open_page(solved.store, f"#/jobs/{solved.number}", accept_downloads=True, reduced_motion="reduce")
+    page = open_page(solved.store, f"#/jobs/{solved.number}", reduced_motion="reduce")
     page.get_by_role("link", name="Open the design of the picture").press("Enter", timeout=PATIENCE)
     page.locator("select[name=over]").press("s", timeout=PATIENCE)  # as "slider position" begins
     expect(page.locator("select[name=over]")).to_have_value("position")

@@ -7,23 +7,21 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 
 @pytest.fixture(scope="module")
-def opened(
-    browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[tuple[Page, str, str]]:
+def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str, str]]:
     """Return a page without errors, the address of its service and that of the job in the API."""
     path = tmp_path_factory.mktemp("kept") / "store.db"
     back_up(solved.store, path)
-    with Store(path) as store, watched(browser, store) as (page, address):
+    with Store(path) as store, watched(pages, store) as (page, address):
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 
 

@@ -6,24 +6,22 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from slidercrank.service.workers.worker import work
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 
 @pytest.fixture(scope="module")
-def opened(
-    browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[tuple[Page, str, Store]]:
+def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str, Store]]:
     """Return a page, the address of its service and its store; nothing but refusals may go wrong on the page."""
     path = tmp_path_factory.mktemp("limits") / "store.db"
     back_up(solved.store, path)
-    with Store(path) as store, watched(browser, store, expected=("422",)) as (page, address):
+    with Store(path) as store, watched(pages, store, expected=("422",)) as (page, address):
         yield page, address, store
 
 

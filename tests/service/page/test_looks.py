@@ -9,13 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser
 
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.accessibility import findings
-from tests.service.page.conftest import watch
+from tests.service.page.conftest import Pages, watch
 from tests.service.page.every_view import HEIGHTS, WIDTHS, View, fill
 from tests.service.page.looks import faults
 
@@ -38,28 +37,26 @@ def shown(tmp_path_factory: pytest.TempPathFactory, solved: Solved) -> Iterator[
 
 @pytest.mark.parametrize("name", VIEWS)
 def test_a_view_is_whole_and_legible_on_every_screen(
-    browser: Browser, shown: tuple[str, dict[str, View]], name: str
+    pages: Pages, shown: tuple[str, dict[str, View]], name: str
 ) -> None:
     address, views = shown
     wrong: list[str] = []
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-    page = context.new_page()
-    watch(page, address, wrong)
-    views[name].open(page, f"{address}/")
     found: dict[str, object] = {}
-    for width in WIDTHS:
-        page.set_viewport_size({"width": width, "height": HEIGHTS[width]})
-        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-        page.wait_for_function(DRAWN)
-        if worst := faults(page):
-            found[f"{width} px"] = worst
-    page.set_viewport_size({"width": 1280, "height": 900})
-    if broken := findings(page):
-        found["light"] = broken
-    page.emulate_media(color_scheme="dark")
-    if broken := findings(page, ("color-contrast", "link-in-text-block")):
-        found["dark"] = broken
-    context.close()
+    with pages.fresh(address, viewport={"width": 1280, "height": 900}, reduced_motion="reduce") as page:
+        watch(page, address, wrong)
+        views[name].open(page, f"{address}/")
+        for width in WIDTHS:
+            page.set_viewport_size({"width": width, "height": HEIGHTS[width]})
+            page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            page.wait_for_function(DRAWN)
+            if worst := faults(page):
+                found[f"{width} px"] = worst
+        page.set_viewport_size({"width": 1280, "height": 900})
+        if broken := findings(page):
+            found["light"] = broken
+        page.emulate_media(color_scheme="dark")
+        if broken := findings(page, ("color-contrast", "link-in-text-block")):
+            found["dark"] = broken
     assert not found, json.dumps(found, indent=1)
     assert wrong == []
 

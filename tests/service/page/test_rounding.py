@@ -6,20 +6,20 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 DESIGN = 3
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved) -> Iterator[tuple[Page, str]]:
+def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
     """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
-    with watched(browser, solved.store, expected=("422",)) as (page, address):
+    with watched(pages, solved.store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page, address
 

@@ -69,7 +69,7 @@ def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Sto
 def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     claim = taken(store)
-    page = open_page(store)
+    page = open_page(store, own_clock=True)
     page.clock.install()
     page.goto(f"{page.url}#/jobs/1")
     claim.tell(progress(2))
@@ -125,7 +125,7 @@ def test_a_run_that_was_stopped_twice_is_watched_to_its_end(open_page: Open, sto
 def test_a_search_that_says_nothing_at_first_is_explained(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     claim = taken(store)
-    page = open_page(store)
+    page = open_page(store, own_clock=True)
     page.clock.install()
     page.goto(f"{page.url}#/jobs/1")
     expect(page.get_by_role("heading", name="Progress")).to_be_visible()

@@ -120,7 +120,7 @@ def test_deleting_asks_first(open_page: Open, store: Store) -> None:
 
 def test_what_somebody_else_deleted_is_said_and_vanishes(open_page: Open, store: Store) -> None:
     add(store)
-    page = open_page(store, expected=("404",))
+    page = open_page(store, expected=("404",), own_clock=True)
     button = page.get_by_role("button", name="Cancel run 1")
     expect(button).to_be_visible()
     page.clock.install()  # so that the list does not look before the button is used
@@ -221,7 +221,7 @@ def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: O
 def test_pictures_stay_while_rows_are_drawn_anew(open_page: Open, store: Store) -> None:
     for _ in range(3):
         put_in(store, result(), TABLES)
-    page = open_page(store, "#/help")
+    page = open_page(store, "#/help", own_clock=True)
     page.clock.install()
     asked = pictures_asked_for(page)
     page.get_by_role("link", name="Runs").first.click()
@@ -250,7 +250,7 @@ def test_points_of_pictures_are_sent_once(open_page: Open, store: Store) -> None
 
 def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, store: Store) -> None:
     put_in(store, result(), TABLES)
-    page = open_page(store, "#/help", expected=("503",))
+    page = open_page(store, "#/help", expected=("503",), own_clock=True)
     page.clock.install()
     page.route("**/front-points?*", lambda route: route.fulfill(status=503, json={"detail": "away"}))
     with page.expect_response("**/front-points?*"):

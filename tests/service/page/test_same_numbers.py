@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
@@ -20,7 +20,7 @@ from slidercrank.service.store.backup import back_up
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, put_in
 from tests.service.page.accessibility import findings
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 NUMBERS = "nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"
@@ -48,13 +48,11 @@ STRONG: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def opened(
-    browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[tuple[Page, str, str]]:
+def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str, str]]:
     """Return a page, its address and that of the job in the API; nothing may go wrong there."""
     path = tmp_path_factory.mktemp("same") / "store.db"
     back_up(solved.store, path)
-    with Store(path) as store, watched(browser, store) as (page, address):
+    with Store(path) as store, watched(pages, store) as (page, address):
         assert put_in(store, solved.result, tomllib.loads(fronts.JOB) | STRONG) == STRONG_JOB
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 

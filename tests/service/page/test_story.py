@@ -17,7 +17,7 @@ from tests.service.page.conftest import Open
 
 
 def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Store, tmp_path: Path) -> None:
-    page = form(store, "", accept_downloads=True)
+    page = form(store, "")
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
     page.get_by_role("navigation", name="Main").get_by_role("link", name="New run").click()
     page.get_by_label("Begin with a shipped job").select_option("sieve")

@@ -9,20 +9,20 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from slidercrank.service.store import Store
 from tests.service.api.swinging import ENGINE, solved_at_once, support
 from tests.service.page.accessibility import findings
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 
 @pytest.fixture(scope="module")
-def service(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
+def service(pages: Pages, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
     with Store(tmp_path_factory.mktemp("page") / "store.db") as store:
         for job in (support(law="cycloidal", duration="20 s"), ENGINE):
             solved_at_once(store, job)
-        with watched(browser, store) as opened:
+        with watched(pages, store) as opened:
             yield opened
 
 

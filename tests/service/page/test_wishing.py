@@ -8,21 +8,21 @@ from typing import Any
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import watched
+from tests.service.page.conftest import Pages, watched
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
+def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str]]:
     """Return one page for all tests here, of which nothing may go wrong but refusals, and its address."""
     path = tmp_path_factory.mktemp("wishing") / "store.db"
     back_up(solved.store, path)
-    with Store(path) as store, watched(browser, store, expected=("422",)) as (page, address):
+    with Store(path) as store, watched(pages, store, expected=("422",)) as (page, address):
         page.goto(f"{address}/#/help")
         yield page, address
 
