@@ -42,6 +42,9 @@ class ClosedFormQuantity(Quantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of its forms; see `Quantity`."""
         parts = [_evaluate(form, mechanism, dimensions, True) for form in self.forms]
+        values, slopes = parts[0]
+        if slopes is not None and len(parts) == 1:
+            return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
         values = np.stack([values for values, _ in parts], axis=1)
         labels = np.broadcast_to(np.arange(len(parts), dtype=np.float64), values.shape)
         return Pieces(values, np.stack([slopes for _, slopes in parts if slopes is not None], axis=1), labels)

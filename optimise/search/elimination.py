@@ -85,14 +85,19 @@ class Sheet:
         }
         for column, name in enumerate(self.free):
             known[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
-        with np.errstate(all="ignore"):
-            as_many = 0.0 * u.sum(axis=1)
-            for step in self.steps:
-                known[step.target] = step.formula(*(known[name] for name in step.sources)) + as_many
+        if self.steps:
+            with np.errstate(all="ignore"):
+                as_many = 0.0 * u.sum(axis=1)
+                for step in self.steps:
+                    known[step.target] = step.formula(*(known[name] for name in step.sources)) + as_many
         offset = self.sign * known["offset"]
         if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
             offset = np.where(offset == 0.0, offset - ZERO, offset)
-        return np.stack([known["crank"], known["rod"], offset, *(known[name] for name in self.names[3:])], axis=1)
+        designs = np.empty((len(u), len(self.names)), dtype=u.dtype)
+        designs[:, 0], designs[:, 1], designs[:, 2] = known["crank"], known["rod"], offset
+        for column, name in enumerate(self.names[3:], 3):
+            designs[:, column] = known[name]
+        return designs
 
     def coordinates(self, designs: Array) -> Array:
         """Return the points (n, k) of the unit box with the free unknowns of designs (n, 3 + v).

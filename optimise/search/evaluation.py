@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.arrays import Mask, Whole
 from ...model.linkage.values import DIMENSIONS
-from ...objectives.quantity import Array, Pieces
+from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.tables.evaluate import running
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
@@ -48,10 +48,18 @@ class Evaluator:
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
+        self._quantities: dict[str, Quantity] = {}
         self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
 
     def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
         return Evaluator, (self.problem, self.sheet)
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity of a name; the problem is asked once for each."""
+        found = self._quantities.get(name)
+        if found is None:
+            found = self._quantities[name] = self.problem.quantity(name)
+        return found
 
     def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step, see `Checkpoints.step`."""
@@ -79,7 +87,7 @@ class Evaluator:
         self.evaluations += len(dimensions)
         # What is out of reach already needs no cycle computed.
         for slow in (False, True):
-            constraints = [c for c in self.constraints if costly(self.problem.quantity(c.quantity)) == slow]
+            constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
                 found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
@@ -115,7 +123,7 @@ class Evaluator:
         rows = np.flatnonzero(turns)
         for constraint in self.problem.constraints:
             if constraint.quantity in self.sheet.eliminated and len(rows):
-                values = self.problem.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
+                values = self.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
                 spurious = violated_by(constraint, values) > FEASIBLE
                 violation[rows[spurious]] = np.inf
         return violation
@@ -131,7 +139,7 @@ class Evaluator:
         dimensions = self.sheet.dimensions(u)
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
-            quantity = self.problem.quantity(constraint.quantity)
+            quantity = self.quantity(constraint.quantity)
             if not costly(quantity):
                 values = quantity.evaluate(self.mechanism, dimensions).values
                 violation = np.maximum(violation, violated_by(constraint, values))
@@ -169,21 +177,26 @@ class Evaluator:
 
 
 def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
-    return quickly(evaluator.problem, names, dimensions)
+    return quickly(evaluator, names, dimensions)
 
 
 def _exactly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
-    return exactly(evaluator.problem, names, dimensions)
+    return exactly(evaluator, names, dimensions)
 
 
 def _in_box(found: Pieces, jacobian: Array) -> Pieces:
     """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
+    other = None if found.other is None else _in_box(found.other, jacobian)
+    heights, sizes = np.abs(found.values), np.abs(found.gradients)
+    # Most are bounded. The products of a copy in another order would round otherwise.
+    if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and found.gradients.flags.c_contiguous:
+        slopes = np.einsum("npd,ndk->npk", found.gradients, jacobian)
+        return Pieces(found.values, slopes, found.labels, found.least, other)
     # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
-    bounded = (np.abs(found.values) < _HUGE) & (np.abs(found.gradients) < _HUGE).all(axis=2)
+    bounded = (heights < _HUGE) & (sizes < _HUGE).all(axis=2)
     # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
     values = np.where(bounded | np.isnan(found.values), found.values, np.copysign(np.inf, found.values))
     slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], found.gradients, 0.0), jacobian)
-    other = None if found.other is None else _in_box(found.other, jacobian)
     return Pieces(values, slopes, found.labels, found.least, other)
 
 

@@ -4,18 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
 from ...model.machine.mechanism import Mechanism
 from ...objectives.cycle_peak import CyclePeak, screen_peaks
 from ...objectives.formula.quantity import leaves_of, with_formulas
-from ...objectives.quantity import Array, Pieces, Values
+from ...objectives.quantity import Array, Pieces, Quantity, Values
 from ...objectives.robust.quantity import RobustQuantity
-from ..problem.problem import Problem
 
 
-def quickly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+class Judged(Protocol):
+    """A problem, or an evaluator of it."""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """Machine of the designs."""
+        ...
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity of a name."""
+        ...
+
+
+def quickly(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     """Return quantities (n,) of designs, peaks by screening, robust ones estimated."""
     quantities = [problem.quantity(name) for name in names]
     leaves = leaves_of(quantities)
@@ -40,7 +53,7 @@ def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array)
     return quantity.estimate(mechanism, dimensions, found)
 
 
-def exactly(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+def exactly(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
     """Return the pieces of quantities of designs."""
     return [problem.quantity(name).pieces(problem.mechanism, dimensions) for name in names]
 
