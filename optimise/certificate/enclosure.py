@@ -35,11 +35,12 @@ class Enclosure:
     nowhere. A rest that is not finite says nothing about the number.
     """
 
-    __slots__ = ("_reach", "centre", "empty", "rest", "slopes")
+    __slots__ = ("_reach", "_size", "centre", "empty", "rest", "slopes")
 
     def __init__(self, centre: Any, slopes: Any, rest: Any, empty: Mask | None = None) -> None:
         self.centre, self.slopes, self.rest, self.empty = centre, slopes, rest, empty
         self._reach: Array | None = None
+        self._size: Array | None = None
 
     @property
     def reach(self) -> Array:
@@ -51,7 +52,9 @@ class Enclosure:
     @property
     def size(self) -> Array:
         """The greatest absolute value that the number may have."""
-        return np.asarray(np.abs(self.centre) + self.reach)
+        if self._size is None:
+            self._size = np.asarray(np.abs(self.centre) + self.reach)
+        return self._size
 
     def ends(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
         """Return the least and the greatest value, infinite where unknown.

@@ -56,6 +56,7 @@ class Independent:
         self.size = np.where(upper > self.lower, upper - self.lower, 1.0)
         self.cost = np.concatenate([np.zeros(self.k), np.full(self.m, wanted.rho), [1.0]])
         self._at: tuple[bytes, Array, Array] | None = None
+        self._rows: tuple[bytes, Array, Array] | None = None
 
     def minimum(self, starts: Array) -> float:
         """Return the least value of the achievement function over designs (n, k) to start from."""
@@ -121,19 +122,28 @@ class Independent:
         return self._value(x)
 
     def _held(self, z: Array) -> tuple[Array, Array]:
-        """Return the rows that must be zero or more, and their derivatives."""
+        """Return the rows that must be zero or more, and their derivatives; asked for either at each point."""
+        if self._rows is None or self._rows[0] != z.tobytes():
+            self._rows = (z.tobytes(), *self._held_at(z))
+        return self._rows[1], self._rows[2]
+
+    def _held_at(self, z: Array) -> tuple[Array, Array]:
         values, slopes = self._quantities(z[: self.k])
+        edges = np.eye(len(z))
+
+        def wide(slope: Array) -> Array:
+            return np.concatenate([slope, np.zeros(len(z) - self.k)])
+
         rows: list[tuple[float, Array]] = []
         for i, objective in enumerate(self.problem.objectives):
-            at, level = self.names.index(objective.quantity), np.eye(len(z))[self.k + i]
+            at, level = self.names.index(objective.quantity), edges[self.k + i]
             sides = (1.0, -1.0) if objective.target is not None else (-1.0 if objective.sense == "maximise" else 1.0,)
             for side in sides:
                 own = (side * (values[at] - (objective.target or 0.0)) - self.wanted.ideal[i]) / self.wanted.span[i]
-                slope = np.pad(side * slopes[at] / self.wanted.span[i], (0, len(z) - self.k))
+                slope = wide(side * slopes[at] / self.wanted.span[i])
                 rows.append((z[self.k + i] - own, level - slope))
             if (weight := self.wanted.weights[i]) > 0.0:
-                top = np.eye(len(z))[-1]
-                rows.append((z[-1] - weight * (z[self.k + i] - self.wanted.reference[i]), top - weight * level))
+                rows.append((z[-1] - weight * (z[self.k + i] - self.wanted.reference[i]), edges[-1] - weight * level))
             if np.isfinite(self.wanted.ceilings[i]):
                 rows.append((self.wanted.ceilings[i] - z[self.k + i], -level))
         for constraint in self.constraints:
@@ -141,9 +151,7 @@ class Independent:
             for side, bound in ((1.0, constraint.upper), (-1.0, constraint.lower)):
                 if bound is not None and not constraint.equality:
                     scale = abs(bound) or 1.0
-                    rows.append(
-                        (side * (bound - values[at]) / scale, np.pad(-side * slopes[at] / scale, (0, len(z) - self.k)))
-                    )
+                    rows.append((side * (bound - values[at]) / scale, wide(-side * slopes[at] / scale)))
         found, slope = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
         return np.nan_to_num(found, nan=-_OUT), np.nan_to_num(slope)
 
