@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,10 @@ def random_task(seed: int) -> tuple[Mechanism, Linkage, Material, SectionLimits]
     return mechanism, Linkage(crank, rod, offset, mechanism.branch), material, limits
 
 
+known_whip = cache(whip_of)  # no section counts in it
+sized = cache(size_sections)
+
+
 def demands(
     x: np.ndarray, mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits
 ) -> np.ndarray:
@@ -76,7 +81,7 @@ def demands(
     w, d, v, e = 1e-3 * x
     bars = [Bar(width=w, depth=d, density=material.density), Bar(width=v, depth=e, density=material.density)]
     joints = joint_loads(replace(mechanism, crank=bars[0], rod=bars[1]), linkage)
-    whip = whip_of(mechanism, linkage)
+    whip = known_whip(mechanism, linkage)
     g, r, l = math.hypot(*mechanism.gravity), float(linkage.crank), float(linkage.rod)
     mean = material.ultimate_strength if limits.criterion == "goodman" else material.yield_strength
     found = []
@@ -199,7 +204,7 @@ def test_sensitivities_predict_the_mass_of_a_better_material(name: str) -> None:
     states = {"bearing_pressure": ("bearing",), "endurance": ("fatigue",), "yield_strength": ("net", "bore", "edge")}
     # Fatigue does not decide where the question is of the yield strength.
     steel = replace(STEEL, endurance=0.99 * STEEL.yield_strength) if name == "yield_strength" else STEEL
-    found = size_sections(fast, LINKAGE, steel, LIMITS)
+    found = sized(fast, LINKAGE, steel, LIMITS)
     up, down = (
         size_sections(fast, LINKAGE, replace(steel, **{name: share * getattr(steel, name)}), LIMITS).mass
         for share in (1.001, 0.999)

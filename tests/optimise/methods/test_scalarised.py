@@ -10,6 +10,7 @@ import pytest
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.methods import scalarised
 from slidercrank.optimise.methods.scalar import Form, Programme
 from slidercrank.optimise.methods.scalarised import grid, simplex
 from slidercrank.optimise.problem.problem import Problem
@@ -26,6 +27,12 @@ PROBLEMS: dict[str, Problem] = {
     "two": problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=10),
     "three": problem({"peak_torque": "minimise", "time_ratio": "maximise", "footprint": "minimise"}, HELD, designs=24),
 }
+
+
+@pytest.fixture(autouse=True)
+def few_starts(few: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Find the best of each objective from few starts, and polish few designs."""
+    monkeypatch.setattr(scalarised, "_STARTS", 2)
 
 
 @cache
