@@ -93,7 +93,7 @@ class Serving:
                     return True
             except httpx.TransportError:
                 pass
-            time.sleep(0.05)
+            time.sleep(0.1)
         return False
 
     def submit(self, tables: Mapping[str, Any], **limits: float) -> int:
@@ -141,7 +141,7 @@ class Serving:
 
     def _look(self) -> None:
         with httpx.Client(base_url=str(self._client.base_url), trust_env=False, verify=False, timeout=5.0) as client:
-            while not self._over.wait(0.1):
+            while not self._over.wait(0.2):
                 begin = time.monotonic()
                 try:
                     self.unanswered += not client.get("/health/live").is_success

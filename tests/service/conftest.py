@@ -90,14 +90,20 @@ def command(runs: Path) -> Command:
     return run
 
 
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a place with a run of the small job."""
-    place = tmp_path_factory.mktemp("kept")
+@pytest.fixture(scope="session")
+def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a place with a run of the small job, to be copied."""
+    place = tmp_path_factory.mktemp("solved_once")
     job = fronts.job_file(tmp_path_factory.mktemp("job"))
     done = CliRunner().invoke(app, ["optimise", str(job), "--runs", str(place), "--no-figures"])
     assert done.exit_code == 0
     return place
+
+
+@pytest.fixture(scope="module")
+def kept(solved_once: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a place with a run of the small job."""
+    return shutil.copytree(solved_once, tmp_path_factory.mktemp("kept") / "runs")
 
 
 @pytest.fixture(scope="session")

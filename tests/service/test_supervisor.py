@@ -52,7 +52,7 @@ def until(condition: Callable[[], object], what: str) -> None:
     end = time.monotonic() + 120.0
     while not condition():
         assert time.monotonic() < end, f"within 2 minutes there was no {what}"
-        time.sleep(0.02)
+        time.sleep(0.05)
 
 
 def gone(process: int) -> bool:
