@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole, distinct
+from ...model.arrays import Array, Whole
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
@@ -53,7 +53,7 @@ def strict_multipliers(
     nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
     the weights of each objective add to 1, the conditions of the least sum with none held.
     """
-    names = distinct(owner)
+    names = sorted(set(owner.tolist()))
     p, q, m = len(goals), len(active), len(names)
     size, lengths = _sizes(goals, active)
     k = goals.shape[1]
@@ -75,6 +75,6 @@ def strict_multipliers(
 
 def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
     """Return one size for all objective rows and the length of each active one: sums weigh alike at any scale."""
-    lengths = np.linalg.norm(active, axis=1)
+    lengths = np.sqrt(np.add.reduce(active * active, axis=1))
     lengths[lengths == 0.0] = 1.0
-    return float(np.max(np.linalg.norm(goals, axis=1), initial=0.0)) or 1.0, lengths
+    return float(np.sqrt(np.add.reduce(goals * goals, axis=1)).max(initial=0.0)) or 1.0, lengths

@@ -279,7 +279,7 @@ def convex(hessian: Array, normals: Array) -> Array:
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
     values, vectors = np.linalg.eigh(hessian)
-    lengths = np.linalg.norm(normals, axis=1)
+    lengths = np.sqrt(np.add.reduce(normals * normals, axis=1))
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
         across = directions[: len(sizes)][sizes > _APART]

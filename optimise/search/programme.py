@@ -15,6 +15,7 @@ Without objectives the step is the shortest one that fulfils the constraints. Wh
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate
 
 import numpy as np
@@ -68,15 +69,16 @@ def solve_step(
     """
     k, count = len(u), len(chosen)
     low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
-    pieces = [np.flatnonzero((goals.owner == owner) & (goals.values > tops[owner] - _REACH)) for owner in chosen]
-    near = np.flatnonzero(np.isfinite(limits.values))
+    close = goals.values > (tops - _REACH)[goals.owner]
+    pieces = [((goals.owner == owner) & close).nonzero()[0] for owner in chosen]
+    near = np.isfinite(limits.values).nonzero()[0]
     holding = count if hold else 0
     counts = [*map(len, pieces), holding, holding, len(near), 1, k, k]
     ends = [0, *accumulate(counts)]
     *goal_rows, losing, gaining, limiting, violating, above, below = map(slice, ends[:-1], ends[1:])
     size = k + count + holding + 1
     rows, bounds = np.zeros((ends[-1], size)), np.zeros(ends[-1])  # a z <= b for z = (d, t, v, w)
-    one, edge = np.eye(holding), np.eye(k)
+    one, edge = _identity(holding), _identity(k)
     for place, (owner, columns, part) in enumerate(zip(chosen, pieces, goal_rows, strict=True)):
         bounds[part] = tops[owner] - goals.values[columns]
         rows[part, :k] = goals.gradients[columns]
@@ -89,8 +91,8 @@ def solve_step(
     rows[limiting, -1] = rows[violating, -1] = -1.0
     bounds[above], bounds[below] = high, -low
     rows[above, :k], rows[below, :k] = edge, -edge
-    weights = np.ones(count + holding + 1)
-    weights[count:-1], weights[-1] = LOSS, violation
+    weights = np.empty(count + holding + 1)
+    weights[:count], weights[count:-1], weights[-1] = 1.0, LOSS, violation
     move, dual = _least_distance(rows, bounds, root, weights)
     held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
@@ -107,7 +109,12 @@ def solve_step(
         normals.append(tied[1:] - tied[:1])
         if loses:
             normals.append(tied[:1])
-    return Step(np.clip(move, low, high), goal_weight, limit_weight, np.concatenate(normals))
+    return Step(move.clip(low, high), goal_weight, limit_weight, np.concatenate(normals))
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
 
 
 def roots(hessians: Array) -> Array:
