@@ -129,7 +129,9 @@ class Many:
         forces: whether cuts that only forces have are wanted too. contacts: of these, those of the guide's force.
         """
         self.table = mirrored(self.swing.points) if back else self.swing.table
-        found = list(self._corners()) + (list(self._kinks()) if forces else [])
+        kinks = list(self._kinks()) if forces else []
+        at, codes = self._shares([way for way, _ in kinks]), [code for _, code in kinks]
+        found = [*self._corners(), *zip(at, codes, strict=True)]
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in found)]
         state = np.tile(np.array([-1, -1, *(code for _, code in found)], dtype=np.int64), (self.count, 1))
         cuts = np.stack(shares, axis=1)
@@ -144,7 +146,7 @@ class Many:
             yield np.full(self.count, share), -1
 
     def _kinks(self) -> Any:
-        """Yield every cut that forces have: its share on the way forth (n,), and the state with a value there."""
+        """Yield every cut that forces have: its share (n,) of the way forth, and the state with a value there."""
         friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
@@ -182,8 +184,7 @@ class Many:
             return
         first, last = self.ends.start, self.ends.end
         if self.swing.driver == "crank":
-            share = shares_of(self.swing.law, np.clip((theta - first) / (last - first), 0.0, 1.0), self.table)
-            yield np.where(np.isnan(theta), np.nan, share), state
+            yield np.clip((theta - first) / (last - first), 0.0, 1.0), state
         else:
             yield self._at_place(self._place(theta)), state
 
@@ -200,8 +201,15 @@ class Many:
         first, last = self._place(self.ends.start), self._place(self.ends.end)
         with np.errstate(divide="ignore", invalid="ignore"):
             s = (x - first) / (last - first)
-        inside = (s >= 0.0) & (s <= 1.0)
-        return np.where(inside, shares_of(self.swing.law, np.where(inside, s, 0.0), self.table), np.nan)
+        return np.where((s >= 0.0) & (s <= 1.0), s, np.nan)
+
+    def _shares(self, ways: list[Array]) -> list[Array]:
+        """Return the shares of the time (n,) of shares of the way, NaN where these are; sooner together."""
+        if not ways:
+            return []
+        s = np.stack(ways)
+        off = np.isnan(s)
+        return list(np.where(off, np.nan, shares_of(self.swing.law, np.where(off, 0.0, s), self.table)))
 
     def _with_contacts(self, own: Pieces) -> Pieces:
         """Return pieces cut where the guide's force changes sides, between neighbours of a row of samples in each."""
