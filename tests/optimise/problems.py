@@ -17,6 +17,8 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.auto import auto
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
+from slidercrank.optimise.search import search
+from slidercrank.optimise.search.search import WIDTHS
 from slidercrank.optimise.solve import solve
 from tests.shared import computed_once
 
@@ -98,6 +100,12 @@ def polish_few(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(auto, name, count)
 
 
+def search_little(patch: pytest.MonkeyPatch) -> None:
+    """Zoom in half as many rounds, and polish few designs."""
+    patch.setattr(search, "WIDTHS", WIDTHS[::2])
+    polish_few(patch)
+
+
 @cache
 def shipped(job: str) -> Problem:
     """Return the problem of a shipped job."""
@@ -106,8 +114,9 @@ def shipped(job: str) -> Problem:
 
 @computed_once
 def shipped_front(job: str) -> ParetoFront:
-    """Return the front of a shipped job, for tests that polish few designs too: they share it with all others."""
+    """Return the front of a shipped job, for tests that search little too: they share it with all others."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "WIDTHS", WIDTHS)
         for name, count in _ALL.items():
             patch.setattr(auto, name, count)
         return solve(shipped(job))

@@ -22,7 +22,7 @@ from slidercrank.optimise.search import fingerprint as identity
 from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record
 from slidercrank.optimise.search.fingerprint import identity_of
 from slidercrank.optimise.solve import solve
-from tests.optimise.problems import Bounds, degrees, polish_few, problem, shipped
+from tests.optimise.problems import Bounds, degrees, problem, search_little, shipped
 
 # Both signs of the offset, so that there are two sheets; a peak among the objectives and one among the constraints.
 HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
@@ -47,10 +47,10 @@ SLOW = ("trust_constr", "shgo", "minimax")
 
 @pytest.fixture(autouse=True)
 def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keep every step at once, so that runs can be cut within their rounds; start from few samples, polish few."""
+    """Keep every step at once, so that runs can be cut within their rounds; search little."""
     monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
     monkeypatch.setattr(local, "SAMPLES", 512)
-    polish_few(monkeypatch)
+    search_little(monkeypatch)
 
 
 def asked(method: str) -> Problem:

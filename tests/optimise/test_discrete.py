@@ -23,7 +23,7 @@ from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, random_job
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 JOBS = 40
 QUICK = {"method": "sobol", "evaluations": 64, "designs": 1000, "seed": 1}

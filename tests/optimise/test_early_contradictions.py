@@ -18,7 +18,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 NAMES = ("crank", "rod", "offset")
 

@@ -21,7 +21,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 JOBS, AT_ONCE = 40, 10
 

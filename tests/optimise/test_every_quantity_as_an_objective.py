@@ -12,7 +12,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
 from tests.model.cases import fitted
-from tests.optimise.problems import MACHINE, polish_few, problem
+from tests.optimise.problems import MACHINE, problem, search_little
 
 RUBBING = dataclasses.replace(MACHINE, friction=Friction(guide=0.1))
 LEAN = np.radians(40.0)
@@ -33,7 +33,7 @@ def random_values(quantity: Quantity, count: int = 2000) -> np.ndarray:
 def test_no_random_design_is_better_than_the_best_of_the_search(
     name: str, wish: Sense, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    polish_few(monkeypatch)
+    search_little(monkeypatch)
     found = random_values(QUANTITIES[name])
     middle = float(np.median(found))
     given = problem(

@@ -19,7 +19,7 @@ from slidercrank.optimise.solve import solve
 
 from .problems import JOBS, Bounds, degrees, problem, shipped
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 ONE, NONE = np.zeros((1, 2)), np.zeros((0, 2))
 MIXED: dict[str, Bounds] = {

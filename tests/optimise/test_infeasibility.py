@@ -16,7 +16,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 from tests.optimise.test_known_optima import best_transmission_angle, excess_angle
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 
 def reachable(front: ParetoFront, quantity: str) -> float:

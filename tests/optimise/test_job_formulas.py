@@ -19,7 +19,7 @@ from slidercrank.optimise.job.own import declared
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs" / "feeder.toml").read_text(encoding="utf-8"))
 DESIGNS = np.array([[0.04, 0.1, 0.02], [0.03, 0.12, 0.04]])

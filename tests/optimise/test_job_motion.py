@@ -83,7 +83,7 @@ def test_places_of_the_slider_state_a_swing_whose_angle_is_exact() -> None:
     assert (np.diff(error[order]) < 0.0).all()
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_a_free_start_finds_what_the_best_of_many_fixed_ones_does() -> None:
     """The swing and the travel are exact; the best start is found among the others."""
     constraints = {"actuator_travel": {"equals": "2.3 m"}}
@@ -255,7 +255,7 @@ def random_designs(problem: Problem, count: int) -> np.ndarray[Any, np.dtype[np.
     return np.stack([random.uniform(end.lower, end.upper, count) for end in ends], axis=1)
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_nothing_dominates_the_front_of_a_swing_and_all_of_it_is_stationary() -> None:
     limits = {"actuator_travel": {"min": "1.7 m", "max": "2.5 m"}, "rod / crank": {"max": 1.2}}
     problem = parse_job(changed(constraints=limits))

@@ -19,7 +19,7 @@ from slidercrank.optimise.questions.like import Ends, distance, extended, like
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
 TORQUE: dict[str, Sense] = {"peak_torque": "minimise", "time_ratio": "maximise"}

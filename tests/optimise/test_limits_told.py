@@ -19,7 +19,7 @@ from slidercrank.optimise.certificate.infeasible import prove_infeasible
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 Job = dict[str, Any]
 CLOSED = ("stroke", "time_ratio", "transmission_angle", "rod_to_crank", "rod_to_offset")

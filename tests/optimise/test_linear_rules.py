@@ -17,7 +17,7 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.solve import solve
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 RUNS = Path(__file__).parents[2] / "runs"
 FEEDER = tomllib.loads((RUNS / "feeder.toml").read_text(encoding="utf-8"))

@@ -23,7 +23,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 BARE = replace(MACHINE, gravity=(0.0, 0.0), loads=())
 SPRING = Spring(stiffness=500.0, free_position=0.2)

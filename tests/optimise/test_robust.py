@@ -20,7 +20,7 @@ from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.fresh_machines import realised, sampling_error
-from tests.optimise.problems import MACHINE, degrees, polish_few, problem
+from tests.optimise.problems import MACHINE, degrees, problem, search_little
 
 TOLERANT = replace(
     MACHINE,
@@ -53,7 +53,7 @@ def plain(designs: int = 3) -> Problem:
 @cache
 def front(kind: str, order: int) -> ParetoFront:
     with pytest.MonkeyPatch.context() as patch:
-        polish_few(patch)
+        search_little(patch)
         return solve(robust(plain(), Robust(kind=kind, order=order)))  # type: ignore[arg-type]
 
 
@@ -86,7 +86,7 @@ def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, ord
     assert (designs["time_ratio"] > designs["time_ratio_robust"]).all()
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requirements() -> None:
     cost = robust_cost(front("worst case", 2))
     assert cost is not None
@@ -97,7 +97,7 @@ def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requir
     assert (cost.within[:, 1] > cost.nominal[:, 1]).all()
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 @pytest.mark.parametrize("kind", ["percentile", "worst case"])
 def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> None:
     exact = replace(plain(), mechanism=replace(TOLERANT, tolerances=Tolerances()))
@@ -182,7 +182,7 @@ def test_the_schema_describes_the_table_robust() -> None:
     json.dumps(job_schema())
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_the_figure_shows_nominal_and_robust_front_and_the_cost() -> None:
     from slidercrank.service.figures.comparison import robustness_figure
 

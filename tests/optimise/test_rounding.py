@@ -18,7 +18,7 @@ from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Range
 from slidercrank.optimise.problem.robust import Robust, robust
 from slidercrank.optimise.solve import solve
-from tests.optimise.problems import MACHINE, Bounds, Ends, degrees, polish_few, problem
+from tests.optimise.problems import MACHINE, Bounds, Ends, degrees, problem, search_little
 
 NAMES = ("crank", "rod", "offset", "slider_mass")
 WISHES: dict[str, Any] = {
@@ -158,7 +158,7 @@ def require_best(front: ParetoFront, row: int, steps: dict[str, float], found: R
 
 @pytest.mark.parametrize("seed", range(8))
 def test_no_combination_beats_the_answer(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    polish_few(monkeypatch)
+    search_little(monkeypatch)
     monkeypatch.setattr("slidercrank.optimise.front.rounding.REACHES", (3, 6))
     asked, steps = random_case(seed)
     front = solve(asked)

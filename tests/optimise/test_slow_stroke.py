@@ -20,7 +20,7 @@ from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 JOB: dict[str, Any] = {
     "name": "Press",

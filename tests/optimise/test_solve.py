@@ -33,7 +33,7 @@ WISHES: dict[str, Sense] = {
 }
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
 def test_any_number_of_objectives(count: int) -> None:
     front = solve(problem(dict(itertools.islice(WISHES.items(), count)), HELD))
@@ -44,7 +44,7 @@ def test_any_number_of_objectives(count: int) -> None:
     assert (front.designs["residual"] <= 1e-6).all()
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_progress_counts_up_and_is_kept() -> None:
     seen: list[Progress] = []
     front = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD), progress=seen.append)
@@ -60,7 +60,7 @@ def test_cancelling_while_kernels_are_waited_for_gives_a_front_without_designs(m
     assert (front.status, len(front), front.evaluations) == ("cancelled", 0, 0)
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 @pytest.mark.parametrize("after", [1, 2, 4, 6])
 def test_cancelling_keeps_what_was_found(after: int) -> None:
     rounds: list[Progress] = []
@@ -89,7 +89,7 @@ def test_a_process_with_one_core_gives_the_same_front_bit_for_bit() -> None:
     assert finished.stdout == solve(given).dimensions.tobytes()
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_constraints_on_peaks_hold_exactly_and_bind() -> None:
     wishes: dict[str, Sense] = {"time_ratio": "maximise", "peak_torque": "minimise"}
     free = solve(problem(wishes, HELD, samples=2048))
@@ -112,14 +112,14 @@ def test_all_dimensions_given_leave_one_design() -> None:
     assert front.dimensions.tolist() == [[0.1, 0.3, 0.05]]
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_an_equality_that_no_rule_eliminates_is_met_by_the_solver() -> None:
     front = solve(problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0}))
     speed = QUANTITIES["peak_slider_speed"].evaluate(MACHINE, front.dimensions).values
     assert speed == pytest.approx(np.array([4.0]), rel=1e-8)
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_direction_of_rotation_matters_when_the_strokes_are_loaded_differently() -> None:
     bar = Bar(width=0.03, depth=0.02, density=7800.0)
 
@@ -144,7 +144,7 @@ def test_tables_of_a_job_are_no_problem_yet() -> None:
         solve({})  # type: ignore[arg-type]
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_a_bar_shows_a_search_and_leaves_the_front_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
     given = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.2}, designs=8, samples=128)
     silent = solve(given)

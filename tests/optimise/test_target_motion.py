@@ -64,7 +64,7 @@ def test_linkage_is_recovered_from_its_motion(
         assert best[f"motion_shift{suffix}_mm"] == pytest.approx(20.0, abs=1e-3)
 
 
-@pytest.mark.usefixtures("few")
+@pytest.mark.usefixtures("little")
 def test_deviation_as_a_constraint_keeps_designs_near_the_motion() -> None:
     limits = {"motion_deviation": {"max": "0.5 mm"}}
     front = solve(parse_job(job(motion(), {"time_ratio": "maximise", "peak_torque": "minimise"}, constraints=limits)))

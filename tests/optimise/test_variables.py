@@ -25,7 +25,7 @@ from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, degrees, problem
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 HEAVY = Mechanism(
     speed=30.0,

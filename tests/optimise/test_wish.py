@@ -20,7 +20,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.achievement import Independent, Wanted
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped_front
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
 LOOSE: dict[str, Bounds] = {"stroke": (0.19, 0.21), "transmission_angle": (degrees(30.0), None)}

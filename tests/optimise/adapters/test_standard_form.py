@@ -12,7 +12,7 @@ from slidercrank.model.errors import InputError
 from tests.optimise.adapters.the_problem import NEAR, best_angle, degrees_of, problem
 from tests.optimise.problems import RUNS
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 
 def test_the_known_optimum_is_that_of_solve() -> None:

@@ -24,7 +24,7 @@ from slidercrank.optimise.solve import solve
 from tests.optimise.certificate.test_boxes import MACHINES, V
 from tests.optimise.problems import degrees, problem, shipped_front
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 HELD = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
 ROUNDED = 1e-9

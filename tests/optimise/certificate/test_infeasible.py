@@ -16,7 +16,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 CONTRADICTIONS: tuple[dict[str, Bounds], ...] = (
     {"time_ratio": 1.5, "transmission_angle": (degrees(40.0), None)},

@@ -11,7 +11,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.sections import size_sections
 from slidercrank.optimise.solve import solve
-from tests.optimise.problems import polish_few
+from tests.optimise.problems import search_little
 
 SIZES: dict[str, Any] = {"crank_pivot": 0.012, "crank_pin": 0.025, "slider_pin": 0.022}
 BAR = {"width": "60 mm", "depth": "20 mm", "density": 7850.0}
@@ -64,7 +64,7 @@ def test_least_mass_of_the_search_is_that_of_the_geometric_programme(
     active = {name for name, used in convex.utilisation.items() if used > 1.0 - 1e-6}
     assert len(active) == 4
     assert all(name.partition(": ")[2].startswith(("net section", "bearing")) for name in active)
-    polish_few(monkeypatch)
+    search_little(monkeypatch)
     front = solve(problem)
     assert front.status == "done", front.message
     found = problem.quantity("moving_mass").evaluate(problem.mechanism, front.dimensions[:1]).values[0]

@@ -25,7 +25,7 @@ from slidercrank.optimise.search.judging import exactly, joined, quickly
 from slidercrank.optimise.search.polish import polish
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
-from tests.optimise.problems import polish_few, problem, shipped
+from tests.optimise.problems import problem, search_little, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module
 from tests.optimise.test_robust import TOLERANT, plain
 
@@ -38,9 +38,9 @@ CUTS = ([0, 1, 40], [0, 7, 16, 33, 40], [0, 39, 40])
 
 @pytest.fixture(autouse=True, scope="module")
 def few() -> Iterator[None]:
-    """Polish few designs."""
+    """Search little."""
     with pytest.MonkeyPatch.context() as patch:
-        polish_few(patch)
+        search_little(patch)
         yield
 
 

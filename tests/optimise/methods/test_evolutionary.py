@@ -13,7 +13,7 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import degrees, problem, shipped, shipped_front
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 
 def asked(given: Problem, method: str, evaluations: int, *, seed: int = 1, samples: int | None = None) -> Problem:

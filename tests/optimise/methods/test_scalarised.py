@@ -30,8 +30,8 @@ PROBLEMS: dict[str, Problem] = {
 
 
 @pytest.fixture(autouse=True)
-def few_starts(few: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Find the best of each objective from few starts, and polish few designs."""
+def few_starts(little: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Find the best of each objective from few starts, and search little."""
     monkeypatch.setattr(scalarised, "_STARTS", 2)
 
 

@@ -20,7 +20,7 @@ from tests.optimise.independent import excess, value
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
-pytestmark = pytest.mark.usefixtures("few")
+pytestmark = pytest.mark.usefixtures("little")
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(35.0), None)}
 PROBLEMS: dict[str, Problem] = {
