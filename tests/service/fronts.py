@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +72,12 @@ def problem(names: tuple[str, ...] = FOUR, mechanism: Mechanism = MACHINE) -> Pr
 
 def front(names: tuple[str, ...] = FOUR, *, designs: int = 20, mechanism: Mechanism = MACHINE) -> ParetoFront:
     """Return the non-dominated ones of random designs that turn fully, `designs` at most."""
+    known = _front(names, designs, mechanism)
+    return replace(known, columns=dict(known.columns), dimensions=known.dimensions.copy(), values=known.values.copy())
+
+
+@cache
+def _front(names: tuple[str, ...], designs: int, mechanism: Mechanism) -> ParetoFront:
     asked = problem(names, mechanism)
     random = np.random.default_rng(7)
     box = np.array([[0.08, 0.2, 0.0], [0.16, 0.6, 0.15]])
@@ -113,8 +121,6 @@ def front(names: tuple[str, ...] = FOUR, *, designs: int = 20, mechanism: Mechan
 
 def empty_front(status: str, message: str) -> ParetoFront:
     """Return a front without designs."""
-    from dataclasses import replace
-
     full = front(designs=1)
     return replace(
         full,
