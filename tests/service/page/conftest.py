@@ -127,6 +127,7 @@ def open_page(pages: Pages) -> Iterator[Open]:
                 page = stack.enter_context(pages.fresh(address, **looks))
             watch(page, address, wrong, expected)
             page.goto(f"{address}/{view}")
+            page.locator("h1").first.wait_for()  # what `expect` does not find yet costs it a look at the whole page
             return page
 
         yield opened

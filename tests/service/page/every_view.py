@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page
 
 from slidercrank.service.runs.result import Result
 from slidercrank.service.store import Store
@@ -33,7 +33,7 @@ class View:
     def wait(self, page: Page) -> None:
         """Wait until it is drawn, with its font."""
         for selector in self.ready:
-            expect(page.locator(selector).first).to_be_visible(timeout=60_000)
+            page.locator(selector).first.wait_for(timeout=60_000)
         page.evaluate("document.fonts.ready.then(() => null)")
 
 

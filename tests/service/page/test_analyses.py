@@ -65,7 +65,7 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/motor"
     told = httpx.get(path, params=lengths, timeout=60.0).json()["told"]
     expect(panel.locator("tr", has_text="peak torque").first).to_contain_text(told[1]["rows"][0][1])
-    expect(page).to_have_url(re.compile("tab=motor"))
+    page.wait_for_url(re.compile("tab=motor"))
     panel.evaluate("node => node.scrollIntoView()")
     page.wait_for_function("() => history.state?.top === Math.round(scrollY) && scrollY > 500")
     page.reload()
@@ -79,7 +79,7 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     page.go_back()
     page.wait_for_function(f"() => Math.abs(scrollY - {before}) <= 2", timeout=30_000)
     page.get_by_label("Next design").press("Enter")
-    expect(page).to_have_url(re.compile(r"designs/3\?tab=motor"))
+    page.wait_for_url(re.compile(r"designs/3\?tab=motor"))
 
 
 def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_is_typed(

@@ -69,6 +69,7 @@ def opened(shared: Shared, solved: Solved) -> Opened:
         page.set_viewport_size(viewport)
         page.emulate_media(**{**STILL, **media})
         page.evaluate("view => { location.hash = view; }", view(solved, design, query))
+        page.locator(".mechanism .link.crank").first.wait_for()
         expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {design}", timeout=30_000)
         expect(page.locator(".mechanism .link.crank").first).to_be_visible()
         return page

@@ -80,7 +80,7 @@ def test_a_limit_holds_everywhere_and_in_a_link(open_page: Open, solved: Solved)
     field(page, "At least time ratio").press("Enter")
     expect(page.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
     expect_designs(page, kept)
-    expect(page).to_have_url(re.compile(rf"min\.time_ratio={least}"))
+    page.wait_for_url(re.compile(rf"min\.time_ratio={least}"))
     again = open_page(solved.store, hash_of(page))
     expect(again.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
     expect_designs(again, kept)
@@ -116,7 +116,7 @@ def test_limits_are_in_the_units_of_the_reader_and_stay_those_of_the_service(ope
     expect(field(page, "At least rod, in")).to_have_value("10")
     field(page, "At most rod, in").fill("20")
     field(page, "At most rod, in").press("Enter")
-    expect(page).to_have_url(re.compile(r"max\.rod_mm=508"))
+    page.wait_for_url(re.compile(r"max\.rod_mm=508"))
     page.get_by_text("Axes", exact=True).click()
     expect(page.get_by_role("group", name="Axes").get_by_label("stroke, in", exact=True)).to_be_visible()
 
@@ -171,14 +171,14 @@ def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Sol
     expect(ratio).to_contain_text("↑ better")
     expect(page.get_by_role("columnheader", name="time ratio")).to_contain_text("more is better")
     page.get_by_role("button", name="Flip: time ratio").click()
-    expect(page).to_have_url(re.compile(r"-time_ratio"))
+    page.wait_for_url(re.compile(r"-time_ratio"))
     expect(ratio).to_contain_text("↓ better")
     page.get_by_role("button", name="Move left: time ratio").click()
     page.get_by_role("button", name="Leave out: crank").click()
     page.get_by_text("Axes", exact=True).click()
     page.get_by_role("group", name="Axes").get_by_label("stroke, mm", exact=True).check()
     expect(field(page, "At least stroke, mm")).to_be_visible()
-    expect(page).to_have_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
+    page.wait_for_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
 
 
 @pytest.mark.parametrize(
@@ -207,10 +207,10 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     button = page.get_by_role("columnheader").get_by_role("button", name="least transmission angle")
     best = [row + 1 for row in sorted(range(8), key=lambda row: -ratios[row])]
     button.click()
-    expect(page).to_have_url(re.compile("sort=-least_transmission_angle_deg"))
+    page.wait_for_url(re.compile("sort=-least_transmission_angle_deg"))
     expect_designs(page, best)
     button.click()
-    expect(page).to_have_url(re.compile("sort=least_transmission_angle_deg"))
+    page.wait_for_url(re.compile("sort=least_transmission_angle_deg"))
     expect_designs(page, best[::-1])
     field(page, "At least least transmission angle").fill(str(round(sorted(ratios)[3] - 1e-3, 4)))
     field(page, "At least least transmission angle").press("Enter")
@@ -225,7 +225,7 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     page.locator("table.designs tbody a").first.click()  # next and previous follow the list
     for number in kept[1:]:
         page.get_by_label("Next design").click()
-        expect(page).to_have_url(re.compile(rf"designs/{number}$"))
+        page.wait_for_url(re.compile(rf"designs/{number}$"))
     expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {kept[-1]} of 8, 5. of the 5 in the list")
     expect(page.get_by_label("Next design")).to_have_count(0)
     page.locator(".back a").click()
@@ -245,7 +245,7 @@ def test_the_design_that_weights_choose_is_that_of_the_service(open_page: Open, 
         question = {"topsis": "time_ratio=9, transmission_angle=2"}
         picked = httpx.get(f"{address}{solved.path}/pick", params=question).json()["number"]
     expect(page.get_by_text(f"These weights choose design {picked}.")).to_be_visible()
-    expect(page).to_have_url(re.compile("weights=9%2C2"))
+    page.wait_for_url(re.compile("weights=9%2C2"))
 
 
 def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> None:
@@ -259,10 +259,10 @@ def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> N
     side_by_side = page.get_by_role("link", name="Designs 1, 2 side by side")
     expect(side_by_side).to_have_attribute("href", f"#/jobs/{solved.number}/designs/1?beside=2")
     expect(page.get_by_role("checkbox", name="Select design 2")).to_be_checked()
-    expect(page).to_have_url(re.compile("selected=1%2C2"))
+    page.wait_for_url(re.compile("selected=1%2C2"))
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
-    expect(page).to_have_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
+    page.wait_for_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
     page.go_back()
     expect(page.get_by_role("checkbox", name="Select design 2")).to_be_checked()
     designs = solved.result.designs
@@ -280,7 +280,7 @@ def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> N
         page.keyboard.press(key)
     expect(page.locator(".lines").get_by_role("status")).to_contain_text("along the axis of rod")
     page.get_by_role("button", name="Logarithmic: rod").press("Enter")
-    expect(page).to_have_url(re.compile("log=rod_mm"))
+    page.wait_for_url(re.compile("log=rod_mm"))
     page.keyboard.press("Space")
     expect(page).not_to_have_url(re.compile("log=rod_mm"))
 
@@ -314,7 +314,7 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     page.mouse.down()
     page.mouse.move(middle[0] + 80, middle[1] + 60, steps=4)
     page.mouse.up()
-    expect(page).to_have_url(re.compile("max.rod_mm"))
+    page.wait_for_url(re.compile("max.rod_mm"))
     low, high = (float(field(page, f"At {side} crank, mm").input_value()) for side in ("least", "most"))
     under, over = (float(field(page, f"At {side} rod, mm").input_value()) for side in ("least", "most"))
     kept = sum(low <= row["crank_mm"] <= high and under <= row["rod_mm"] <= over for row in rows)  # type: ignore[operator]
@@ -325,7 +325,7 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     expect(page.locator(".linkage h2")).not_to_have_text(before)
     (design,) = re.findall(r"^Design (\d+)", page.locator(".linkage h2").inner_text())
     page.mouse.click(middle[0] + 40, middle[1] + 30)
-    expect(page).to_have_url(re.compile(rf"#/jobs/1/designs/{design}$"))
+    page.wait_for_url(re.compile(rf"#/jobs/1/designs/{design}$"))
 
 
 def test_the_linkage_of_what_is_pointed_at_is_drawn_at_one_scale_and_moves(open_page: Open, solved: Solved) -> None:
@@ -356,7 +356,7 @@ def test_the_linkage_of_what_is_pointed_at_is_drawn_at_one_scale_and_moves(open_
     page.get_by_role("link", name="3", exact=True).focus()
     expect(title).to_have_text(re.compile(r"^Design 3\b"))
     page.locator(".linkage a", has_text="Open").click()
-    expect(page).to_have_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
+    page.wait_for_url(re.compile(rf"#/jobs/{solved.number}/designs/3$"))
 
 
 def test_ten_thousand_designs_are_limited_together_and_right(open_page: Open, large: tuple[Store, list[Row]]) -> None:
@@ -423,7 +423,7 @@ def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[
     for dx, dy in ((100, 0), (0, 100)):
         page.mouse.move(x + dx, y + dy)
     page.mouse.up()
-    expect(page).to_have_url(re.compile("lasso=crank_mm%2Crod_mm"))
+    page.wait_for_url(re.compile("lasso=crank_mm%2Crod_mm"))
     shown = parse_qs(urlsplit(hash_of(page).replace("#", "")).query)["lasso"][0].split(",")[2:]
     (x1, y1), (x2, y2), (x3, y3) = (tuple(map(float, shown[i : i + 2])) for i in (0, 2, 4))
     assert (y2, x3) == pytest.approx((y1, x1), rel=1e-3)

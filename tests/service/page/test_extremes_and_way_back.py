@@ -42,6 +42,7 @@ def page(opened: Page, solved: Solved) -> Page:
     opened.evaluate("localStorage.clear(); location.hash = '#/help'")
     expect(opened.locator(".mechanism .link.crank")).to_have_count(0)
     opened.evaluate("view => { location.hash = view; }", f"#/jobs/{solved.number}/designs/{DESIGN}")
+    opened.locator(".way-back").wait_for()
     expect(opened.locator(".way-back")).to_contain_text("The slider of this design is", timeout=30_000)
     return opened
 

@@ -31,7 +31,7 @@ def page(opened: tuple[Page, str], solved: Solved) -> Page:
     page.evaluate("localStorage.clear(); location.hash = '#/help'")
     expect(page.locator(".rounding")).to_have_count(0)
     page.evaluate("view => { location.hash = view; }", f"#/jobs/{solved.number}/designs/{DESIGN}")
-    expect(page.get_by_role("heading", name="Round it")).to_be_visible(timeout=30_000)
+    page.get_by_role("heading", name="Round it").wait_for()
     return page
 
 

@@ -44,10 +44,10 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
     page.wait_for_timeout(300)
     assert all(one != other for one, other in zip(before, rods.evaluate_all(turned), strict=True))  # all five move
     page.get_by_role("link", name="New run").last.click()
-    expect(page).to_have_url(re.compile(r"#/new$"))
+    page.wait_for_url(re.compile(r"#/new$"))
     page.go_back()
     machines.filter(has_text="Vibrating sieve").click()
-    expect(page).to_have_url(re.compile(r"#/new\?preset=sieve$"))
+    page.wait_for_url(re.compile(r"#/new\?preset=sieve$"))
 
 
 def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
@@ -69,7 +69,7 @@ def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: O
     expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
     require_accessible(page)
     item.get_by_role("link", name="Feeder", exact=True).click()
-    expect(page).to_have_url(re.compile(r"#/jobs/1$"))
+    page.wait_for_url(re.compile(r"#/jobs/1$"))
 
 
 def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:

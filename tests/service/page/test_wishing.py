@@ -34,7 +34,7 @@ def page(opened: tuple[Page, str], solved: Solved) -> Page:
     page.evaluate("localStorage.clear(); sessionStorage.clear(); location.hash = '#/help'")
     expect(page.locator(".wishing")).to_have_count(0)
     page.evaluate("view => { location.hash = view; }", f"#/jobs/{solved.number}")
-    expect(page.locator(".wishing")).to_be_visible(timeout=30_000)
+    page.locator(".wishing").wait_for()
     return page
 
 
@@ -65,7 +65,7 @@ def test_the_wished_design_is_that_of_the_api_and_opens(page: Page, opened: tupl
     for one in expected["objectives"]:
         cell = panel(page).locator(f"td[data-key={one['quantity']}]").first
         assert float(str(cell.get_attribute("data-value"))) == one["reached"]
-    expect(page).to_have_url(re.compile(r"wish\.time_ratio=1\.3"))
+    page.wait_for_url(re.compile(r"wish\.time_ratio=1\.3"))
     page.reload()  # as whoever gets the link sees it
     panel(page).get_by_role("link", name="Open the wished design").click()
     expect(page.locator(".what-if .verdict")).to_contain_text(
