@@ -78,7 +78,8 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     assert "Press for bushings" in report.read_text(encoding="utf-8")
     page.get_by_role("link", name="beside the front").press("Enter")
     typed(page.get_by_label("Why, or why not, Rounded"), "round numbers")
-    page.get_by_label("Why, or why not, Rounded").press("Tab")
+    with page.expect_response("**/kept"):  # with which the table is drawn anew
+        page.get_by_label("Why, or why not, Rounded").press("Tab")
     page.get_by_label("Decided for Rounded").press("Space")
     expect(page.locator(".decision")).to_contain_text("Decided for Rounded because round numbers", timeout=PATIENCE)
 
@@ -122,7 +123,8 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         line = theirs.locator(".kept tbody tr")
         expect(line).to_have_count(1, timeout=PATIENCE)
         typed(theirs.get_by_label("Why, or why not, Design 2"), "fits the old frame")
-        theirs.keyboard.press("Tab")
+        with theirs.expect_response("**/kept"):
+            theirs.keyboard.press("Tab")
         theirs.get_by_label("Decided for Design 2").press("Space")
         expect(theirs.locator(".decision")).to_contain_text("because fits the old frame", timeout=PATIENCE)
         expect(mine.locator(".decision")).to_contain_text(

@@ -73,7 +73,7 @@ def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: O
 
 
 def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
-    page = open_page(store)
+    page = open_page(store, reduced_motion="reduce")
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
     submit(store, TABLES)
     item = page.get_by_role("listitem")
