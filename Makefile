@@ -21,7 +21,7 @@ test: $(VENV)/.installed-test
 	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.optimise slidercrank.model
 	$(PYTEST) -m '$(MARKED)'
 
-# Faults, installed copies, long walks through API and documentation: minutes for a few tests.
+# Faults, installed copies, long walks through API and documentation, and whatever else takes over a second a test.
 test-slow: $(VENV)/.installed-test
 	$(PYTEST) -m slow
 

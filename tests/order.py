@@ -1,7 +1,8 @@
 """Order of tests for several workers of pytest-xdist, which begin with equal shares and steal from the ends of others.
 
-Slow tests begin every share, or one worker alone would take them in turn. Files follow in a mixed order: tests of the
-service wait for processes and pages, and the others fill their pauses. At the end only short tests are left.
+Files with slow tests begin every share, or some worker would be at them when the others have ended. Others follow in a
+mixed order: tests of the service wait for processes and pages, and the others fill their pauses. At the end only short
+tests are left.
 """
 
 from __future__ import annotations
@@ -18,13 +19,14 @@ _EARLY = 0.7  # of the way: where the last file that waits stands
 
 
 def shared_out(tests: Sequence[Test], workers: int, file: Callable[[Test], str], slow: Collection[Test]) -> list[Test]:
-    """Return the tests so that each worker's share begins with as many slow ones; files stay together.
+    """Return the tests so that each worker's share begins with as many files that have slow ones; files stay together.
 
     slow: those of the tests that are.
     """
-    ordered = sorted((test for test in tests if test not in slow), key=lambda test: _place(file(test)))
+    first = {file(test) for test in slow}
+    ordered = sorted(tests, key=lambda test: (file(test) not in first, _place(file(test))))
     files = [list(group) for _, group in groupby(ordered, key=file)]
-    shares = [[*list(slow)[n::workers], *chain(*files[n::workers])] for n in range(workers)]
+    shares = [[*chain(*files[n::workers])] for n in range(workers)]
     sizes = [(len(tests) + n) // workers for n in range(workers)]  # as the scheduler of worksteal hands them out
     found = [share[:size] for share, size in zip(shares, sizes, strict=True)]
     over = chain(*(share[size:] for share, size in zip(shares, sizes, strict=True)))

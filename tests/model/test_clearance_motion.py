@@ -56,6 +56,7 @@ def test_one_millimetre_hardly_moves_the_slider_but_shakes_it_the_more_the_faste
     assert all(summary.impacts.value >= 1.0 for summary in found)
 
 
+@pytest.mark.slow
 def test_halving_the_tolerance_changes_the_statistics_by_less_than_their_uncertainty(fast: ClearanceRun) -> None:
     """The motion is chaotic: the two runs are two samples, whose means differ as their confidence intervals allow.
 

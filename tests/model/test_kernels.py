@@ -65,6 +65,7 @@ def started(command: list[str], cache: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program: list[str], tmp_path: Path) -> None:
     running = [started(program, tmp_path) for _ in range(4)]
     said = [process.communicate() for process in running]
@@ -81,6 +82,7 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program:
     assert again.communicate() == ("12.0 False\n", "")
 
 
+@pytest.mark.slow
 def test_compiling_ahead_is_told_by_who_waits_for_it(program: list[str], tmp_path: Path) -> None:
     begin = "from slidercrank.model.kernel.disk import compile_ahead; compile_ahead('program', ['program'])"
     source = SOURCE.replace("    print(", f"    {begin}\n    print(")
@@ -304,6 +306,7 @@ def test_the_peaks_of_a_machine_are_those_of_the_functions_in_python(monkeypatch
             np.testing.assert_allclose(compiled.gradients[:, 0], python.gradients[:, 0], atol=1e-9 * scale)
 
 
+@pytest.mark.slow
 def test_formulas_that_are_only_linked_give_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("slidercrank.model.kernel.kernel.machine_code", lambda wanted, modules: wanted.compile())
     designs = random_designs(200, seed=4)

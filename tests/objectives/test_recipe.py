@@ -12,6 +12,7 @@ NAME = "rms_slider_acceleration"
 SUITES = ("objectives/test_quantities.py", "objectives/test_units.py", "optimise/test_job.py")
 
 
+@pytest.mark.slow
 def test_a_quantity_in_one_file_is_taken_up_by_the_suites_of_all_quantities(
     pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:

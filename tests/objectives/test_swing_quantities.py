@@ -52,6 +52,7 @@ def values(machine: Mechanism, swing: Swing, design: Array) -> dict[str, float]:
     return {of.name: float(of.evaluate(machine, design).values[0]) for of in own if not of.lacks(machine, "equal")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [False, True])
 def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
     for machine, linkage, swing in cases(14, seed=71, friction=friction):
@@ -112,6 +113,7 @@ def test_least_drives_are_those_of_a_dense_sweep(friction: bool) -> None:
     assert False in held
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [False, True])
 def test_gradients_are_those_of_extrapolated_differences(friction: bool) -> None:
     """Cuts move with the design: knots, sides of friction, dead points that a crank passes."""

@@ -67,6 +67,7 @@ def refusal(given: Mechanism, name: str) -> str:
     return ""
 
 
+@pytest.mark.slow
 def test_every_quantity_without_some_cause_is_refused_with_its_remedy_or_finite_and_not_zero() -> None:
     refused = dict.fromkeys(QUANTITIES, 0)
     for mask in itertools.product((False, True), repeat=len(CAUSES)):

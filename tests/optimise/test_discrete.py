@@ -58,6 +58,7 @@ def with_lists(given: dict[str, Any]) -> dict[str, Any]:
     return found | {"optimiser": QUICK}
 
 
+@pytest.mark.slow
 def test_random_small_jobs_give_the_front_of_enumeration() -> None:
     wrong = []
     for seed in range(JOBS):

@@ -200,6 +200,7 @@ def test_formulas_are_allowed_where_functions_of_ones_own_are_not() -> None:
         parse_job(tables, allow_user_code=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("objectives", "pieces"),
     [

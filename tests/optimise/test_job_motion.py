@@ -59,6 +59,7 @@ def test_a_swing_is_read_with_its_margin() -> None:
 PLACES = {"kind": "swing", "slider_from": "3.1 m", "slider_to": "0.8 m", "driver": "slider"}
 
 
+@pytest.mark.slow
 def test_places_of_the_slider_state_a_swing_whose_angle_is_exact() -> None:
     """A law of motion by a table, equalities in closed form, and designs that nothing dominates."""
     motion = {
@@ -255,6 +256,7 @@ def random_designs(problem: Problem, count: int) -> np.ndarray[Any, np.dtype[np.
     return np.stack([random.uniform(end.lower, end.upper, count) for end in ends], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("little")
 def test_nothing_dominates_the_front_of_a_swing_and_all_of_it_is_stationary() -> None:
     limits = {"actuator_travel": {"min": "1.7 m", "max": "2.5 m"}, "rod / crank": {"max": 1.2}}

@@ -38,6 +38,7 @@ CASES: dict[str, tuple[bool, tuple[Constraint, ...], Mapping[str, Ends]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> None:
     """A front of 30 designs comes within a spacing of it, and never nearer by more than rounding."""

@@ -169,6 +169,7 @@ def tried(job: Job) -> int:
     return count
 
 
+@pytest.mark.slow
 def test_every_number_that_is_told_can_be_had_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 50 random jobs, refused by the parser or searched in vain; a proof would only add to the message."""
     monkeypatch.setattr(solving, "prove_infeasible", lambda *_, **__: False)

@@ -87,6 +87,7 @@ def test_a_varying_number_may_stand_in_a_linear_rule() -> None:
     np.testing.assert_allclose(found[:, 0] + found[:, 1], found[:, 3], rtol=1e-14)
 
 
+@pytest.mark.slow
 def test_rules_that_contradict_each_other_are_explained() -> None:
     rules = {"rod": {"equals": "3 * crank"}, "rod - 2.5 * crank": {"max": "10 mm"}, "2 * offset": {"min": "40 mm"}}
     front = solve(feeder(rules))

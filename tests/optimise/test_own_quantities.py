@@ -71,6 +71,7 @@ def test_page_of_the_documentation_runs_as_it_is_written(tmp_path: Path) -> None
     assert files_beside(tmp_path / "job.toml") == [tmp_path / "mymodule.py"]
 
 
+@pytest.mark.slow
 def test_function_equal_to_a_quantity_gives_its_front(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     own = solve(parse_job(job(module(tmp_path, ACCELERATION)), folder=tmp_path))
     assert capfd.readouterr().out == ""

@@ -57,6 +57,7 @@ def front(kind: str, order: int) -> ParetoFront:
         return solve(robust(plain(), Robust(kind=kind, order=order)))  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_40_000_fresh_machines_keep_the_promised_percentile_of_every_design() -> None:
     """The interval of the fresh sample holds the share; what the front's own sample adds is a hundredth of that."""
     found = realised(front("percentile", 2), samples=40_000)
@@ -74,6 +75,7 @@ def test_all_machines_within_the_limits_keep_the_worst_case() -> None:
     assert (found["realised"] == 1.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "order"), [("percentile", 2), ("worst case", 1), ("worst case", 2)])
 def test_robust_designs_are_stationary_and_meet_their_constraints(kind: str, order: int) -> None:
     designs = front(kind, order).designs

@@ -75,6 +75,7 @@ def test_cancelling_keeps_what_was_found(after: int) -> None:
     assert len(rounds) <= after + 1
 
 
+@pytest.mark.slow
 def test_a_process_with_one_core_gives_the_same_front_bit_for_bit() -> None:
     if not hasattr(os, "sched_setaffinity"):
         pytest.skip("this system cannot bind a process to one core")

@@ -39,6 +39,7 @@ def motion(turned: float = 0.0, moved: float = 0.0, **freedom: str) -> dict[str,
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "name"),
     [

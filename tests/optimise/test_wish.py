@@ -125,6 +125,7 @@ def _least(options: list[Independent], design: Array) -> float:
     return min(option.value(design) for option in options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["torque", "target", "choice"])
 def test_a_wish_is_the_least_of_the_achievement_function(kind: str) -> None:
     """SLSQP from many starts, on the public `evaluate`, finds no less."""

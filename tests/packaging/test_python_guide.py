@@ -24,6 +24,7 @@ def blocks(guide: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```$", guide, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::optuna.exceptions.ExperimentalWarning")
 def test_every_example_of_the_guide_runs(guide: str) -> None:
     absent = [word for word, module in FRAMEWORKS.items() if importlib.util.find_spec(module) is None]

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 
+@pytest.mark.slow
 def test_misspelt_names_fail_and_the_others_have_types(tmp_path: Path, pytestconfig: pytest.Config) -> None:
     root = pytestconfig.rootpath
     program = root / ".javascript/node_modules/.bin/pyright"

@@ -156,6 +156,7 @@ def test_a_killed_run_is_marked_unfinished(tmp_path: Path, command: Command) -> 
     assert "is unfinished" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_interrupting_keeps_what_was_found(tmp_path: Path) -> None:
     arguments = ("optimise", fronts.job_file(tmp_path), "--json", "--runs", tmp_path / "runs")

@@ -105,6 +105,7 @@ def test_the_report_has_the_numbers_of_the_front(command: Command, place: Path, 
         assert f"{row[key]:.6g}" in text
 
 
+@pytest.mark.slow
 def test_round_like_and_wish_answer_with_designs_that_swing(command: Command, place: Path) -> None:
     """Each tells of its design what `swing` tells of these lengths; the machine is that of the design."""
     rows = rows_of(command, place)

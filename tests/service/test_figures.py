@@ -286,6 +286,7 @@ def test_a_design_that_is_best_twice_is_marked_once() -> None:
     assert sorted(names) == sorted([*(f"best_{name}" for name in fronts.FOUR), "knee"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("names", "designs", "expected"),
     [
@@ -305,6 +306,7 @@ def test_the_files_of_a_front(names: tuple[str, ...], designs: int, expected: se
     assert all(file.read_bytes().startswith(b"\x89PNG") for file in files)
 
 
+@pytest.mark.slow
 def test_figures_do_without_pyplot(tmp_path: Path) -> None:
     script = (
         "import sys; from pathlib import Path; from tests.service import fronts; "
@@ -316,6 +318,7 @@ def test_figures_do_without_pyplot(tmp_path: Path) -> None:
     assert subprocess.run([sys.executable, "-c", script], cwd=root, check=False).returncode == 0
 
 
+@pytest.mark.slow
 def test_drawing_again_gives_the_same_files_and_leaves_matplotlib_as_it_was(tmp_path: Path) -> None:
     front = fronts.front(fronts.FOUR[:2], designs=3)
     before = dict(matplotlib.rcParams)

@@ -11,6 +11,7 @@ import pytest
 from tests.service.conftest import Command
 
 
+@pytest.mark.slow
 def test_a_design_like_another_with_more_transmission_angle(kept: Path, command: Command) -> None:
     front = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)
     row = front["designs"][2]

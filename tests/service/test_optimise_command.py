@@ -28,6 +28,7 @@ def only(runs: Path) -> Path:
     return run
 
 
+@pytest.mark.slow
 def test_a_job_gives_a_front_and_a_run(job: Path, runs: Path, command: Command) -> None:
     done = command("optimise", job)
     assert done.exit_code == 0, done.stderr

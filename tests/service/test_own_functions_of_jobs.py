@@ -126,6 +126,7 @@ def test_a_function_that_did_not_answer_is_not_asked_again(
     assert functions() <= before
 
 
+@pytest.mark.slow
 def test_a_service_ends_soon_though_a_request_is_at_a_function_that_loops(tmp_path: Path) -> None:
     (tmp_path / "own_functions.py").write_text(MODULE)
     arguments = ("--workers", "0", "--allow-quantity", "own_functions:stays")

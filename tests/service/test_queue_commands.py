@@ -96,6 +96,7 @@ def test_what_cannot_be_submitted_is_one_sentence(
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("who", ["nobody", "a worker", "this command"])
 def test_a_function_of_a_job_is_called_where_whoever_runs_it_allows_it(
     who: str, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch

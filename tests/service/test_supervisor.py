@@ -126,6 +126,7 @@ def test_a_worker_that_cannot_stop_is_killed(
     assert f"worker process {process} did not stop within its time and is killed" in caplog.messages
 
 
+@pytest.mark.slow
 def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_once(
     store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -142,6 +143,7 @@ def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_on
     assert "worker 1 ended: its job took more memory than it may; another one starts in 0 s" in caplog.messages
 
 
+@pytest.mark.slow
 def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> None:
     leaves = put_in(store, "leaves")
     fits = put_in(store, "rounds", Limits(memory=350_000_000))
@@ -154,6 +156,7 @@ def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> No
     assert re.search(r"it may take 350 MB of memory; its worker took \d{3} MB", store.job(greedy.id).reason)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", ["cancelled", "out of time"])
 def test_a_job_that_hears_nothing_does_not_keep_its_worker(ends: str, store: Store) -> None:
     loops = put_in(store, "loops", Limits(seconds=0.3) if ends == "out of time" else None)
@@ -212,6 +215,7 @@ def test_a_program_that_cannot_be_started_is_told(store: Store, caplog: pytest.L
     )
 
 
+@pytest.mark.slow
 def test_draining_workers_are_not_replaced(store: Store) -> None:
     jobs = [put_in(store, "rounds") for _ in range(3)]
     with Supervisor(settings(store, drain=True), 2, program=MADE_UP) as supervisor:

@@ -68,6 +68,7 @@ def test_a_start_can_be_cancelled() -> None:
     assert numbers["verdict"] == "cancelled"
 
 
+@pytest.mark.slow
 def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> None:
     numbers = flywheel.numbers(MACHINE, LINKAGE, fluctuation=0.05)
     assert numbers["flywheel_kgm2"] == design_flywheel(MACHINE, LINKAGE, 0.05).inertia

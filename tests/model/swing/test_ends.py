@@ -75,6 +75,7 @@ def test_places_of_the_slider_state_the_same_swing() -> None:
     assert len(seen) >= 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("of", ["slider", "crank"])
 def test_quantities_and_slopes_of_many_designs(of: str) -> None:
     """Against single designs, and extrapolated differences: the ends move with the lengths, or with a free start."""

@@ -58,6 +58,7 @@ def test_sources_add_up_to_the_error_of_the_driven_side() -> None:
         assert ("actuator" in names, "crank angle" in names) == (swing.driver == "slider", swing.driver == "crank")
 
 
+@pytest.mark.slow
 def test_sensitivity_of_a_swing_is_the_slope_of_its_quantities() -> None:
     for mechanism, linkage, swing in random_swings(3, seed=85):
         at = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])

@@ -39,6 +39,7 @@ SUPPORT = Linkage(1.4, 1.8, -0.05)
 OVER = Swing(start=math.radians(11.16), end=math.radians(101.16), driver="slider")
 
 
+@pytest.mark.slow
 def test_energy_of_the_drive_is_what_is_stored_and_done() -> None:
     """Potential energy of bodies and springs, work on a force and a table in closed form, change of kinetic energy."""
     random = np.random.default_rng(3)
@@ -77,6 +78,7 @@ def test_energy_of_the_drive_is_what_is_stored_and_done() -> None:
         assert found.energy_back == pytest.approx(-wanted, rel=1e-10, abs=size)
 
 
+@pytest.mark.slow
 def test_peaks_are_those_of_a_dense_sweep() -> None:
     share = np.linspace(0.0, 1.0, 20_001)
     for machine, linkage, swing in random_swings(25, seed=22, friction=True):

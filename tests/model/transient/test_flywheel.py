@@ -146,6 +146,7 @@ def test_a_load_that_always_pushes_inward_needs_the_flywheel_of_the_energy_integ
     assert Energies(machine, design).fluctuation(found.inertia) == pytest.approx(0.02, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_flywheels_are_those_of_the_energy_integral_and_no_smaller_one_serves() -> None:
     rng = np.random.default_rng(12)
     for _ in range(20):

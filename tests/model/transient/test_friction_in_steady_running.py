@@ -54,6 +54,7 @@ def error(machine: Mechanism, linkage: Linkage, running: SteadyRunning) -> float
     return float(np.abs(running.torque - needed)[between].max() / np.abs(needed).max())
 
 
+@pytest.mark.slow
 def test_torque_of_the_motion_is_that_of_inverse_dynamics_in_random_machines() -> None:
     """Under the constant torque that keeps the speed, with little besides the mechanism that keeps it even."""
     guides, fluctuations = 0, []
@@ -143,6 +144,7 @@ def test_two_cylinders_at_one_phase_are_one_with_half_the_flywheel() -> None:
     assert two.motor_torque[0] == pytest.approx(2.0 * one.motor_torque[0], rel=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", [None, MOTOR], ids=["constant torque", "motor"])
 def test_a_flywheel_keeps_the_fluctuation_that_is_wanted(drive: Drive | None) -> None:
     machine = RUBBED["strokes"]

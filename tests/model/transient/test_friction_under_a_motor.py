@@ -67,6 +67,7 @@ def test_work_of_the_motor_is_stored_done_on_the_loads_or_heat(machine: Mechanis
     assert found.imbalance < 1e-9
 
 
+@pytest.mark.slow
 def test_energies_balance_in_random_machines_also_of_two_cylinders() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
         several = replace(machine, arrangement=Arrangement(phases=(0.0, 2.0))) if machine.speed > 20.0 else machine

@@ -71,6 +71,7 @@ def matches(machine: Mechanism, design: Array, running: SteadyRunning) -> None:
     assert least**2 == pytest.approx(speed.min() ** 2, rel=1e-4, abs=1e-10 * speed.max() ** 2)
 
 
+@pytest.mark.slow
 def test_machines_without_a_flywheel_run_as_a_forward_simulation_does_also_above_a_fluctuation_of_two() -> None:
     rng = np.random.default_rng(20)
     found: list[float] = []

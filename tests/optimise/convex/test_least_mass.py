@@ -48,6 +48,7 @@ JOB: dict[str, Any] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("concentration", [1.0, 2.5])
 def test_least_mass_of_the_search_is_that_of_the_geometric_programme(
     concentration: float, monkeypatch: pytest.MonkeyPatch

@@ -19,6 +19,7 @@ from tests.faults.dask_cluster import DaskCluster
 from tests.optimise.engine import work
 
 
+@pytest.mark.slow
 def test_what_a_killed_process_was_at_is_done_again(processes: Processes, tmp_path: Path) -> None:
     items = [(number, str(tmp_path / "killed")) for number in range(6)]
     assert processes.map(work.end_once, items) == list(range(6))
@@ -105,6 +106,7 @@ def test_ctrl_c_is_heard_by_nobody_but_the_one_who_asked(tmp_path: Path) -> None
     assert (found.stdout, found.stderr) == ("3\n", "")
 
 
+@pytest.mark.slow
 def test_what_a_killed_dask_worker_was_at_is_done_again_and_a_lost_scheduler_is_found_again() -> None:
     with DaskCluster(2) as dask:
         engine = Cluster(dask.address, patience=60.0)

@@ -112,6 +112,7 @@ def designs(count: int) -> Array:
     return found
 
 
+@pytest.mark.slow
 def test_no_quantity_of_a_design_depends_on_the_designs_beside_it() -> None:
     judged, dimensions = all_quantities(), designs(40)
     names = (*QUANTITIES, *(quantity.name for quantity in judged.own))

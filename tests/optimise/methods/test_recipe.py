@@ -11,6 +11,7 @@ from tests.recipes import code_of, require_taken_up
 SUITES = ("test_checkpoints.py", "methods/test_registry.py", "test_enumeration.py")
 
 
+@pytest.mark.slow
 def test_a_method_in_one_file_is_taken_up_by_the_suites_of_all_methods(
     pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:

@@ -55,6 +55,7 @@ def test_a_front_of_two_objectives_is_as_good_as_the_default_s(method: str) -> N
     assert hypervolume(theirs.values, *scale) >= 0.99 * hypervolume(ours.values, *scale)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("method", "share"), [("epsilon_constraint", 0.98), ("chebyshev", 0.97), ("nbi", 0.99)])
 def test_a_front_that_is_a_surface_is_covered_with_gaps_at_most(method: str, share: float) -> None:
     """Measured 0.987, 0.980 and 0.994: aim is taken evenly in the objectives, the surface is not even."""

@@ -41,6 +41,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
         yield found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_a_file_of_a_design_is_a_download_that_is_sealed_off(name: str, solved: Solved, client: httpx.Client) -> None:
     media_type, ending = KINDS[name]

@@ -20,6 +20,7 @@ from tests.service.api.serving import TOKEN, serving
 BLOCK = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 def test_every_command_of_the_page_does_what_it_says(store: Store, tmp_path: Path, pytestconfig: pytest.Config) -> None:
     if os.name == "nt" or not shutil.which("curl"):
         pytest.skip("the page shows commands of curl in a shell of Unix")

@@ -42,6 +42,7 @@ def points(client: httpx.Client, *numbers: int) -> dict[int, list[list[float]]]:
     return {front["job"]: front["points"] for front in fronts}
 
 
+@pytest.mark.slow
 def test_rows_of_the_shipped_jobs_have_600_bytes_at_most(client: httpx.Client, store: Store) -> None:
     quick = {"method": "sobol", "evaluations": 3000, "designs": 100, "seed": 1}
     for preset in client.get("/presets").json()["presets"]:

@@ -90,6 +90,7 @@ def test_numbers_and_other_lengths_are_those_of_the_swing(served: Served) -> Non
     assert (refused.status_code, "must close over the whole swing" in refused.text) == (422, True)
 
 
+@pytest.mark.slow
 def test_files_of_a_design_that_swings(served: Served) -> None:
     rows = list(csv.DictReader(io.StringIO(served.get(TIMED, "/cycle.csv").text)))
     assert {row["way"] for row in rows} == {"forth", "back"}

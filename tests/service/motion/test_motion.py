@@ -135,6 +135,7 @@ def test_a_cycle_of_two_turns_plays_both_with_the_pressure() -> None:
     assert marks == {0.0, 90.0, 180.0, 270.0}
 
 
+@pytest.mark.slow
 def test_the_picture_of_a_cycle_of_two_turns_has_both() -> None:
     with Image.open(io.BytesIO(animated_gif(four_strokes(), LINKAGES["in line"], name="engine"))) as picture:
         assert getattr(picture, "n_frames", 1) == 2 * FRAMES

@@ -24,6 +24,7 @@ def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
         yield found
 
 
+@pytest.mark.slow
 def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, str], solved: Solved) -> None:
     page, address = opened
     page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
@@ -51,6 +52,7 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     expect(panel.locator("img")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved: Solved) -> None:
     page, address = opened
     page.goto(f"{address}/#/help")
@@ -82,6 +84,7 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     page.wait_for_url(re.compile(r"designs/3\?tab=motor"))
 
 
+@pytest.mark.slow
 def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_is_typed(
     opened: tuple[Page, str], solved: Solved
 ) -> None:

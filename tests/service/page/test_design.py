@@ -465,6 +465,7 @@ def test_rates_of_sensitivity_are_for_one_of_the_unit_that_is_shown(opened: Open
     assert inch == pytest.approx([25.4 * one for one in metric], rel=1e-2)
 
 
+@pytest.mark.slow
 def test_nothing_bars_the_way_of_anybody(opened: Opened, solved: Solved) -> None:
     page = opened(query="?beside=5")
     page.get_by_role("checkbox", name="Forces").check()

@@ -201,6 +201,7 @@ def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
         expect(field(page, "At most stroke, mm")).to_have_attribute("placeholder", "280")
 
 
+@pytest.mark.slow
 def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved))
     ratios = cells(solved.result.designs, "least_transmission_angle_deg")
@@ -391,6 +392,7 @@ def test_an_address_with_nonsense_shows_the_front(open_page: Open, solved: Solve
     expect_designs(page, list(range(1, 9)))
 
 
+@pytest.mark.slow
 def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved), viewport={"width": 390, "height": 800})
     expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
@@ -409,6 +411,7 @@ def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) ->
     expect(field(page, "At most least transmission angle")).not_to_have_value("")
 
 
+@pytest.mark.slow
 def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[Store, list[Row]]) -> None:
     store, rows = large
     page = open_page(store, "#/jobs/1?x=crank_mm&y=rod_mm")

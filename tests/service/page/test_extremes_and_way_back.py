@@ -168,6 +168,7 @@ def test_at_a_dead_centre_the_speed_is_undefined_and_says_so(page: Page) -> None
     expect(table(page, "Crank angles found").locator("tbody tr")).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_nothing_bars_the_way_of_anybody(page: Page) -> None:
     page.locator("section.extremes").scroll_into_view_if_needed()
     expect(table(page, "Extremes of every curve")).to_be_visible(timeout=30_000)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from slidercrank.optimise.job import parse_job
@@ -10,6 +11,7 @@ from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open, ready, text_of
 
 
+@pytest.mark.slow
 def test_formulas_are_typed_by_keyboard_alone_with_names_offered_and_units_or_mistakes_said(
     form: Open, store: Store
 ) -> None:
@@ -56,6 +58,7 @@ def test_formulas_are_typed_by_keyboard_alone_with_names_offered_and_units_or_mi
     assert parse_job(text_of(page)).objectives == parse_job(text_of(page) | {"constraints": {}}).objectives
 
 
+@pytest.mark.slow
 def test_a_formula_with_a_name_is_called_by_it_everywhere_and_renamed_everywhere(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)

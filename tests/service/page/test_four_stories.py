@@ -104,6 +104,7 @@ def test_studying_a_published_case_to_a_curve_over_the_slider_position_by_keyboa
     assert all(row["torque_Nm"] for row in rows)
 
 
+@pytest.mark.slow
 def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: Solved, tmp_path: Path) -> None:
     wrong: list[str] = []
     back_up(solved.store, tmp_path / "store.db")
@@ -134,6 +135,7 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
     assert wrong == []
 
 
+@pytest.mark.slow
 def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard(
     browser: Browser, store: Store, solved: Solved
 ) -> None:

@@ -96,6 +96,7 @@ def through(page: Page, job: Job, tmp_path: Path) -> None:
         assert list(found.get(table, {})) == list(job.get(table, {}))
 
 
+@pytest.mark.slow
 def test_every_job_that_ships_and_those_of_the_tests_stay_word_for_word_with_every_field_touched(
     form: Open, store: Store, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
@@ -131,6 +132,7 @@ def test_points_of_a_load_are_pasted_from_a_table_with_their_units_and_mistakes_
     expect(page.get_by_text("Must increase")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_catalogue_is_pasted_and_its_options_are_in_the_job_without_those_that_others_beat(
     form: Open, store: Store
 ) -> None:

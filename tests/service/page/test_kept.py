@@ -25,6 +25,7 @@ def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactor
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 
 
+@pytest.mark.slow
 def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, str, str], solved: Solved) -> None:
     page, address, api = opened
     page.goto(f"{address}/#/jobs/{solved.number}/designs/3")
@@ -91,6 +92,7 @@ def test_a_note_that_is_typed_outlives_what_others_do_meanwhile(opened: tuple[Pa
         httpx.delete(f"{api}/kept/{one['number']}", timeout=60.0).raise_for_status()
 
 
+@pytest.mark.slow
 def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, str, str], solved: Solved) -> None:
     page, address, api = opened
     before = len(httpx.get(f"{api}/kept", timeout=60.0).json()["designs"])

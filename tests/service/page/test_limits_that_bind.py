@@ -25,6 +25,7 @@ def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactor
         yield page, address, store
 
 
+@pytest.mark.slow
 def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(
     opened: tuple[Page, str, Store], solved: Solved
 ) -> None:

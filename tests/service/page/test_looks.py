@@ -35,6 +35,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory, solved: Solved) -> Iterator[
             yield address, {view.name: view for view in views}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VIEWS)
 def test_a_view_is_whole_and_legible_on_every_screen(
     pages: Pages, shown: tuple[str, dict[str, View]], name: str

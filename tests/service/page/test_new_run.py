@@ -160,6 +160,7 @@ WRONG = [
 ]
 
 
+@pytest.mark.slow
 def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_sent(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)
@@ -244,6 +245,7 @@ def test_a_job_in_inches_is_the_same_job_and_whoever_prefers_inches_begins_with_
     assert text_of(page)["constraints"]["stroke"] == {"equals": "4 in"}
 
 
+@pytest.mark.slow
 def test_a_job_file_comes_in_and_goes_out_the_same(
     form: Open, store: Store, pytestconfig: pytest.Config, shipped: dict[str, Any], tmp_path: Path
 ) -> None:
@@ -304,6 +306,7 @@ NO_TABLES: dict[str, tuple[tuple[str, ...], Any]] = {
 }
 
 
+@pytest.mark.slow
 def test_a_text_where_a_table_belongs_is_said_and_the_form_stays(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)
@@ -340,6 +343,7 @@ def test_every_unit_that_a_field_offers_is_one_of_job_files_and_means_the_same(f
         assert to_si(f"1 {unit}", kind_for(unit)) == pytest.approx(float(in_si), rel=1e-9), unit
 
 
+@pytest.mark.slow
 def test_loads_requirements_and_objectives_are_added_and_taken_away(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)
@@ -393,6 +397,7 @@ def test_a_refusal_is_said_in_words_and_nothing_is_lost(form: Open, store: Store
     assert store.jobs() == []
 
 
+@pytest.mark.slow
 def test_limits_and_priority_go_with_the_job_and_wrong_ones_are_said(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=feeder", expected=("422",))
     ready(page)
@@ -424,6 +429,7 @@ def test_limits_and_priority_go_with_the_job_and_wrong_ones_are_said(form: Open,
     assert (store.job(1).priority, store.job(1).limits.seconds) == (5, 60.0)
 
 
+@pytest.mark.slow
 def test_the_service_is_asked_when_typing_rests_and_again_when_it_was_away(form: Open, store: Store) -> None:
     page = form(store, "#/new", expected=("ERR_FAILED",))
     ready(page)
@@ -478,6 +484,7 @@ def test_a_question_mark_opens_the_sentence_and_leads_to_the_help(form: Open, st
     expect(page.get_by_role("heading", level=1)).to_have_text("stroke")
 
 
+@pytest.mark.slow
 def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=support")
     ready(page)

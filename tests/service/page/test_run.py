@@ -181,6 +181,7 @@ def test_a_run_that_failed_says_so_and_what_to_do(open_page: Open, store: Store)
     expect(page.get_by_role("heading", name="Front so far")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_lost_connection_comes_back(browser: Browser, store: Store) -> None:
     submit(store, TABLES)
     claim = taken(store)

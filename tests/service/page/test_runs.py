@@ -7,6 +7,7 @@ import tomllib
 from dataclasses import replace
 from urllib.parse import parse_qs, urlsplit
 
+import pytest
 from playwright.sync_api import Page, Request, expect
 
 from slidercrank.service.jobs.submission import submit
@@ -72,6 +73,7 @@ def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: O
     page.wait_for_url(re.compile(r"#/jobs/1$"))
 
 
+@pytest.mark.slow
 def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
     page = open_page(store, reduced_motion="reduce")
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
@@ -185,6 +187,7 @@ def in_sight(page: Page) -> set[int]:
     )
 
 
+@pytest.mark.slow
 def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: Open, store: Store) -> None:
     for _ in range(200):
         put_in(store, result(), TABLES)
@@ -262,6 +265,7 @@ def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, st
     expect(page.get_by_role("img", name="the front: 2 designs")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> None:
     add(store)
     taken(store).fail("its worker was killed", again=False)

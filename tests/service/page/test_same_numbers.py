@@ -161,6 +161,7 @@ def test_strength_has_a_tab_with_what_the_api_tells(opened: tuple[Page, str, str
     expect(panel.get_by_role("img", name="Figure: Strength")).to_have_js_property("complete", True, timeout=30_000)
 
 
+@pytest.mark.slow
 def test_certify_has_a_tab_that_proves_what_the_command_line_does(
     opened: tuple[Page, str, str], solved: Solved
 ) -> None:

@@ -9,6 +9,7 @@ import threading
 from pathlib import Path
 
 import ezdxf
+import pytest
 from playwright.sync_api import Page, expect
 
 from slidercrank.service.store import Store
@@ -16,6 +17,7 @@ from slidercrank.service.workers.worker import work
 from tests.service.page.conftest import Open
 
 
+@pytest.mark.slow
 def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Store, tmp_path: Path) -> None:
     page = form(store, "")
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()

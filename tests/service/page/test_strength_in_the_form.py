@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from slidercrank.optimise.job import parse_job
@@ -10,6 +11,7 @@ from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open, ready, text_of
 
 
+@pytest.mark.slow
 def test_material_pins_and_sections_are_given_held_or_left_to_the_search(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=sieve")
     ready(page)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from slidercrank.optimise.job import parse_job
@@ -12,6 +13,7 @@ from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open, ready, text_of
 
 
+@pytest.mark.slow
 def test_the_shipped_support_is_shown_changed_and_started_with_the_two_ends_of_its_swing(
     form: Open, store: Store
 ) -> None:

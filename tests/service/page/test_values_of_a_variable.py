@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from slidercrank.optimise.job import parse_job
@@ -12,6 +13,7 @@ from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open, ready, text_of
 
 
+@pytest.mark.slow
 def test_steps_preferred_numbers_and_lists_are_those_of_the_job_and_units_change_them_together(
     form: Open, store: Store
 ) -> None:
@@ -49,6 +51,7 @@ def test_steps_preferred_numbers_and_lists_are_those_of_the_job_and_units_change
     assert text_of(page)["variables"]["crank"] == ["8 cm", "16 cm"]
 
 
+@pytest.mark.slow
 def test_a_further_number_varies_over_a_range_or_takes_some_values_and_then_is_fixed_again(
     form: Open, store: Store
 ) -> None:

@@ -68,6 +68,7 @@ def test_a_report_has_them_where_they_are_given(subject: Subject) -> None:
     assert b"Measured minus computed, 40 rows" in html_file(made)
 
 
+@pytest.mark.slow
 def test_all_curves_at_once_are_spread_over_pages(subject: Subject) -> None:
     design = subject.design
     measured = read_measured(cycle_csv(design.mechanism, design.linkage), design.mechanism, design.linkage)

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pypdfium2
+import pytest
 from matplotlib.collections import PathCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -83,6 +84,7 @@ def seen(figure: Figure, inset: Inset, picture: Image, axes: int, x: float, y: f
     return bool((np.abs(near / 255.0 - to_rgb(colour)).max(axis=2) < 0.3).any())
 
 
+@pytest.mark.slow
 def test_all_that_a_figure_draws_is_on_paper() -> None:
     for title, (figure, inset, picture) in figures().items():
         asked, got = ink(screen(figure, inset.scale), _FINER * _BLOCK), ink(picture, _BLOCK)

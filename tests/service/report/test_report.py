@@ -93,6 +93,7 @@ def texts(part: Report) -> list[str]:
     return [" ".join(text.split()) for text in found if text.strip()]
 
 
+@pytest.mark.slow
 def test_every_number_of_the_design_is_in_it_with_all_its_digits() -> None:
     (table,) = (block for block in named("Every number of the design").blocks if isinstance(block, Table))
     row = subject().row
