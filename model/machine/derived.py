@@ -20,8 +20,8 @@ _ONE, _NONE = np.zeros((1, 0)), np.zeros(0, np.int64)
 def _derive(
     raw: Row, columns: Integers, designs: Table, kind: Integers, datum: Integers, blocks: Cube, steps: ComplexCube
 ) -> None:
-    # Complex throughout: the real formulas would take as long to compile again.
-    stepped, block = np.empty((raw.shape[0], 1), np.complex128), np.empty((blocks.shape[1], 1), np.complex128)
+    # Complex throughout: the real formulas would take as long to compile again. Zeros: loads do not fill all rows.
+    stepped, block = np.empty((raw.shape[0], 1), np.complex128), np.zeros((blocks.shape[1], 1), np.complex128)
     count = steps.shape[0] // blocks.shape[0]
     for n in range(blocks.shape[0]):
         for i in range(raw.shape[0]):
