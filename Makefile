@@ -82,7 +82,7 @@ clean:
 	rm -rf $(VENV) .package/typing build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
-# The pip that Python brings may be years old, and look for packages three times as long.
+# The pip that Python brings may be years old, and take twice the time.
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
 	  "Python 3.11 or newer is needed, this is %d.%d; name another one: make PYTHON=python3.12" % sys.version_info[:2])'

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, Whole, row_lengths
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
@@ -75,6 +75,6 @@ def strict_multipliers(
 
 def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
     """Return one size for all objective rows and the length of each active one: sums weigh alike at any scale."""
-    lengths = np.sqrt(np.add.reduce(active * active, axis=1))
+    lengths = row_lengths(active)
     lengths[lengths == 0.0] = 1.0
-    return float(np.sqrt(np.add.reduce(goals * goals, axis=1)).max(initial=0.0)) or 1.0, lengths
+    return float(row_lengths(goals).max(initial=0.0)) or 1.0, lengths

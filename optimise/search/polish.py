@@ -20,7 +20,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, Mask, Whole, row_lengths
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
@@ -279,7 +279,7 @@ def convex(hessian: Array, normals: Array) -> Array:
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
     values, vectors = np.linalg.eigh(hessian)
-    lengths = np.sqrt(np.add.reduce(normals * normals, axis=1))
+    lengths = row_lengths(normals)
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
         across = directions[: len(sizes)][sizes > _APART]

@@ -20,7 +20,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, row_lengths
 from ..front.nonnegative import nonnegative_least_squares
 from .pieces import Rows
 
@@ -131,7 +131,7 @@ def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> 
     shift = np.zeros(size)
     shift[k:] = -1.0 / weights
     g, h = -rows @ scale, rows @ shift - bounds
-    lengths = np.sqrt(np.add.reduce(g * g, axis=1))
+    lengths = row_lengths(g)
     lengths[lengths == 0.0] = 1.0
     columns = np.empty((len(rows), size + 1))
     columns[:, :-1], columns[:, -1] = g / lengths[:, None], h / lengths
