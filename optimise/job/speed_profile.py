@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field
 
 from ...model.errors import InputError, JobError
@@ -19,7 +20,7 @@ from .values import Angle, AngularSpeed, Checked, Number, optional
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
 """First line of a file of speeds."""
 _MOST = 1000
-_OFF = 1e-3  # share by which the mean of a table may differ from the speed
+_OFF = 1e-3  # share by which the mean of a table may differ from the speed, and the end of a turn from 360 deg
 
 
 def _profile(**given: Any) -> Profile:
@@ -94,8 +95,12 @@ def with_speeds(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     for number, line in enumerate(lines, start=2):
         try:
             at, speed = map(float, line)
+            if not (math.isfinite(at) and math.isfinite(speed)):
+                raise ValueError
         except ValueError:
-            raise JobError(f"{name} must have two numbers a line; got {','.join(line)!r} in line {number}") from None
+            raise JobError(
+                f"{name} must have two numbers a line; got {','.join(line)!r} in line {number}; correct it"
+            ) from None
         values.append((at, speed))
     try:
         angles, speeds = _points(of, [at for at, _ in values], [speed for _, speed in values])
@@ -117,16 +122,20 @@ def _points(of: str, at: list[float], speeds: list[float]) -> tuple[list[float],
     angles = 6.0 * curve.antiderivative()(at)  # deg, of rpm and s
     way = 1.0 if angles[-1] >= 0.0 else -1.0
     turned = way * angles
-    if turned[-1] < 360.0:
-        raise InputError(f"a record over time must be of a turn at least; got {turned[-1]:.6g} deg; record longer")
     if any(after <= before for before, after in pairwise(turned)):
         raise InputError("the speed must not be zero or change its sign; got a record that stops; give one that runs")
-    kept = [k for k, angle in enumerate(turned) if angle < 360.0 - 1e-6]
+    last = max(1, int(np.argmin(abs(turned - 360.0))))
+    near = min(360.0 * _OFF, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is taken for rounding
+    if 360.0 - near <= turned[-1] < 360.0:
+        turned *= 360.0 / turned[-1]
+    if turned[-1] < 360.0 - near:
+        raise InputError(f"a record over time must be of a turn at least; got {turned[-1]:.6g} deg; record longer")
+    kept = np.flatnonzero(turned < 360.0 - near)  # a point nearer than that repeats the first one
     end = float(CubicSpline(turned, speeds)(360.0))
     if abs(end - speeds[0]) > 0.02 * abs(speeds[0]):
         raise InputError(
             f"the speed must repeat after a turn, to 2 %; got {speeds[0]:.6g} rpm at its start and {end:.6g} rpm at "
             "its end; record steady running"
         )
-    points = sorted((float(angles[k]) % 360.0, speeds[k]) for k in kept)
+    points = sorted((float(way * turned[k]) % 360.0, speeds[k]) for k in kept)
     return [angle for angle, _ in points], [speed for _, speed in points]

@@ -12,6 +12,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import SpeedTable
 from slidercrank.optimise.job import load_job
 from slidercrank.service.topics.uneven_speed import analysis
 from tests.service.conftest import Command
@@ -62,6 +63,71 @@ def test_speeds_come_from_a_file(over: str, pytestconfig: pytest.Config, tmp_pat
     assert machine.speed_profile.ratio(at) == pytest.approx(1.0 + 0.05 * np.cos(at), abs=2e-6)
 
 
+def _recorded(folder: Path, times: np.ndarray, speeds: np.ndarray, digits: int = 12) -> None:
+    """Write a record over time, its numbers to some digits."""
+    rows = [f"{at:.{digits}g},{one:.{digits}g}" for at, one in zip(times, speeds, strict=True)]
+    (folder / "speed.csv").write_text("\n".join(["time_s,speed_rpm", *rows, ""]))
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_record_of_one_turn_is_one_though_its_numbers_are_rounded(
+    way: float, pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    """60 rpm over 1 s, 41 points: rounding leaves 360 deg less one part in 1e15, or 1e-6 with a last time of 0.9999997."""
+    job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
+    job.write_text(job.read_text().replace('speed = "900 rpm"', f'speed = "{60.0 * way} rpm"'))
+    times, speeds = np.linspace(0.0, 1.0, 41), np.full(41, 60.0 * way)
+    for last in (1.0, 0.9999997, 0.9999):
+        _recorded(tmp_path, np.where(times == 1.0, last, times), speeds)
+        profile = load_job(job).mechanism.speed_profile
+        assert isinstance(profile, SpeedTable)
+        assert len(profile.angles) == 40  # the last point is the first, a turn later
+        assert np.diff(profile.angles) == pytest.approx(math.radians(9.0), abs=math.radians(0.04))  # as the last step
+        assert profile.ratio(np.linspace(0.0, 6.0, 30)) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_record_of_one_turn_at_an_uneven_speed_has_its_profile(pytestconfig: pytest.Config, tmp_path: Path) -> None:
+    """W = w0 (1 + a cos theta) of one turn, in five digits of time and speed."""
+    theta = np.linspace(0.0, 2.0 * math.pi, 61)
+    at = np.linspace(0.0, 2.0 * math.pi, 6001)
+    slow = 1.0 / (900.0 * math.pi / 30.0 * (1.0 + 0.05 * np.cos(at)))
+    time = np.concatenate([[0.0], np.cumsum(0.5 * (slow[1:] + slow[:-1]) * np.diff(at))])[::100]
+    _recorded(tmp_path, time, 900.0 * (1.0 + 0.05 * np.cos(theta)), digits=5)
+    profile = load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)).mechanism.speed_profile
+    assert isinstance(profile, SpeedTable)
+    assert len(profile.angles) == 60
+    assert profile.ratio(theta) == pytest.approx(1.0 + 0.05 * np.cos(theta), abs=1e-4)
+
+
+def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest.Config, tmp_path: Path) -> None:
+    """A sample a hair before 360 deg, with its own noise, would be a second value of the speed at one crank angle."""
+    job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
+    job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
+    times = np.linspace(0.0, 2.0, 81)
+    speeds = 60.0 + 0.02 * np.random.default_rng(3).standard_normal(81)
+    speeds[40:] -= 0.02  # so that the turn ends just before the forty-first point
+    _recorded(tmp_path, times, speeds)
+    profile = load_job(job).mechanism.speed_profile
+    assert isinstance(profile, SpeedTable)
+    assert profile.ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("points", "last", "said"),
+    [
+        (40, 0.975, "got 351 deg"),  # the last point is lost
+        (41, 0.998, r"got 359\.28 deg"),
+        (1001, 0.9994, r"got 359\.784 deg"),  # more than half of a step of 0.36 deg
+    ],
+)
+def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
+    points: int, last: float, said: str, pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    _recorded(tmp_path, np.linspace(0.0, last, points), np.full(points, 60.0))
+    with pytest.raises(InputError, match=rf"must be of a turn at least; {said}"):
+        load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path))
+
+
 @pytest.mark.parametrize(
     ("profile", "said"),
     [
@@ -76,6 +142,7 @@ def test_speeds_come_from_a_file(over: str, pytestconfig: pytest.Config, tmp_pat
             '{ crank_angles = ["0 deg", 1, 2, "360 deg"], speeds = ["9 rpm", "8 rpm", "9 rpm", "7 rpm"] }',
             "a turn later and differs by -2 rpm",
         ),
+        ('{ file = "gap.csv" }', "must have two numbers a line; got '0.01,nan' in line 3"),
         ('{ file = "short.csv" }', "must be of a turn at least; got 54 deg"),
         ('{ file = "rising.csv" }', r"must repeat after a turn, to 2 %; got 900 rpm at its start and 1024\.7"),
         (
@@ -89,6 +156,7 @@ def test_profiles_that_cannot_be_are_refused(
     profile: str, said: str, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
     (tmp_path / "short.csv").write_text("time_s,speed_rpm\n0,900\n0.002,900\n0.005,900\n0.01,900\n")
+    (tmp_path / "gap.csv").write_text("time_s,speed_rpm\n0,900\n0.01,nan\n0.02,900\n0.1,900\n")
     rows = "".join(f"{0.01 * k},{900 + 20 * k}\n" for k in range(20))
     (tmp_path / "rising.csv").write_text("time_s,speed_rpm\n" + rows)
     with pytest.raises(InputError, match=said):
