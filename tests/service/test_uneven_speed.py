@@ -73,7 +73,7 @@ def _recorded(folder: Path, times: np.ndarray, speeds: np.ndarray, digits: int =
 def test_a_record_of_one_turn_is_one_though_its_numbers_are_rounded(
     way: float, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
-    """60 rpm over 1 s, 41 points: rounding leaves 360 deg less one part in 1e15, or 1e-6 with a last time of 0.9999997."""
+    """60 rpm over 1 s, 41 points, and last times that are off by rounding."""
     job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
     job.write_text(job.read_text().replace('speed = "900 rpm"', f'speed = "{60.0 * way} rpm"'))
     times, speeds = np.linspace(0.0, 1.0, 41), np.full(41, 60.0 * way)
