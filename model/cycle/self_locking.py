@@ -46,14 +46,22 @@ def locking_margin(friction: Friction, designs: Array, *, gradients: bool = Fals
     return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
 
 
+def locks_because(friction: Friction, linkage: Linkage) -> str:
+    """Return why friction locks one linkage, or may jam it, at some crank angle; empty where it does neither."""
+    margin = float(locking_margin(friction, np.array([[linkage.crank, linkage.rod, linkage.offset]], float))[0][0])
+    if margin > 0.0:
+        return ""
+    return (
+        f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
+        "lengthen the rod, or reduce the offset or the friction"
+    )
+
+
 def require_driving(friction: Friction, linkage: Linkage) -> None:
     """Raise `InputError` where friction locks one linkage, or may jam it, at some crank angle."""
-    margin = float(locking_margin(friction, np.array([[linkage.crank, linkage.rod, linkage.offset]], float))[0][0])
-    if not margin > 0.0:
-        raise InputError(
-            f"the self-locking margin must be more than zero; got {math.degrees(margin):.4g} deg; "
-            "lengthen the rod, or reduce the offset or the friction"
-        )
+    reason = locks_because(friction, linkage)
+    if reason:
+        raise InputError(reason)
 
 
 def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:

@@ -256,7 +256,7 @@ def _with_topics(
     row: Row, mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], own: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
-    undefined = undefined_of(mechanism, own)
+    undefined = undefined_of(row, mechanism, linkage, own)
     with SIMULATING.turn() if topics else nullcontext():
         analysed = analysis_of(
             row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient, undefined=undefined

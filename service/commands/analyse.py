@@ -102,7 +102,7 @@ def analyse(
             notes=notes,
             cancelled=interruption.asked,
             lenient=True,
-            undefined=None if problem is None else undefined_of(mechanism, own),
+            undefined=None if problem is None else undefined_of(row, mechanism, linkage, own),
         )
     if cycle is not None:
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -46,12 +47,20 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
     return rows_of(columns_of(mechanism, row_of(linkage), own=own))[0]
 
 
-def undefined_of(mechanism: Mechanism, own: Sequence[Quantity] = ()) -> dict[str, str]:
-    """Return why a machine does not define a quantity, by the columns of those without a value. own: of its job."""
+def undefined_of(row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> dict[str, str]:
+    """Return why a design has no value of a quantity, by column. row: of `numbers_of`. own: of its job."""
     from ...objectives.registry import QUANTITIES
+    from ...objectives.tables.valueless import valueless_because
 
-    reasons = {of.field: of.undefined_because([mechanism]) for of in (*QUANTITIES.values(), *own)}
-    return {key: reason for key, reason in reasons.items() if reason}
+    reasons = {}
+    for of in (*QUANTITIES.values(), *own):
+        reason = of.undefined_because([mechanism])
+        value = row.get(of.field)
+        if reason is None and isinstance(value, float) and math.isnan(value):
+            reason = valueless_because(of, mechanism, linkage)
+        if reason:
+            reasons[of.field] = reason
+    return reasons
 
 
 def numbers_of_swing(design: StoredDesign) -> Row:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
+from ....model.cycle.self_locking import locks_because
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
@@ -26,13 +27,15 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return the extremes of each curve, by its name, and the strokes: their durations, greatest speeds and ratios.
 
     A curve without masses, loads or a speed that it needs is left out. None stands for what friction leaves
-    undetermined, and for crank angle and slider position of a curve that is constant. Ratios and differences are those
-    of the outward stroke against the inward one.
+    undetermined, with the reason, and for crank angle and slider position of a curve that is constant. Ratios and
+    differences are those of the outward stroke against the inward one.
     """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
+    locks = locks_because(mechanism.friction, linkage)
     return {
         "curves": {name: _entry(found) for name, found in extremes.items()},
         "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),
+        **({"undefined_because": f"friction locks this design: {locks}"} if locks else {}),
     }
 
 
@@ -80,6 +83,8 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write a line for each curve, and the strokes."""
     show_extremes(console, "Extremes over the turn, crank angles continuous", numbers["curves"])
+    if "undefined_because" in numbers:
+        console.print(f"Undefined: {numbers['undefined_because']}", soft_wrap=True)
     strokes, lines = numbers["strokes"], list[text.Line]()
     for name in _STROKES:
         stroke = strokes[name]
