@@ -17,14 +17,17 @@ _FAR = 1e30
 """Stands for infinite, which a study of several objectives does not take."""
 
 
-def optuna_objective(problem: Problem, *, eliminate: bool = True) -> Callable[[Trial], tuple[float, ...]]:
+def optuna_objective(
+    problem: Problem, *, eliminate: bool = True, elimination_branch: int | None = None
+) -> Callable[[Trial], tuple[float, ...]]:
     """Return an objective for `study.optimize`: those of a trial as minimised, its requirements as constraints.
 
     Create the study with a direction "minimize" for each objective. eliminate: equality constraints are eliminated, see
-    `standard_form`; the parameters then run from 0 to 1. Each trial has its design as user attribute "design", crank,
-    rod, offset, m, and the varying numbers, SI. Raises `InputError` as `standard_form` does.
+    `standard_form`; the parameters then run from 0 to 1. elimination_branch: which of several solutions of theirs. Each
+    trial has its design as user attribute "design", crank, rod, offset, m, and the varying numbers, SI. Raises
+    `InputError` as `standard_form` does.
     """
-    form = standard_form(problem, eliminate=eliminate)
+    form = standard_form(problem, eliminate=eliminate, elimination_branch=elimination_branch)
 
     def objective(trial: Trial) -> tuple[float, ...]:
         x = np.array(

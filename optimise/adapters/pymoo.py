@@ -19,17 +19,18 @@ _FAR = 1e30
 """Stands for infinite: pymoo scales by the greatest value."""
 
 
-def pymoo_problem(problem: Problem, *, eliminate: bool = True) -> PymooProblem:
+def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branch: int | None = None) -> PymooProblem:
     """Return a pymoo `Problem` that evaluates whole populations: F as minimised, G <= 0, H = 0.
 
     eliminate: equality constraints are eliminated, see `standard_form`; genetic algorithms meet them hardly otherwise.
+    elimination_branch: which of several solutions of theirs.
     The variables then run from 0 to 1; `found.form.designs(X)` gives the designs. Raises `InputError` without pymoo.
     """
     try:
         from pymoo.core.problem import Problem as PymooProblem
     except ImportError as error:
         raise require("pymoo", error) from None
-    form = standard_form(problem, eliminate=eliminate)
+    form = standard_form(problem, eliminate=eliminate, elimination_branch=elimination_branch)
 
     class SliderCrank(PymooProblem):  # type: ignore[misc]
         def __init__(self) -> None:
@@ -44,7 +45,8 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True) -> PymooProblem:
             self.form = form
 
         def __reduce__(self) -> tuple[object, ...]:
-            return partial(pymoo_problem, eliminate=eliminate), (problem,)  # a class within a function is no name
+            made = partial(pymoo_problem, eliminate=eliminate, elimination_branch=elimination_branch)
+            return made, (problem,)  # a class within a function is no name
 
         def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
             found = form.arrays(x)

@@ -190,16 +190,17 @@ class StandardForm:
         return self.objectives.index(objective)
 
 
-def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
+def standard_form(problem: Problem, *, eliminate: bool = False, elimination_branch: int | None = None) -> StandardForm:
     """Return a problem in the form of other optimisers.
 
     eliminate: whether equality constraints are eliminated as `solve` does it, exactly: fewer unknowns, and no equality
-    for a method that meets none, such as most genetic algorithms.
+    for a method that meets none, such as most genetic algorithms. elimination_branch: which of several solutions of the
+    equalities, from 0 on, such as those with an offset above and below 0: each has a form of its own.
 
     The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
     and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
-    for one with discrete values, and with `eliminate` for an offset of both signs with equalities; without, there is
-    nothing to eliminate, and x are designs.
+    for one with discrete values, and with `eliminate` for equalities of several branches unless one is named, as the
+    message lists them. Without equalities an offset of both signs has one form, in which x are designs.
     """
     require_problem(problem, "standard_form")
     if problem.variants:
@@ -212,8 +213,13 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
             "other optimisers take ranges; got values of "
             f"{', '.join(item.name for item in problem.discrete)}; leave out step, series and values"
         )
+    if elimination_branch is not None and not eliminate:
+        raise InputError(
+            f"a branch is one of eliminated equalities; got elimination_branch={elimination_branch!r} with "
+            "eliminate=False; set eliminate=True, or leave the branch out"
+        )
     asked = constraints_of(problem)
-    sheet = _sheet(problem) if eliminate else None
+    sheet = _sheet(problem, elimination_branch) if eliminate else None
     if sheet is None:
         names, ranges = tuple(problem.ranges), problem.ranges.values()
         lower, upper = (np.array([getattr(item, end) for item in ranges], np.float64) for end in ("lower", "upper"))
@@ -238,19 +244,35 @@ def standard_form(problem: Problem, *, eliminate: bool = False) -> StandardForm:
     )
 
 
-def _sheet(problem: Problem) -> Sheet | None:
-    """Return the one sheet of a problem whose equalities are eliminated; None if it has none. Raises `InputError`."""
+def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
+    """Return a sheet of a problem whose equalities are eliminated: the branch, or the only one.
+
+    None if there is nothing to eliminate, and no branch is named. Raises `InputError`.
+    """
     found = sheets(problem)
-    if len(found) > 1:
-        if not any(constraint.equality for constraint in problem.constraints):
-            return None
+    if branch is None and len(found) > 1 and not any(constraint.equality for constraint in problem.constraints):
+        return None
+    if branch is None and len(found) == 1:
+        branch = 0
+    if isinstance(branch, bool) or not isinstance(branch, int) or not 0 <= branch < len(found):
+        several = "; ".join(f"{place}: offset {_side(sheet)}" for place, sheet in enumerate(found))
         raise InputError(
-            "equalities are eliminated for one sign of the offset; got a range on both sides of 0; keep it on one "
-            "side, or leave them in, with eliminate=False"
+            f"equalities are eliminated in one of their branches; got {branch!r} of {len(found)} ({several}); make a "
+            f"form for each, with elimination_branch=0 to {len(found) - 1}, or leave the equalities in, with "
+            "eliminate=False"
         )
-    if not found[0].free:
+    if not found[branch].free:
         raise InputError("the equalities and ranges leave nothing free; got no unknown; widen a range, or use solve")
-    return found[0]
+    return found[branch]
+
+
+def _side(sheet: Sheet) -> str:
+    """Return in words on which side of 0 a sheet has its offsets, and the root that it takes of several."""
+    side = "above 0" if sheet.sign > 0.0 else "below 0"
+    roots = [
+        f"root {step.solutions.index(step) + 1} for {step.target}" for step in sheet.steps if len(step.solutions) > 1
+    ]
+    return ", ".join([side, *roots])
 
 
 def _computed(sheet: Sheet) -> list[str]:

@@ -1,6 +1,7 @@
 """Problems in the form of other optimisers: what they take, and that they find what `solve` finds."""
 
 import math
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -122,18 +123,65 @@ def test_what_has_no_standard_form_is_refused() -> None:
         form.scipy()
     with pytest.raises(InputError, match="got 'stroke' of"):
         form.scipy("stroke")
-    both = {"crank": ["20 mm", "80 mm"], "rod": "400 mm", "offset": ["-50 mm", "50 mm"]}
-    stated = sc.problem(
-        {
-            "name": "Any",
-            "mechanism": {"speed": 1.0},
-            "variables": both,
-            "constraints": {"stroke": {"equals": 0.1}},
-            "objectives": {"footprint": "minimise"},
-        }
-    )
-    with pytest.raises(InputError, match="one sign of the offset"):
+    with pytest.raises(InputError, match="got elimination_branch=0 with eliminate=False"):
+        sc.standard_form(several(), elimination_branch=0)
+
+
+def both_sides() -> sc.Problem:
+    """A press with offsets of either sign. Its least torques are those of 1,000 random designs on each side."""
+    tables = {
+        "name": "Press",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "3 kg"}, "gravity": "9.81 m/s^2"},
+        "load": [{"force": "500 N", "opposes": "outward stroke"}],
+        "variables": {"crank": ["20 mm", "80 mm"], "rod": ["60 mm", "400 mm"], "offset": ["-80 mm", "80 mm"]},
+        "constraints": {"stroke": {"equals": "100 mm"}, "transmission_angle": {"min": "30 deg"}},
+        "objectives": {"peak_torque": "minimise"},
+    }
+    return sc.problem(tables)
+
+
+def test_equalities_have_a_form_for_each_sign_of_the_offset_as_the_message_says() -> None:
+    stated = both_sides()
+    said = r"got None of 2 \(0: offset above 0; 1: offset below 0\); .* elimination_branch=0 to 1"
+    with pytest.raises(InputError, match=said):
         sc.standard_form(stated, eliminate=True)
+    with pytest.raises(InputError, match="got 2 of 2"):
+        sc.standard_form(stated, eliminate=True, elimination_branch=2)
+    best = []
+    for branch, side in enumerate((1.0, -1.0)):
+        form = sc.standard_form(stated, eliminate=True, elimination_branch=branch)
+        x = np.random.default_rng(4).random((1000, len(form.names)))
+        designs = form.designs(x)
+        there = np.isfinite(form.arrays(x).F[:, 0])
+        assert there.sum() > 100
+        assert (side * designs[there, 2] >= 0.0).all()
+        assert stated.evaluate(designs[there], ["stroke"]) == pytest.approx(0.1, rel=1e-12)
+        found = minimize(**form.scipy()._asdict(), method="SLSQP", options={"ftol": 1e-14, "maxiter": 300})
+        feasible = form.arrays(x).G.max(axis=1) <= 0.0
+        assert found.fun <= form.arrays(x[there & feasible]).F.min()
+        best.append(float(found.fun))
+    front = sc.solve(stated)
+    assert min(best) == pytest.approx(front.values[:, 0].min(), rel=1e-7)
+
+
+def test_roots_of_a_swing_are_told_as_roots_where_the_offset_has_one_sign() -> None:
+    tables = tomllib.loads((RUNS / "support.toml").read_text())
+    tables["constraints"]["actuator_travel"] = {"equals": "2.3 m"}
+    tables["variables"]["offset"] = ["-600 mm", "-10 mm"]
+    stated = sc.problem(tables)
+    with pytest.raises(
+        InputError, match=r"got None of \d \(0: offset below 0, root 1 for \w+; 1: offset below 0, root 2"
+    ):
+        sc.standard_form(stated, eliminate=True)
+    counts = []
+    for branch in range(2):
+        form = sc.standard_form(stated, eliminate=True, elimination_branch=branch)
+        x = np.random.default_rng(4).random((2000, len(form.names)))
+        there = np.isfinite(form.arrays(x).F).all(axis=1)
+        travels = stated.evaluate(form.designs(x[there]), ["actuator_travel"])
+        assert travels == pytest.approx(2.3, rel=1e-9)
+        counts.append(int(there.sum()))
+    assert max(counts) > 10  # a root may have no design in the ranges
 
 
 def test_a_swing_need_not_turn_and_its_form_says_so() -> None:
@@ -167,5 +215,5 @@ def test_offsets_of_both_signs_need_no_elimination_where_there_are_no_equalities
     np.testing.assert_array_equal(form.arrays(x).F, sc.standard_form(support).arrays(x).F)
     tables = {"name": "both", "mechanism": {"speed": 3.0}, "objectives": {"time_ratio": "maximise"}}
     tables |= {"variables": {"crank": [0.02, 0.06], "rod": [0.1, 0.3], "offset": [-0.05, 0.05]}}
-    with pytest.raises(InputError, match="keep it on one side, or leave them in, with eliminate=False"):
+    with pytest.raises(InputError, match="elimination_branch=0 to 1, or leave the equalities in, with eliminate=False"):
         sc.standard_form(sc.problem(tables | {"constraints": {"stroke": {"equals": 0.08}}}), eliminate=True)
