@@ -59,13 +59,15 @@ class CycleModel(BaseModel):
     columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
     undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
     and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
-    without a speed, and of a slow swing. slow_stroke: outward, inward or equal. outlines: of what moves, to draw it.
+    without a speed, and of a slow swing. slider_ends_mm: slider positions at the inner and the outer dead centre, or at
+    start and end of a swing. slow_stroke: outward, inward or equal. outlines: of what moves, to draw it.
     """
 
     turns: int = Field(examples=[1])
     seconds: float | None = Field(examples=[0.2])
     inner_dead_centre_deg: float | None
     outer_dead_centre_deg: float | None
+    slider_ends_mm: tuple[float, float] = Field(examples=[(20.8, 100.8)])
     slow_stroke: str | None = Field(examples=["inward"])
     outlines: OutlinesModel
     columns: list[ColumnModel]
@@ -88,6 +90,7 @@ def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
         seconds=found.seconds,
         inner_dead_centre_deg=inner,
         outer_dead_centre_deg=outer,
+        slider_ends_mm=found.slider_ends,
         slow_stroke=slow,
         outlines=outlines_model(of.mechanism, of.linkage, of.part.motion),
         columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],

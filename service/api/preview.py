@@ -79,7 +79,10 @@ class MotionModel(BaseModel):
 
 
 class ExampleModel(BaseModel):
-    """A linkage within the ranges. feasible: whether it meets all requirements that were checked."""
+    """A linkage within the ranges. feasible: whether it meets all requirements that were checked.
+
+    slider_ends_mm: slider positions at the inner and the outer dead centre.
+    """
 
     crank_mm: float = Field(examples=[40.0])
     rod_mm: float = Field(examples=[100.0])
@@ -88,6 +91,7 @@ class ExampleModel(BaseModel):
     clockwise: bool
     slow_stroke: str = Field(examples=["outward"])
     stroke_mm: float
+    slider_ends_mm: tuple[float, float] = Field(examples=[(59.2, 139.6)])
     time_ratio: float
     least_transmission_angle_deg: float
     motion: MotionModel
@@ -101,13 +105,17 @@ class SwingCurve(BaseModel):
 
 
 class SwingExample(BaseModel):
-    """A linkage within the ranges that makes the swing. feasible: whether it meets all that was checked."""
+    """A linkage within the ranges that makes the swing. feasible: whether it meets all that was checked.
+
+    slider_ends_mm: slider positions at start and end of the swing.
+    """
 
     crank_mm: float = Field(examples=[1400.0])
     rod_mm: float = Field(examples=[1800.0])
     offset_mm: float = Field(examples=[-50.0])
     feasible: bool
     travel_mm: float = Field(examples=[2200.0])
+    slider_ends_mm: tuple[float, float] = Field(examples=[(2940.0, 740.0)])
     motion: SwingCurve
 
 
@@ -233,6 +241,7 @@ def _example(look: Look) -> ExampleModel | None:
         clockwise=machine.speed < 0.0,
         slow_stroke=str(linkage.slow_stroke(direction=machine.speed or 1.0)),
         stroke_mm=1e3 * float(linkage.stroke),
+        slider_ends_mm=(1e3 * float(linkage.dead_centres[0]), 1e3 * float(linkage.dead_centres[1])),
         time_ratio=float(linkage.time_ratio),
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
         motion=_motion(linkage),
@@ -274,6 +283,7 @@ def _swing_example(found: PossibleSwing, lengths: tuple[float, float, float]) ->
         offset_mm=offset,
         feasible=found.example_feasible,
         travel_mm=1e3 * abs(ends[1] - ends[0]),
+        slider_ends_mm=(1e3 * ends[0], 1e3 * ends[1]),
         motion=SwingCurve(
             crank_angle_deg=[float(angle) for angle in range(360)],
             slider_position_mm=[1e3 * x if math.isfinite(x) else None for x in curve],

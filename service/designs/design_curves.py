@@ -23,12 +23,13 @@ class DesignCurves:
     """Curves of a design at even places of its cycle. turns: of the crank in it; 0 of a swing forth and back.
 
     seconds: that the cycle takes; None without a speed, and of a slow swing. centres: crank angles of the inner and the
-    outer dead centre, deg; None of a swing.
+    outer dead centre, deg; None of a swing. slider_ends: slider positions there, or at start and end of a swing, mm.
     """
 
     turns: int
     seconds: float | None
     centres: tuple[float, float] | None
+    slider_ends: tuple[float, float]
     columns: list[CurveColumn]
 
 
@@ -42,9 +43,9 @@ def design_curves(of: StoredDesign, count: int) -> DesignCurves:
         turns = cycle_turns(of.mechanism)
         inner, outer = (math.degrees(float(angle)) for angle in of.linkage.dead_centre_angles)
         seconds = turns * TURN / abs(of.mechanism.speed) if of.mechanism.speed else None
-        return DesignCurves(
-            turns, seconds, (inner, outer), cycle_table(of.mechanism, of.linkage, angles=count, turns=turns)
-        )
+        columns = cycle_table(of.mechanism, of.linkage, angles=count, turns=turns)
+        at_inner, at_outer = (1e3 * float(x) for x in of.linkage.dead_centres)
+        return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
     if not LEAST <= count <= MOST or count % 2:
         raise InputError(
             f"curves of a swing have {LEAST} to {MOST} places, as many forth as back; got {count}; ask for an even "
@@ -53,10 +54,12 @@ def design_curves(of: StoredDesign, count: int) -> DesignCurves:
     own = require_swing(of.mechanism, of.linkage, of.part.motion)
     swing = placed(of.mechanism, own, of.part.motion)
     ways = at_even_times(of.mechanism, own, swing, count)
+    start, end = (1e3 * float(way.slider_position[0]) for way in ways)
     return DesignCurves(
         0,
         None if swing.duration is None else 2.0 * swing.duration,
         None,
+        (start, end),
         [
             CurveColumn(
                 curve.field,

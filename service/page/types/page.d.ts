@@ -76,6 +76,8 @@ declare namespace Page {
     curveColumns: Api.Column[];
     /** Places in the cycle of the inner and the outer dead centre, or of both ends of a swing. */
     centres: Point;
+    /** Slider positions there, mm: exact, where the curves have points only. */
+    sliderEnds: Point;
     /** Of the crank in a cycle; 0 of a swing forth and back. */
     turns: number;
     /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points. */

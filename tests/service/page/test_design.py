@@ -30,6 +30,8 @@ CENTRES = """nodes => nodes.map(node => {
   const box = node.getBoundingClientRect();
   return [box.x + box.width / 2, box.y + box.height / 2];
 })"""
+LENGTHS_BETWEEN_DEGREES = [(113.9, 484.8, 108.0), (100.6, 480.7, 56.2), (118.3, 362.7, 46.9)]
+"""Linkages whose stroke between whole degrees of the crank differs in its fourth digit."""
 NUMBERS = """nodes => nodes.map(node => [node.dataset.key, node.dataset.value])"""
 
 
@@ -89,6 +91,16 @@ def place_of(part: Locator) -> str | None:
     """Where a link, or a cursor, is: it moves with its parent, or by its style."""
     found: str | None = part.evaluate("node => node.style.transform || node.parentElement.getAttribute('transform')")
     return found
+
+
+@pytest.mark.parametrize(("crank", "rod", "offset"), LENGTHS_BETWEEN_DEGREES)
+def test_the_stroke_in_the_drawing_is_that_of_the_api_to_its_last_digit(
+    opened: Opened, service: str, solved: Solved, crank: float, rod: float, offset: float
+) -> None:
+    page = opened(3, f"?crank_mm={crank}&rod_mm={rod}&offset_mm={offset}")
+    lengths = {"crank_mm": crank, "rod_mm": rod, "offset_mm": offset}
+    design = httpx.post(f"{service}{solved.path}/designs/3/what-if", json=lengths, timeout=60.0).json()["design"]
+    expect(page.locator(".dimension.stroke text")).to_have_text(f"stroke {design['stroke_mm']:.4g}\u00a0mm")
 
 
 def test_the_mechanism_moves_until_it_is_stopped(opened: Opened) -> None:

@@ -1,11 +1,11 @@
 /** What curves are drawn over: crank angle, time, the way of the slider, or both ways of a swing. */
 
 import { inShown, unitOf } from "../lib/numbers.js";
-import { between, crankAt, innerPosition, turned } from "./cycle.js";
+import { between, crankAt, turned } from "./cycle.js";
 import { range } from "./scale.js";
 
 /**
- * @typedef {Pick<Page.Machine, "curves" | "centres" | "turns">} Curved
+ * @typedef {Pick<Page.Machine, "curves" | "centres" | "sliderEnds" | "turns">} Curved
  * @typedef {{ x: number, n: number }} Passed A point that a curve passes: x in shown units, and its place among the values.
  * @typedef {object} Across
  * @property {string} title
@@ -35,9 +35,9 @@ const QUARTERS = [0, 90, 180, 270, 360];
 const ENDS = [{ at: 0, text: "start" }, { at: 180, text: "end" }, { at: 360, text: "start" }];
 
 /** Return the way of the slider from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
-export function wayAt({ curves, centres }, angle) {
-  const [at, inner] = [between(curves.slider_position_mm, angle), innerPosition(curves, centres)];
-  return at === null || inner === null ? null : at - inner;
+export function wayAt({ curves, sliderEnds: [inner] }, angle) {
+  const at = between(curves.slider_position_mm, angle);
+  return at === null ? null : at - inner;
 }
 
 /**

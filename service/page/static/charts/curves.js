@@ -11,7 +11,7 @@ import { range, scale } from "./scale.js";
  * @import { Across } from "./across.js"
  *
  * What a chart shows of a design: its curves under a name; series: which colour it has.
- * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "turns">} Shown
+ * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "sliderEnds" | "turns">} Shown
  * @typedef {{ key: string } & Page.Heading} Panel
  * @typedef {Shown & { values: (number | null)[], ends: Page.Ends | null }} Drawn as it is shown: in the reader's units
  */

@@ -44,18 +44,6 @@ export function between(values, angle) {
   return from + (place - first) * (to - from);
 }
 
-/**
- * Return the slider position at the inner dead centre, whose crank angle comes first of the centres: the end of the curve that is
- * there, exact to its points.
- * @param {Api.Curves} curves @param {readonly number[]} centres @returns {number | null}
- */
-export function innerPosition({ slider_position_mm: position }, [inner]) {
-  const [found, near] = [extremes(position), between(position, inner)];
-  if (!found || near === null) return null;
-  const [low, high] = [found.low.value, found.high.value];
-  return near - low < high - near ? low : high;
-}
-
 /** Return {low, high} of a curve, each with its {angle, value}; null for a curve without values. @param {readonly (number | null)[]} values */
 export function extremes(values) {
   let [low, high] = [-1, -1]; // where they are

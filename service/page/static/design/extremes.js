@@ -1,6 +1,5 @@
 /** Least and greatest value of every curve of a design over the turn, and how its strokes differ. */
 
-import { innerPosition } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";
 import { text, unitOf, valueOf } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
@@ -30,10 +29,10 @@ export function extremes(place, found, { signal }) {
 /**
  * Return the extremes of the curves of a design by their columns, at places in the cycle; `way_mm` is the position from the inner dead
  * centre.
- * @param {Api.Extremes} found @param {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "turns">} design
+ * @param {Api.Extremes} found @param {Pick<Page.Machine, "curveColumns" | "sliderEnds" | "turns">} design
  * @returns {Record<string, Page.Ends>}
  */
-export function endsOf(found, { curves: sampled, curveColumns, centres, turns }) {
+export function endsOf(found, { curveColumns, sliderEnds: [inner], turns }) {
   /** @type {Record<string, Page.Ends>} */
   const ends = {};
   for (const [name, curve] of Object.entries(found.curves)) {
@@ -44,10 +43,8 @@ export function endsOf(found, { curves: sampled, curveColumns, centres, turns })
     ends[column.key] = { low: { value: low.value, angle: low.angle / turns }, high: { value: high.value, angle: high.angle / turns } };
   }
   const { slider_position_mm: position } = ends;
-  const inner = innerPosition(sampled, centres);
-  if (position && inner !== null) {
-    const start = inner - position.low.value < position.high.value - inner ? position.low.value : position.high.value;
-    const [low, high] = [position.low, position.high].map(({ value, angle }) => ({ value: value - start, angle }));
+  if (position) {
+    const [low, high] = [position.low, position.high].map(({ value, angle }) => ({ value: value - inner, angle }));
     ends.way_mm = { low, high };
   }
   return ends;

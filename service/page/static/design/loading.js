@@ -20,15 +20,15 @@ export function lengthsOf(row) {
 }
 
 /**
- * Return the curves of an answer of the API: {curves, curveColumns, centres, turns, seconds, outlines}; centres: places in the cycle of the dead
- * centres, or of both ends of a swing.
- * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "turns" | "seconds" | "outlines">}
+ * Return the curves of an answer of the API: {curves, curveColumns, centres, sliderEnds, turns, seconds, outlines}; centres: places in the cycle of the
+ * dead centres, or of both ends of a swing; sliderEnds: slider positions there, mm.
+ * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "sliderEnds" | "turns" | "seconds" | "outlines">}
  */
 export function cycleOf(cycle) {
-  const { turns, seconds, outlines, inner_dead_centre_deg: inner, outer_dead_centre_deg: outer } = cycle;
+  const { turns, seconds, outlines, slider_ends_mm: sliderEnds, inner_dead_centre_deg: inner, outer_dead_centre_deg: outer } = cycle;
   const centres = /** @type {Page.Point} */ (inner === null || outer === null ? [0, 180] : [inner / turns, outer / turns]);
-  const { curves, columns } = withResultants(cycle, turns ? centres[0] : null);
-  return { curves, curveColumns: columns, centres, turns, seconds, outlines };
+  const { curves, columns } = withResultants(cycle);
+  return { curves, curveColumns: columns, centres, sliderEnds, turns, seconds, outlines };
 }
 
 /**

@@ -1,7 +1,5 @@
 /** Curves of the API that are shown, and those made of several of them. */
 
-import { innerPosition } from "../charts/cycle.js";
-
 const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
@@ -11,10 +9,10 @@ const ORDER = ["way_mm", "slider_position", "slider_velocity", "slider_accelerat
 
 /**
  * Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre, where
- * there is one: at this place in the cycle.
- * @param {Api.Cycle} cycle @param {number | null} inner
+ * there is one.
+ * @param {Api.Cycle} cycle
  */
-export function withResultants({ curves, columns }, inner) {
+export function withResultants({ curves, columns, turns, slider_ends_mm: [inner] }) {
   /** @type {Api.Curves} */
   const more = { ...curves };
   /** @type {Api.Column[]} */
@@ -24,9 +22,8 @@ export function withResultants({ curves, columns }, inner) {
     more[key] = curves[x].map((value, n) => (value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n])));
     known.push({ key, title, unit: "N" });
   }
-  if (inner === null) return { curves: more, columns: known };
-  const start = innerPosition(curves, [inner]);
-  more.way_mm = curves.slider_position_mm.map((value) => (value === null || start === null ? null : value - start));
+  if (!turns) return { curves: more, columns: known };
+  more.way_mm = curves.slider_position_mm.map((value) => (value === null ? null : value - inner));
   known.push({ key: "way_mm", title: "displacement from inner dead centre", unit: "mm" });
   return { curves: more, columns: known };
 }

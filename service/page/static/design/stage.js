@@ -22,7 +22,7 @@ const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown
 
 /**
  * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
- * show(machines): each {name, series, row, curves, centres}, drawn at one scale; the first is the one that is told of; faded(yes); close().
+ * show(machines): each {name, series, row, curves, centres, sliderEnds}, drawn at one scale; the first is the one that is told of; faded(yes); close().
  * turns: of the crank in a cycle, 0 of a swing.
  * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof turningOf>} turning @param {number} turns
  */
@@ -93,7 +93,7 @@ export function stage(place, strip, turning, turns) {
     }
     const frame = around(machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)));
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
-    machines.forEach(({ name, series, row, curves, centres, outlines }, n) => {
+    machines.forEach(({ name, series, row, curves, centres, sliderEnds, outlines }, n) => {
       const one = drawings[n];
       const holder = /** @type {HTMLElement} */ (one.node.parentElement);
       holder.dataset.series = String(series);
@@ -102,7 +102,7 @@ export function stage(place, strip, turning, turns) {
         const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
         title.textContent = name;
       }
-      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, largest_force: greatest, turns, outlines });
+      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, slider_ends_mm: sliderEnds, largest_force: greatest, turns, outlines });
       one.turn(turning.angle);
     });
     showForces();

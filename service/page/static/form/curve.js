@@ -133,7 +133,10 @@ export function centresOf(said, { kind }, datum, unit) {
   const example = said?.example;
   const found = example ? extremes(example.motion.slider_position_mm) : null;
   if (!example || !found) return [];
-  const [inner, outer] = [found.low, found.high];
+  const [inner, outer] = example.slider_ends_mm.map((end) => {
+    const { angle } = Math.abs(found.low.value - end) < Math.abs(found.high.value - end) ? found.low : found.high;
+    return { angle, value: Math.abs(end) }; // a table counts distances, also on the crossed branch
+  });
   /** @type {(value: number) => number} */
   let counted = (value) => value;
   if (kind === "length") {

@@ -10,7 +10,7 @@ import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
@@ -20,7 +20,8 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - show(linkage, motion, options): draw {crank_mm, rod_mm, offset_mm}; motion: curves {crank_angle_deg, slider_position_mm} over a
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
- *   ([inner, outer]; without them those of the curve), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
+ *   ([inner, outer]; without them those of the curve), slider_ends_mm (slider positions there, for the
+ *   dimension; it is not written without them), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
  *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
  *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js), outlines (of the API: piston,
  *   cylinders, actuator, body on the crank).
@@ -54,7 +55,7 @@ export function drawing(place, { label }) {
     for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     const { turns = 1 } = options;
-    fill(still, scenery({ linkage, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block, tall, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0, outlines }));
+    fill(still, scenery({ linkage, ends: options.slider_ends_mm, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block, tall, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0, outlines }));
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({ linkage, view, block, tall, outlines, link, written: !options.small, crossed: crossed(linkage, motion, turns) });
     parts.forces.size(motion, view, options.largest_force);

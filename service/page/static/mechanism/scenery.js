@@ -12,33 +12,33 @@ const PITCH = 9; // pixels between the strokes of a hatching
 
 /**
  * Return the parts that stand still, as SVG elements.
- * centres: the two dead centres, each {angle, position} in deg and mm; view: of frame.js; link: width of the links in pixels; written: whether
+ * centres: the two dead centres, each {angle, position} in deg and mm, as the curve has them; ends: exact positions there, for the dimension; view: of frame.js; link: width of the links in pixels; written: whether
  * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API.
  * @param {{
- *   linkage: Page.Lengths, centres: Centre[], view: View, block: number, tall: number, link: number, direction: number, written: boolean,
+ *   linkage: Page.Lengths, centres: Centre[], ends?: Page.Point, view: View, block: number, tall: number, link: number, direction: number, written: boolean,
  *   swings?: boolean, outlines?: Api.Outlines,
  * }} given
  */
-export function scenery({ linkage, centres, view, block, tall, link, direction, written, swings = false, outlines }) {
+export function scenery({ linkage, centres, ends, view, block, tall, link, direction, written, swings = false, outlines }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
-  const ends = centres.map((centre) => centre.position);
+  const positions = centres.map((centre) => centre.position);
   /** @param {string} kind @param {Page.Point} from @param {Page.Point} to */
   const line = (kind, from, to) => svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
-  const [start, end] = [x(Math.min(...ends) - 1.2 * block), x(Math.max(...ends) + 1.2 * block)];
+  const [start, end] = [x(Math.min(...positions) - 1.2 * block), x(Math.max(...positions) + 1.2 * block)];
   const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
   return [
     line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
     swings ? arcOf(view, r, centres) : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
-    line("path", [x(ends[0]), y(e)], [x(ends[1]), y(e)]),
+    line("path", [x(positions[0]), y(e)], [x(positions[1]), y(e)]),
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * tall * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, tall, link)),
     ...(outlines?.cylinders ?? []).map((cylinder) => walls(view, cylinder, e)),
     outlines?.actuator ? barrel(view, outlines.actuator, e) : null,
     swings ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
-    written && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
+    written && ends && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
     written && !swings && crankOf(view, r, e),
     bearing(x(0), y(0), link),
   ];
@@ -104,7 +104,7 @@ function offset(view, e, x, written) {
   );
 }
 
-/** Dimension the stroke, outside of the guide. @param {View} view @param {number[]} ends @param {number} y @param {boolean} swings */
+/** Dimension the stroke, outside of the guide. @param {View} view @param {Page.Point} ends @param {number} y @param {boolean} swings */
 function strokeOf(view, ends, y, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
   const long = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);

@@ -14,7 +14,7 @@ function design({ number }, count = 360) {
   });
   const inner = (180 / Math.PI) * (Math.PI + Math.asin(e / (l - r)));
   const outer = (180 / Math.PI) * Math.asin(e / (l + r));
-  return { curves: { slider_position_mm: position }, centres: [(inner + 360) % 360, (outer + 360) % 360], ends: [Math.sqrt((l - r) ** 2 - e * e), Math.sqrt((l + r) ** 2 - e * e)] };
+  return { curves: { slider_position_mm: position }, centres: [(inner + 360) % 360, (outer + 360) % 360], sliderEnds: [Math.sqrt((l - r) ** 2 - e * e), Math.sqrt((l + r) ** 2 - e * e)] };
 }
 
 test("time goes with the crank, whichever way it turns", () => {
@@ -37,7 +37,7 @@ test("over the way of the slider the curve goes from the inner dead centre to th
   const draw = draws(91);
   for (let n = 0; n < 100; n += 1) {
     const one = design(draw);
-    const stroke = one.ends[1] - one.ends[0];
+    const stroke = one.sliderEnds[1] - one.sliderEnds[0];
     const over = acrossOf("way", 60);
     const path = over.path(one, 360);
     assert.equal(path[0].x, path.at(-1).x);
