@@ -21,7 +21,8 @@ from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
 from ..machine.members import members
 from ..machine.two_turns import TURN, cycle_turns
-from ..signals.panels import Extreme, Panels, panels_of
+from ..signals.first_of_equal import named_angle
+from ..signals.panels import Extreme, Panels, panels_of, peak_of
 from .cycle import breakpoints, cycle
 from .pace import pace, pace_knots
 from .shaking import shaking_curves
@@ -56,12 +57,14 @@ class WholeCurves:
 class WholeCycle:
     """Numbers of all cylinders together over a turn; SI.
 
-    least, greatest: torque. fluctuation: RMS deviation of the torque from its mean. energy_change: range of the
-    integral of torque minus mean, J, which a flywheel takes up. shaking_force, shaking_moment, couple: greatest sizes.
+    least, greatest: torque. peak: the one of greatest size. fluctuation: RMS deviation of the torque from its mean.
+    energy_change: range of the integral of torque minus mean, J, which a flywheel takes up. shaking_force,
+    shaking_moment, couple: greatest sizes.
     """
 
     least: Extreme
     greatest: Extreme
+    peak: Extreme
     mean: float
     rms: float
     fluctuation: float
@@ -71,11 +74,6 @@ class WholeCycle:
     shaking_moment: Extreme
     rms_shaking_moment: float
     couple: Extreme
-
-    @property
-    def peak(self) -> Extreme:
-        """The torque of greatest size."""
-        return max(self.greatest, self.least, key=lambda extreme: abs(extreme.value))
 
 
 def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> WholeCurves:
@@ -116,11 +114,12 @@ def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
     sizes = _sizes(mechanism, linkage)
     found = panels_of(lambda theta: _followed(whole_curves(mechanism, linkage, theta)), ends, sizes)
     least, greatest = (_real(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
-    moment = max(found.extremes(_MOMENT), key=lambda extreme: abs(extreme.value))
+    moment = peak_of(found.extremes(_MOMENT), period)
     mean = found.mean(_TORQUE)
     return WholeCycle(
         least=least,
         greatest=greatest,
+        peak=peak_of((least, greatest), period),
         mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
         rms=math.sqrt(found.mean_square(_TORQUE)),
         fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
@@ -156,7 +155,7 @@ def _real(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme; none where cylinders cancel but for rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
-    return Extreme(extreme.value, extreme.angle % period)
+    return Extreme(extreme.value, named_angle(extreme.angle, period))
 
 
 def _root(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:

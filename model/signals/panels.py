@@ -7,6 +7,7 @@ derivative of the polynomial is zero.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array
+from .first_of_equal import first_of_equal
 
 Curves = Callable[[Array], Array]
 
@@ -33,6 +35,13 @@ class Extreme:
 
     value: float
     angle: float
+
+
+def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
+    """Return the one of greatest size of the least and the greatest value; of equal ones the first."""
+    sizes = np.abs([end.value for end in ends])
+    first = ends[int(first_of_equal(sizes, np.array([end.angle for end in ends]), period))]
+    return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
 
 
 @dataclass(frozen=True)
@@ -55,7 +64,7 @@ class Panels:
         return float(np.sum(self.width * squares) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
-        """Return the least and the greatest value."""
+        """Return the least and the greatest value; of equal ones the first (`first_of_equal`)."""
         return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
 
     def swing(self, curve: int) -> float:
@@ -75,13 +84,19 @@ class Panels:
         samples = legendre.legval(x, c.T)  # (p, 18)
         top, spread = samples.max(axis=1), np.ptp(samples, axis=1)
         panel, place = np.unravel_index(int(np.argmax(samples)), samples.shape)
-        best, at, where = float(samples[panel, place]), float(x[place]), int(panel)
+        best, tops, places, rows = float(samples[panel, place]), [], [], []
         for i in np.flatnonzero(top + spread >= best):
-            stationary = _roots(legendre.legder(c[i]))
-            values = legendre.legval(stationary, c[i])
-            if len(values) and values.max() > best:
-                best, at, where = float(values.max()), float(stationary[np.argmax(values)]), int(i)
-        return Extreme(sign * best, float(self.low[where] + 0.5 * (1.0 + at) * self.width[where]))
+            rate = legendre.legder(c[i])
+            stationary, slopes = _roots(rate), legendre.legval([-1.0, 1.0], rate)
+            ends = [end for end, falls in ((-1.0, slopes[0] <= 0.0), (1.0, slopes[1] >= 0.0)) if falls]
+            own = np.concatenate([stationary, ends])
+            tops.append(legendre.legval(own, c[i]))
+            places.append(own)
+            rows.append(np.full(len(own), i))
+        found, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
+        angles = self.low[row] + 0.5 * (1.0 + at) * self.width[row]
+        first = int(first_of_equal(found, angles, float(np.sum(self.width))))
+        return Extreme(sign * max(best, float(found.max())), float(angles[first]))
 
 
 def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:

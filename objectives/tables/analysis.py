@@ -13,7 +13,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.averages import average_torque
-from ...model.signals.peaks import find_peaks
+from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
 from ..average_torque import MEAN_TORQUE, RMS_TORQUE
 from ..motion_deviation import MotionDeviation
@@ -52,7 +52,7 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     linkage.require_full_rotation()
     inner, outer = linkage.dead_centre_angles
-    torque = find_peaks(mechanism, Signal.TORQUE, dimensions, kept=1)
+    peak_torque, peak_torque_angle = first_peaks(mechanism, Signal.TORQUE, dimensions)
     averages = average_torque(mechanism, dimensions)
     varying = [varying_column(item) for item in mechanism.varying]
     columns: dict[str, NDArray[Any]] = {
@@ -67,8 +67,8 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
         OUTER_DEAD_CENTRE: np.degrees(outer),
         INNER_DEAD_CENTRE: np.degrees(inner),
         TRANSMISSION_ANGLE.field: np.degrees(linkage.least_transmission_angle),
-        PEAK_TORQUE.field: torque.values[:, 0],
-        PEAK_TORQUE_ANGLE: np.degrees(torque.angles[:, 0]),
+        PEAK_TORQUE.field: peak_torque,
+        PEAK_TORQUE_ANGLE: np.degrees(peak_torque_angle),
         RMS_TORQUE.field: averages.rms,
         MEAN_TORQUE.field: averages.mean,
     }

@@ -25,6 +25,7 @@ from ...model.linkage.single import single
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
+from ...model.signals.first_of_equal import first_of_equal, named_angle
 from ..kinds import Face
 from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
@@ -38,7 +39,7 @@ _LEAST_SAMPLES = 33  # in a piece, however short
 _INSET = 1e-8
 """Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
 _REACH = 4.0
-"""Steps to the neighbours by which a curve may rise beyond a sample: one at a tip, less where it is smooth."""
+"""Steps between neighbours by which a curve may rise beyond a sample: one at a tip, less where it is smooth."""
 _CANDIDATES = 60  # of each curve and side; there are more only where samples are equal but for rounding
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -59,8 +60,8 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 class Extreme:
     """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
-    Of several equal ones it is that of one of them. Angle and position are NaN for a curve that is constant; all three
-    are NaN for one that friction leaves undetermined at some crank angle.
+    Of several equal ones it is the first (`first_of_equal`). Angle and position are NaN for a curve that is
+    constant; all three are NaN for one that friction leaves undetermined at some crank angle.
     """
 
     value: float
@@ -201,9 +202,14 @@ def _ends(
         for row in np.unique(at[signs == sign]):
             inside = np.flatnonzero((at == row) & (signs == sign))
             best = inside[np.argmax(tops[inside])]
-            if tops[best] > refined[row][0] + _EQUAL * sizes[row, 0]:
-                refined[row] = (float(tops[best]), float(angles[best]))
-            refined[row] = (sign * refined[row][0] + 0.0, refined[row][1] % period)
+            value, angle = refined[row]
+            if tops[best] > value + _EQUAL * sizes[row, 0]:
+                value, angle = float(tops[best]), float(angles[best])
+            places, heights = _at_cuts([sign * values[row] for values in samples], pieces)
+            away = np.all(np.abs(np.subtract.outer(angles[inside], places)) > 4.0 * _INSET, axis=1)
+            places = np.concatenate([[angle], places, angles[inside][away]])
+            first = first_of_equal(np.concatenate([[value], heights, tops[inside][away]]), places, period)
+            refined[row] = (sign * value + 0.0, named_angle(float(places[first]), period))
         ends.append(refined)
     return ends[0], ends[1]
 
@@ -241,6 +247,16 @@ def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
     return float(value), float(angle)
 
 
+def _at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Array]:
+    """Return crank angles and values of the cuts that are local maxima: kinks, jumps and what is smooth there."""
+    begin, end = (np.array([2.0 * v[a] - v[b] for v in curve]) for a, b in ((0, 1), (-1, -2)))
+    rises, falls = np.array([v[1] > v[0] for v in curve]), np.array([v[-1] < v[-2] for v in curve])
+    left, rising = np.roll(end, 1), ~np.roll(falls, 1)  # of the piece before each cut
+    top = np.where(left >= begin, rising & ((left > begin) | ~rises), ~rises)
+    at = np.array([angles[0] - _INSET for angles in pieces])
+    return at[top], np.maximum(left, begin)[top]
+
+
 def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
     """Return the neighbours on both sides of every locally highest sample that may be next to the greatest value."""
     found: list[tuple[float, float, float]] = []
@@ -248,7 +264,8 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
         highest = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
         before, after = np.maximum(highest - 1, 0), np.minimum(highest + 1, len(angles) - 1)
-        step = values[highest] - np.minimum(values[before], values[after])
+        steps = np.abs(np.diff(values))  # two to either side: at the end of a piece the last one may be short
+        step = np.max([steps[np.clip(highest + k, 0, len(steps) - 1)] for k in (-2, -1, 0, 1)], axis=0)
         bounds = (values[highest] + _REACH * step).tolist()
         found += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)
     best = max(values.max() for values in curve)

@@ -39,6 +39,7 @@ from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import require_plain
 from ...model.signals.averages import average
+from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from .shaking_rows import mean_rows, moving_moment, rows, with_masses
@@ -289,9 +290,9 @@ def shaking_of(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage."""
     numbers: list[float] = []
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):
-        peak = find_peaks(mechanism, kind, _design(linkage), kept=1)
+        peaks, angles = first_peaks(mechanism, kind, _design(linkage))
         mean = average(mechanism, kind, _design(linkage))
-        numbers += [float(peak.values[0, 0]), float(peak.angles[0, 0]), float(mean.rms[0])]
+        numbers += [float(peaks[0]), float(angles[0]), float(mean.rms[0])]
     return Shaking(*numbers)
 
 

@@ -13,7 +13,7 @@ from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
-from ...model.signals.peaks import find_peaks
+from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
 from ...objectives.kinds import System, shown_in
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
@@ -58,7 +58,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
 
     def peak(of: Mechanism, signal: Signal) -> float:
-        return float(find_peaks(of, signal, dimensions, kept=1).angles[0, 0])
+        return float(first_peaks(of, signal, dimensions)[1][0])
 
     extremes: dict[str, tuple[str, float] | None] = {
         **({"torque": ("peak", peak(mechanism, Signal.TORQUE))} if torque else {}),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.peaks import find_peaks
+from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
 
 
@@ -27,6 +27,6 @@ def row_of(linkage: Linkage) -> NDArray[np.float64]:
 
 
 def peak(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> Peak:
-    """Return the peak of a signal over the cycle."""
-    found = find_peaks(mechanism, signal, row_of(linkage), kept=1)
-    return Peak(float(found.values[0, 0]), math.degrees(float(found.angles[0, 0])))
+    """Return the peak of a signal over the cycle; of equal ones the first (`first_peaks`)."""
+    values, angles = first_peaks(mechanism, signal, row_of(linkage))
+    return Peak(float(values[0]), math.degrees(float(angles[0])))

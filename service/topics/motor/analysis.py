@@ -22,12 +22,11 @@ from ....model.machine.members import cylinders_of
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.of_shaft import time_share
-from ....model.signals.peaks import find_peaks
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...text import tables as text
 from ...text.tables import plain
-from ..peaks import row_of
+from ..peaks import peak, row_of
 
 _SAMPLES = 2048
 
@@ -38,10 +37,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     Torque and power are None where friction locks the linkage. Of several cylinders they are those of all together.
     """
     design = row_of(linkage)
-    torque = find_peaks(mechanism, Signal.TORQUE, design, kept=1)
-    power = find_peaks(mechanism, Signal.POWER, design, kept=1)
+    signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
+    torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
     averages = average_torque(mechanism, design)
-    greatest = find_peaks(mechanism, Signal.REFLECTED_INERTIA, design, kept=1)
 
     def inertia(angle: Any) -> Any:
         return _inertia(mechanism, linkage, angle)
@@ -55,21 +53,18 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         options={"xatol": 1e-10},
     )
 
-    def degrees(angle: Any) -> float | None:
-        return plain(np.degrees(angle) % 360.0)
-
     return {
-        "peak_torque_Nm": plain(torque.values[0, 0]),
-        "peak_torque_angle_deg": degrees(torque.angles[0, 0]),
+        "peak_torque_Nm": plain(torque.value),
+        "peak_torque_angle_deg": plain(torque.degrees),
         "rms_torque_Nm": plain(averages.rms[0]),
         "mean_torque_Nm": plain(averages.mean[0]),
-        "peak_power_W": plain(power.values[0, 0]),
-        "peak_power_angle_deg": degrees(power.angles[0, 0]),
+        "peak_power_W": plain(power.value),
+        "peak_power_angle_deg": plain(power.degrees),
         "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]),
-        "greatest_reflected_inertia_kg_m2": float(greatest.values[0, 0]),
-        "greatest_reflected_inertia_angle_deg": degrees(greatest.angles[0, 0]),
+        "greatest_reflected_inertia_kg_m2": greatest.value,
+        "greatest_reflected_inertia_angle_deg": greatest.degrees,
         "least_reflected_inertia_kg_m2": float(least.fun),
-        "least_reflected_inertia_angle_deg": degrees(least.x),
+        "least_reflected_inertia_angle_deg": math.degrees(least.x) % 360.0,
         "mean_reflected_inertia_kg_m2": float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
     }
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.signals.peaks import find_peaks
+from ....model.signals.first_peak import first_peaks
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
 from ....model.tolerance.first_order import shares
@@ -43,26 +43,28 @@ def numbers(
             'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
         )
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
-    first, square = (find_peaks(mechanism, signal, row_of(linkage), kept=1) for signal in signals)
-    worst_case, rss = float(first.values[0, 0]), float(square.values[0, 0])
+    (worst_case, at), (rss, at_square) = (
+        (float(values[0]), angles)
+        for values, angles in (first_peaks(mechanism, signal, row_of(linkage)) for signal in signals)
+    )
     try:
         exact = worst(mechanism, linkage)
     except AssemblyError:
         exact = None
-    parts = (np.abs(source_influences(mechanism, linkage, first.angles[0])) * reach[:, None])[:, :1]
+    parts = (np.abs(source_influences(mechanism, linkage, at)) * reach[:, None])[:, :1]
     of_worst = 100.0 * shares(parts)[:, 0]
-    of_variance = 100.0 * shares(variances(mechanism, linkage, first.angles[0]))[:, 0]
+    of_variance = 100.0 * shares(variances(mechanism, linkage, at))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
     spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     limits_wanted = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
     yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in limits_wanted.items()]
     return {
         "worst_case_mm": 1e3 * worst_case,
-        "worst_case_angle_deg": float(np.degrees(first.angles[0, 0])),
+        "worst_case_angle_deg": float(np.degrees(at[0])),
         "exact_worst_case_mm": None if exact is None else 1e3 * exact.size,
         "exact_worst_case_angle_deg": None if exact is None else float(np.degrees(exact.crank_angle)),
         "root_sum_square_mm": 1e3 * rss,
-        "root_sum_square_angle_deg": float(np.degrees(square.angles[0, 0])),
+        "root_sum_square_angle_deg": float(np.degrees(at_square[0])),
         "contributions": [
             {
                 "source": name,

@@ -1,0 +1,90 @@
+"""Crank angles by which analyses name a greatest value: of equal ones the first, in every place the same."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from slidercrank.model.cycle.several import whole_curves
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.first_of_equal import first_of_equal, named_angle
+from slidercrank.objectives.tables.analysis import columns_of
+from slidercrank.objectives.tables.curve_extremes import curve_extremes
+from slidercrank.service.figures.curves import cycle_curves
+from slidercrank.service.topics.cylinders import analysis as cylinders
+from slidercrank.service.topics.motor import analysis as motor
+
+TURN = 2.0 * math.pi
+
+
+def even(count: int, seed: int) -> tuple[Mechanism, Linkage]:
+    """Return cylinders in line, even crank angles, no gravity: their torque repeats itself and is its own mirror."""
+    random = np.random.default_rng(seed)
+    machine = Mechanism(
+        speed=float(random.uniform(20.0, 200.0)),
+        slider_mass=float(random.uniform(0.2, 2.0)),
+        rod=RigidLink(mass=float(random.uniform(0.1, 1.0))),
+        arrangement=Arrangement(phases=tuple(TURN * k / count for k in range(count))),
+    )
+    crank = float(random.uniform(0.02, 0.08))
+    return machine, Linkage(crank, crank * float(random.uniform(2.2, 5.0)), 0.0)
+
+
+def first_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
+    """Return the first crank angle, deg, of the greatest torque, by parabolas through samples; sign 0: of its size."""
+    theta = np.linspace(0.0, TURN, 20_000, endpoint=False)
+    torque = whole_curves(machine, linkage, theta).torque
+    curve = sign * torque if sign else np.abs(torque)
+    top = (curve >= np.roll(curve, 1)) & (curve > np.roll(curve, -1))
+    before, at, after = (np.roll(curve, k)[top] for k in (1, 0, -1))
+    bend = before - 2.0 * at + after
+    heights = at - (after - before) ** 2 / (8.0 * bend)
+    angles = theta[top] + 0.5 * (before - after) / bend * theta[1]
+    return math.degrees(float(angles[heights >= heights.max() * (1.0 - 1e-7)].min()))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", range(1, 7))
+@pytest.mark.parametrize("seed", range(4))
+def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed: int) -> None:
+    machine, linkage = even(count, seed)
+    size, most, least = (first_greatest(machine, linkage, sign) for sign in (0, 1, -1))
+    row = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
+    together = cylinders.numbers(machine, linkage)
+    whole = motor.numbers(machine, linkage)
+    torque = next(found for found in curve_extremes(machine, linkage) if found.name == "torque")
+    named = {
+        "table": (row["peak_torque_angle_deg"][0], size),
+        "motor": (whole["peak_torque_angle_deg"], size),
+        "power": (whole["peak_power_angle_deg"], size),
+        "cylinders": (together["peak_torque_angle_deg"], size),
+        "cylinders, greatest": (together["greatest_torque_angle_deg"], most),
+        "cylinders, least": (together["least_torque_angle_deg"], least),
+        "extremes, greatest": (math.degrees(torque.greatest.crank_angle), most),
+        "extremes, least": (math.degrees(torque.least.crank_angle), least),
+    }
+    for place, (angle, expected) in named.items():
+        assert angle == pytest.approx(expected, abs=1e-4), place  # of a parabola through samples 0.018 deg apart
+
+
+def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
+    machine, linkage = even(1, 3)
+    expected = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))["peak_torque_angle_deg"][0]
+    panel = next(panel for panel in cycle_curves(machine, linkage).panels if "torque" in panel.title)
+    assert panel.lines[1].x == pytest.approx([expected], abs=1e-9)
+
+
+def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_but_for_rounding() -> None:
+    values = np.array([[3.0, 1.0, 3.0 * (1.0 - 1e-12)], [2.0, 2.0 + 1e-6, 2.0], [np.inf, np.nan, np.nan]])
+    angles = np.array([[5.0, 0.1, 2.0], [0.5, 1.0, 1.5], [np.nan, np.nan, np.nan]])
+    assert first_of_equal(values, angles, TURN).tolist() == [2, 1, 0]
+    # A sample beside a flat top is as high but for rounding, and is not the peak.
+    assert first_of_equal(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
+    # At zero from below.
+    assert first_of_equal(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
+    assert [named_angle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
