@@ -1,7 +1,7 @@
 """The command line: `slidercrank COMMAND`.
 
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
-feasible, or no design that meets the conditions; 4 not proven within the budget; 130 interrupted (Ctrl-C).
+feasible: the input is right, and no design meets it; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
 A command is imported when it is named. Nothing that is slow to import is imported here or at the top of the command
 modules: `--help`, which names all, stays quick.
@@ -21,8 +21,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from ..model.errors import OutputLost, SlidercrankError
-from .commands.ending import FAULT, INTERRUPTED, WRONG_INPUT
+from ..model.errors import InfeasibleError, OutputLost, SlidercrankError
+from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, with_infeasible_json
 from .resources.disk import full_places, is_full
 from .text.options import for_typer
 from .text.screen import give, say
@@ -60,7 +60,7 @@ class Commands(TyperGroup):
         if cmd_name in self.commands and self.commands[cmd_name] is None:
             module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
             alone = typer.Typer(rich_markup_mode=None, add_completion=False)
-            alone.command(cmd_name)(for_typer(getattr(module, cmd_name)))
+            alone.command(cmd_name)(for_typer(with_infeasible_json(getattr(module, cmd_name))))
             self.commands[cmd_name] = typer.main.get_command(alone)
         return self.commands.get(cmd_name)
 
@@ -72,7 +72,7 @@ class Commands(TyperGroup):
             if os.environ.get(_DEBUG):
                 raise
             say(f"slidercrank: {error}")
-            raise typer.Exit(WRONG_INPUT) from None
+            raise typer.Exit(NOTHING_FEASIBLE if isinstance(error, InfeasibleError) else WRONG_INPUT) from None
         except KeyboardInterrupt:
             say("slidercrank: interrupted")
             raise typer.Exit(INTERRUPTED) from None

@@ -32,6 +32,7 @@ Use other optimisers
 
 Errors
     SlidercrankError     any of this software; `InputError`, `AssemblyError` and `JobError` among them
+    InfeasibleError      a `JobError` of a job that is right, and that no design can meet
 
 Every name is imported when it is first used. Values are in SI and radians unless a name or a column carries a unit.
 """
@@ -43,6 +44,7 @@ __all__ = [
     "Analysis",
     "AssemblyError",
     "Constraint",
+    "InfeasibleError",
     "InputError",
     "JobError",
     "Linkage",
@@ -73,7 +75,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from slidercrank.model.errors import AssemblyError, InputError, JobError, SlidercrankError
+    from slidercrank.model.errors import AssemblyError, InfeasibleError, InputError, JobError, SlidercrankError
     from slidercrank.model.linkage.inverse import crank_from_stroke
     from slidercrank.model.linkage.linkage import Linkage
     from slidercrank.model.machine.mechanism import Mechanism
@@ -100,7 +102,7 @@ if TYPE_CHECKING:
 else:
     # Not shown to type checkers: they would take every misspelt name for a known one.
     _HOMES = {
-        "model.errors": ("AssemblyError", "InputError", "JobError", "SlidercrankError"),
+        "model.errors": ("AssemblyError", "InfeasibleError", "InputError", "JobError", "SlidercrankError"),
         "model.linkage.inverse": ("crank_from_stroke",),
         "model.linkage.linkage": ("Linkage",),
         "model.machine.mechanism": ("Mechanism",),

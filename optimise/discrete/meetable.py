@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.errors import JobError
+from ...model.errors import InfeasibleError
 from ...model.linkage.values import DIMENSIONS
 from ..problem.problem import Problem
 from .combinations import Axes, Judged, every
@@ -17,7 +17,7 @@ MOST = 200_000
 
 
 def require_meetable(problem: Problem) -> None:
-    """Raise JobError, with the nearest, if values of all three dimensions are given and none meets what they must.
+    """Raise InfeasibleError, with the nearest, if values of all three dimensions are given and none meets the rules.
 
     Only what needs no cycle is looked at, and no more than `MOST` combinations; the rest is left to the search.
     """
@@ -33,7 +33,7 @@ def require_meetable(problem: Problem) -> None:
             return
     sizes = tuple(item for item in problem.discrete if item.name in DIMENSIONS)
     if sizes:
-        raise JobError(f"variables.{sizes[0].name}: {missed_in_words(replace(problem, discrete=sizes), found)}")
+        raise InfeasibleError(f"variables.{sizes[0].name}: {missed_in_words(replace(problem, discrete=sizes), found)}")
 
 
 def _of_dimensions(axes: Axes) -> Axes:

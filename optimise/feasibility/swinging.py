@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import closes, passes
 from ...model.swing.ends import start_column
@@ -24,10 +24,10 @@ _HALVINGS = 10  # of the share of the friction: three digits
 
 
 def require_swinging(problem: Problem) -> None:
-    """Raise `InputError` if of many designs of the ranges none can swing as asked, or friction locks all that can."""
+    """Raise `InfeasibleError` if no one of many designs of the ranges swings as asked, or friction locks those."""
     message = unswung(problem)
     if message:
-        raise InputError(message)
+        raise InfeasibleError(f"motion: {message}")
 
 
 def unswung(problem: Problem) -> str:

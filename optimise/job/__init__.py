@@ -44,7 +44,7 @@ def load_job(
     all that the user may do. Refuse them in jobs of others.
 
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
-    schema, or contradicts itself.
+    schema, or contradicts itself; `InfeasibleError`, which is one, where no design can meet what it states.
     """
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
@@ -73,7 +73,8 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
         yield
     except JobError as error:
         name = str(path)
-        raise JobError(f"{name if name.isprintable() else shown(name)}: {error}") from None
+        error.args = (f"{name if name.isprintable() else shown(name)}: {error}",)
+        raise error from None
 
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:

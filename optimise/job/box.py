@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...model.errors import JobError
+from ...model.errors import InfeasibleError
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
@@ -56,10 +56,10 @@ class Box:
 
 
 def require_reachable(problem: Problem) -> None:
-    """Raise JobError if full rotation or a constraint on geometry is out of reach within the ranges."""
+    """Raise InfeasibleError if full rotation or a constraint on geometry is out of reach within the ranges."""
     box = Box.of(problem)
     if not box.turns:
-        raise JobError(
+        raise InfeasibleError(
             "variables: the rod must exceed crank + |offset| for full rotation; "
             f"got {_extremes(box)}; lengthen the rod or reduce the other two"
         )
@@ -72,13 +72,13 @@ def require_reachable(problem: Problem) -> None:
             _require_within(of, constraints[of.name], box, problem)
     wrong = beyond_both(problem, box.share)
     if wrong:
-        raise JobError(f"constraints.{TIME_RATIO.name}: {wrong}")
+        raise InfeasibleError(f"constraints.{TIME_RATIO.name}: {wrong}")
 
 
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
-    """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise JobError if nothing is left."""
+    """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise InfeasibleError if nothing is left."""
     if box.offset.upper == 0.0:
-        raise JobError(
+        raise InfeasibleError(
             f"constraints.{ROD_TO_OFFSET.name}: it needs an offset; got offset fixed at 0; give "
             "variables.offset a range"
         )
@@ -95,7 +95,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
         share=Range(lower=1.0 / greatest, upper=min(1.0, 1.0 / least if least else 1.0)),
     )
     if not narrowed.turns:
-        raise JobError(
+        raise InfeasibleError(
             f"constraints.{ROD_TO_OFFSET.name}: full rotation leaves the crank less than rod - |offset|; got "
             f"{_bounds(constraint)} and with it {_extremes(narrowed)}; shorten the crank, or raise the ratio"
         )
@@ -103,7 +103,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 
 def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
-    """Raise JobError unless the constraint and what is possible meet."""
+    """Raise InfeasibleError unless the constraint and what is possible meet."""
     key = key_of(["constraints", of.name])
     least, greatest = box.possible(of)
     assert of.reach is not None
@@ -117,7 +117,7 @@ def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Pro
     same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
     if same is not None and not same.names:
         told, remedy = f"it is {_shown(of, float(same.constant))} for every design", "leave it out"
-    raise JobError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
+    raise InfeasibleError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
 
 
 def _possible(problem: Problem, constraint: Constraint) -> str:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ...model.errors import InputError, JobError
+from ...model.errors import InfeasibleError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
@@ -30,7 +30,10 @@ from .pins import require_room_for_pins
 
 
 def require_consistent(problem: Problem) -> None:
-    """Raise JobError, naming key, rule, value and remedy, if the problem contradicts itself."""
+    """Raise, naming key, rule, value and remedy, if the problem contradicts itself.
+
+    `InfeasibleError` where each part of it is right and no design has them all, else `JobError`.
+    """
     for key, quantity, word, value in _asked(problem):
         _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
@@ -39,10 +42,7 @@ def require_consistent(problem: Problem) -> None:
     _require_one_density(problem)
     require_room_for_pins(problem)
     if problem.motion is not None:
-        try:
-            require_swinging(problem)
-        except InputError as error:
-            raise JobError(f"motion: {error}") from None
+        require_swinging(problem)
         return
     _require_delivery(problem)
     require_reachable(problem)
@@ -77,7 +77,7 @@ def _require_delivery(problem: Problem) -> None:
     """Refuse compressors whose clearance volume is so large that no stroke of the ranges delivers, in every variant."""
     said = [_undelivered(part) for part in problem.parts()]
     if said and all(said):
-        raise JobError(said[0])
+        raise InfeasibleError(said[0])
 
 
 def _undelivered(part: Problem) -> str:
@@ -155,20 +155,17 @@ def _require_free(problem: Problem, name: str) -> None:
 
 
 def require_slow_stroke(problem: Problem) -> None:
-    """Raise JobError, naming rule, value and remedy, if no design of the ranges has the slow stroke that is asked.
+    """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the slow stroke that is asked.
 
     The ranges must be known to have designs that turn fully.
     """
-    try:
-        parts = problem.parts()
-        require_slow_side(problem, parts)
-    except InputError as error:
-        raise JobError(str(error)) from None
+    parts = problem.parts()
+    require_slow_side(problem, parts)
     if any(part.slow_stroke is None for part in parts):
         return
     ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
     if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
-        raise JobError(
+        raise InfeasibleError(
             "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
             f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
             "or leave out slow_stroke"
@@ -182,14 +179,15 @@ def require_slow_stroke(problem: Problem) -> None:
     )
     try:
         require_reachable(narrowed)
-    except JobError as error:
+    except InfeasibleError as error:
         where = "above" if narrowed.offset.lower >= 0.0 else "below"
-        raise JobError(f"{error}, or leave out constraints.slow_stroke, which keeps the offset {where} 0") from None
+        kept = f"or leave out constraints.slow_stroke, which keeps the offset {where} 0"
+        raise InfeasibleError(f"{error}, {kept}") from None
     greatest = Box.of(narrowed).possible(TIME_RATIO)[1]
     floor = TIME_RATIO.floor or 1.0
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)
-        raise JobError(
+        raise InfeasibleError(
             f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {floor:g} on, unless "
             f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
             f"let crank or offset be greater, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"

@@ -13,7 +13,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...model.errors import JobError
+from ...model.errors import InfeasibleError
 from ...objectives.formula.expression import Call
 from ...objectives.formula.linear import Linear, unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
@@ -39,7 +39,7 @@ class _Row:
 
 
 def require_compatible(problem: Problem) -> None:
-    """Raise JobError, naming the requirements, if no point of the ranges meets all linear ones."""
+    """Raise InfeasibleError, naming the requirements, if no point of the ranges meets all linear ones."""
     seen: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
     for part in parts:
@@ -52,7 +52,7 @@ def require_compatible(problem: Problem) -> None:
                 seen[key] = _possible(rows, ends, turning=problem.motion is None)
             if seen[key]:
                 return
-    raise JobError(_told(parts[0]))
+    raise InfeasibleError(_told(parts[0]))
 
 
 def _told(part: Problem) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...model.errors import InputError, JobError
+from ...model.errors import InfeasibleError, InputError
 from ..problem.problem import Problem
 from .box import SLACK, Box
 
@@ -12,11 +12,11 @@ _MOST = 5  # told one by one
 
 
 def require_options(problem: Problem) -> None:
-    """Raise JobError if no combination of options can have a design."""
+    """Raise InfeasibleError if no combination of options can have a design."""
     found = impossible_options(problem)
     if problem.variants and len(found) == len(problem.variants):
         label, why = found[0]
-        raise JobError(
+        raise InfeasibleError(
             f"choice: some option has a design within the ranges; got none: of {label} {why}; widen the ranges"
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...model.errors import JobError
+from ...model.errors import InfeasibleError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import number_at
 from ...objectives.bars import LINKS, NEAR
@@ -11,7 +11,7 @@ from ..problem.problem import Problem
 
 
 def require_room_for_pins(problem: Problem) -> None:
-    """Raise `JobError` where stresses are asked for and no choice has eyes that are wider than their pins."""
+    """Raise `InfeasibleError` where stresses are asked for and no choice has eyes that are wider than their pins."""
     asked = {*(of.quantity for of in problem.constraints), *(of.quantity for of in problem.objectives)}
     found = [of for of in map(problem.quantity, asked) if isinstance(of, LinkStress)]
     if not found:
@@ -23,7 +23,7 @@ def require_room_for_pins(problem: Problem) -> None:
         if not reasons:
             return
         refused.append(reasons[0])
-    raise JobError(refused[0])
+    raise InfeasibleError(refused[0])
 
 
 def _too_thick(mechanism: Mechanism, link: str) -> list[str]:

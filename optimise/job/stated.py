@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from ...model.errors import InputError, JobError
+from ...model.errors import InfeasibleError, InputError, JobError
 from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
@@ -27,7 +27,7 @@ from .varying import discrete_of, ends_of, is_choice, reach_of, variants_of, var
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
-    """Return the problem that a job states. Raises JobError if it contradicts it.
+    """Return the problem that a job states. Raises JobError, `InfeasibleError` where no design can meet it.
 
     folder: where the modules of its functions lie. installed: quantities of packages that it names.
     """
@@ -73,8 +73,12 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),
     )
     _require_shorter(problem)
-    require_consistent(problem)
-    require_meetable(problem)
+    try:
+        require_consistent(problem)
+        require_meetable(problem)
+    except InfeasibleError as error:
+        error.problem = problem
+        raise
     require_fit(problem)
     return robustly(problem, job.robust)
 
@@ -95,7 +99,7 @@ def _require_shorter(problem: Problem) -> None:
 def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
     """Return constraints, those on one formula as one: a formula may be written in several ways.
 
-    Raises JobError where they leave nothing.
+    Raises `InfeasibleError` where they leave nothing.
     """
     found: dict[str, Constraint] = {}
     for constraint in constraints:
@@ -104,7 +108,7 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
             (found[name],) = merged((found.get(name, constraint), constraint))
         except InputError:
             asked = _asked((found[name], constraint), formulas.made[name])
-            raise JobError(
+            raise InfeasibleError(
                 f"{key_of(['constraints', name])}: requirements on one formula must leave something; got {asked}; "
                 "leave out one of them"
             ) from None
@@ -116,7 +120,7 @@ def _possible(
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
     """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
 
-    Raises JobError where there is none.
+    Raises `InfeasibleError` where there is none.
     """
     known = QUANTITIES | {of.name: of for of in own}
     reasons = [_contradiction(variant, constraints, known) for variant in variants]
@@ -125,7 +129,7 @@ def _possible(
     )
     if variants and len(left_out) == len(variants):
         label, why = left_out[0]
-        raise JobError(
+        raise InfeasibleError(
             f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
             "the two"
         )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError, InputError
 from .problem import Problem
 
 
 def require_ranking(problem: Problem) -> None:
-    """Raise `InputError` for a quantity that is zero whatever the design, robust or not, in all variants.
+    """Raise for a quantity that is zero whatever the design, robust or not, in all variants.
 
-    As an objective, and in a constraint that zero does not meet.
+    `InputError` for an objective, `InfeasibleError` for a constraint that zero does not meet.
     """
     machines = [part.mechanism for part in problem.parts()]
     for objective in problem.objectives:
@@ -22,7 +22,7 @@ def require_ranking(problem: Problem) -> None:
             excluding = {"min": bound > 0.0, "max": bound < 0.0, "equals": bound != 0.0}[word]
             reason = quantity.zero_because(machines) if excluding else None
             if reason:
-                raise InputError(
+                raise InfeasibleError(
                     f"constraints.{quantity.name}: {word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol} "
                     f"excludes zero, and it is zero for every design of this job: {reason}"
                 )

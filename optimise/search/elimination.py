@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
 from ...model.linkage.values import DIMENSIONS
@@ -123,7 +123,7 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
     other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
-    leaves one sign. Raises `InputError` where the ranges have no offset of that sign.
+    leaves one sign. Raises `InfeasibleError` where the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -138,7 +138,7 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
-    """Raise `InputError` if a slow stroke is asked that no offset of any part's range has."""
+    """Raise `InfeasibleError` if a slow stroke is asked that no offset of any part's range has."""
     if any(signs(part) for part in parts):
         return
     part = parts[0]
@@ -146,7 +146,7 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     assert side is not None
     turning, other = ("counter-clockwise", "clockwise")[:: 1 if part.mechanism.direction > 0.0 else -1]
     where = "above" if side > 0.0 else "below"
-    raise InputError(
+    raise InfeasibleError(
         f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
         f"{part.slow_stroke} stroke is the slow one where the offset is {where} 0; got an "
         f"offset from {1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset reach "

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError, InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
@@ -70,7 +70,7 @@ class Sections:
 def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits) -> Sections:
     """Return the sections of crank and rod with the least mass that carry a machine's loads.
 
-    They replace what the mechanism has as crank and rod. Raises `InputError` where no section within the ranges
+    They replace what the mechanism has as crank and rod. Raises `InfeasibleError` where no section within the ranges
     carries the loads, naming what fails, for arrays of linkages, and for friction, which would bend the bars at their
     pins.
     """
@@ -101,7 +101,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     # Where a bar buckles its stress is infinite; what says by how much is the buckling.
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
     if states[worst] > 1.0 + _OVER:
-        raise InputError(
+        raise InfeasibleError(
             f"no section within the ranges carries the loads; got {worst} at {100.0 * states[worst]:.4g} % of what is "
             "permitted at best; widen the ranges of width and depth, slow the machine down or take a stronger material"
         )

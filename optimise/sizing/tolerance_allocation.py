@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError, InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
@@ -105,7 +105,7 @@ def allocate(
 
     kind: how errors add up. window: the part of the cycle in which the error counts; that of the mechanism if None.
     mechanism: its clearances, and its tolerances of what has no cost, take their part of the limit; its speed says
-    which way the crank turns. Raises `InputError` where even the least tolerances exceed the limit.
+    which way the crank turns. Raises `InfeasibleError` where even the least tolerances exceed the limit.
     """
     require_word("kind", kind, Kind)
     if not (math.isfinite(limit) and limit > 0.0):
@@ -139,7 +139,7 @@ class _Programme:
         self.beta = np.array([cost.cost for cost in self.costs]) * at**self.q
         floor, limit = rows.peaks(self.least)[0].max(), 1e3 * rows.limit
         if not floor < 1.0:
-            raise InputError(
+            raise InfeasibleError(
                 "the limit must exceed the position error that the least tolerances leave with what is given; "
                 f"got {limit:g} mm, below {limit * floor ** (1.0 / rows.power):.6g} mm; raise the limit, "
                 "or reduce clearances and least tolerances"

@@ -42,10 +42,14 @@ class Draft(BaseModel, extra="forbid", strict=True):
 
 
 class WrongModel(BaseModel):
-    """Something that is wrong with a job. path: the key, "" for the whole job, "submission.seconds" and the like."""
+    """Something that is wrong with a job. path: the key, "" for the whole job, "submission.seconds" and the like.
+
+    infeasible: whether it is stated rightly, and no design can meet it.
+    """
 
     path: str = Field(examples=["mechanism.slider.mass"])
     sentence: str = Field(examples=['must be a mass; got "2 mm", which is a length; write it like "0.8 kg"'])
+    infeasible: bool = Field(False, examples=[False])
 
 
 class AllowedModel(BaseModel):
@@ -175,7 +179,10 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     with READING:
         look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
         return PreviewModel(
-            wrong=[WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000]) for wrong in look.wrong]
+            wrong=[
+                WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000], infeasible=wrong.infeasible)
+                for wrong in look.wrong
+            ]
             + _wrong_submission(draft.submission),
             understood=None if look.problem is None else understood(look.problem, draft.job),
             allowed=_allowed(look),

@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
@@ -15,7 +15,16 @@ from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from ...model.errors import InputError, MissingExtra, NotFound, QueueFull, RunError, SlidercrankError, StoreError
+from ...model.errors import (
+    InfeasibleError,
+    InputError,
+    MissingExtra,
+    NotFound,
+    QueueFull,
+    RunError,
+    SlidercrankError,
+    StoreError,
+)
 
 _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -38,17 +47,25 @@ _RETRY = {"Retry-After": "5"}
 class Problem(BaseModel):
     """Reason why a request was refused or failed."""
 
-    type: str = Field("about:blank", description="always about:blank: the status says which kind of problem it is")
+    type: Literal["about:blank", "infeasible"] = Field(
+        "about:blank",
+        description="infeasible: the request is right, and no design can meet it; about:blank: the status says it all",
+    )
     title: str = Field(description="the status in words", examples=["Not Found"])
     status: int = Field(description="the HTTP status", examples=[404])
     detail: str = Field(description="rule; value; remedy", examples=["there is no job 7; list the jobs"])
 
 
-def problem(status: int, detail: str, headers: Mapping[str, str] | None = None) -> Response:
+def problem(
+    status: int,
+    detail: str,
+    headers: Mapping[str, str] | None = None,
+    kind: Literal["about:blank", "infeasible"] = "about:blank",
+) -> Response:
     """Return a problem document as a response."""
     if len(detail) > _LONGEST:
         detail = f"{detail[: _LONGEST - 4]} ..."
-    content = Problem(type="about:blank", title=HTTPStatus(status).phrase, status=status, detail=detail)
+    content = Problem(type=kind, title=HTTPStatus(status).phrase, status=status, detail=detail)
     return JSONResponse(content.model_dump(), status, dict(headers or {}), MEDIA_TYPE)
 
 
@@ -76,7 +93,8 @@ async def _refused(request: Request, error: Exception) -> Response:
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
     if status >= HTTPStatus.INTERNAL_SERVER_ERROR and _is_news(request.app.state.told, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
-    return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None)
+    kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
+    return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
 
 
 def _is_news(told: dict[str, float], sentence: str) -> bool:

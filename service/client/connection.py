@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from ...model.errors import InputError, NotFound, RunError, ServiceError, SlidercrankError
+from ...model.errors import InfeasibleError, InputError, NotFound, RunError, ServiceError, SlidercrankError
 from ...model.extras import NamingExtra
 
 with NamingExtra("clients of a service need"):
@@ -21,6 +21,7 @@ _FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
 _ENDED, _AWAY = 204, 503
+_INFEASIBLE = "infeasible"  # type of a problem: the request is right, and no design can meet it
 Record = dict[str, Any]
 Event = Record
 
@@ -141,13 +142,18 @@ class Tries:
 def refusal(answer: httpx.Response) -> SlidercrankError:
     """Return the exception for a refusal of a service, with its sentence.
 
-    `NotFound` for 404, `InputError` for what was wrong in the request, `RunError` for what a job cannot do or give as
+    `NotFound` for 404, `InputError` for what was wrong in the request, `InfeasibleError` where it is right and no
+    design can meet it, `RunError` for what a job cannot do or give as
     it stands, `ServiceError` for all others, of which `Away` may pass.
     """
+    kind = None
     try:
-        detail = str(answer.json()["detail"])
-    except (ValueError, KeyError, TypeError):
+        document = answer.json()
+        detail, kind = str(document["detail"]), document.get("type")
+    except (ValueError, KeyError, TypeError, AttributeError):
         detail = f"the service answered {answer.status_code} {answer.reason_phrase}; see its log"
+    if kind == _INFEASIBLE:
+        return InfeasibleError(detail)
     kinds: dict[int, type[SlidercrankError]] = {404: NotFound, 409: RunError, _AWAY: Away}
     kinds |= dict.fromkeys((400, 413, 415, 422), InputError)
     return kinds.get(answer.status_code, ServiceError)(detail)

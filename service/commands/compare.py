@@ -21,6 +21,7 @@ from ..runs.stored_runs import job_file, read_run
 from ..text.options import Figures, Json, Runs, Units
 from ..text.screen import answer, say
 from ..text.tables import print_table, table
+from .ending import NoDesigns
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -85,7 +86,7 @@ def _read(names: Sequence[str], place: Path) -> list[_Compared]:
         folders.append(folder.resolve())
         result = read_run(folder)
         if not result.designs:
-            raise InputError(f"the run {folder.name} has no designs ({result.message}); leave it out")
+            raise NoDesigns(replace(result, message=f"{folder.name}: {result.message}; leave it out"))
         if found:
             result = _aligned(result, folder.name, found[0])
         found.append(_Compared(folder.resolve().name, _method(folder), result))

@@ -4,20 +4,48 @@ from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Callable
+from functools import wraps
 from types import FrameType
 from typing import Any, NoReturn
 
 import typer
 
-from ..text.screen import say
+from ...model.errors import InfeasibleError
+from ..runs.result import Result, json_text, unsearched_result
+from ..text.screen import give, say
 
 FAULT, WRONG_INPUT, NOTHING_FEASIBLE, NOT_PROVEN, INTERRUPTED = 1, 2, 3, 4, 130
 EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED, "failed": WRONG_INPUT}
 """By the state of a job."""
 
 
+class NoDesigns(InfeasibleError):
+    """A run without designs, of which one is asked for."""
+
+    def __init__(self, result: Result) -> None:
+        super().__init__(result.message)
+        self.result = result
+
+
+def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command that with --json gives what no design can meet as the JSON of a run that found none."""
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        try:
+            command(**given)
+        except InfeasibleError as error:
+            if given.get("json") is True:
+                found = error.result if isinstance(error, NoDesigns) else unsearched_result(error)
+                give(json_text(found.record()))
+            raise
+
+    return run
+
+
 def end_without_design(message: str) -> NoReturn:
-    """End a command that found no design, or none that meets the conditions."""
+    """End a command whose search found no design, or that finds none that meets the conditions."""
     say(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
 

@@ -12,6 +12,7 @@ from ..designs.selection import plain_number
 from ..designs.turning import require_turning
 from ..runs.stored_runs import problem_of
 from ..text.options import Dimensions
+from .ending import NoDesigns
 from .run_choice import run_of
 
 if TYPE_CHECKING:
@@ -107,6 +108,6 @@ def design_of_run(
         )
     folder, result = run_of(str(run), place)
     if not result.designs:
-        raise InputError(f"--design is of a run with designs; {folder.name} has none: {result.message}")
+        raise NoDesigns(result)
     require_alone(design, result, str(run), others=False)
     return stored_design(problem_of(folder, result), result, design)

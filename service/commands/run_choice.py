@@ -20,7 +20,7 @@ from ..runs.result import Result
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
 from ..text.options import DesignOfRun
-from .ending import end_without_design
+from .ending import NoDesigns, end_without_design
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -33,14 +33,17 @@ def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
 
 
 def front_of_run(name: str, runs: Path | None, number: int | None) -> tuple[Path, Result, ParetoFront]:
-    """Return the folder, the result and the front of a run. Raises `InputError` if it has no design of the number."""
+    """Return the folder, the result and the front of a run.
+
+    Raises `InputError` if it has no design of the number, `NoDesigns` if it has none at all.
+    """
     from ..designs.stored_designs import front_of
 
     folder, result = run_of(name, runs)
+    if not result.designs:
+        raise NoDesigns(result)
     if number is not None:
         require_alone(number, result, name, others=False)
-    if not result.designs:
-        end_without_design(result.message)
     return folder, result, front_of(problem_of(folder, result), result)
 
 
@@ -92,11 +95,11 @@ class Choice:
     def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
         """Return the number of the design that the options name, counted from 1.
 
-        Exits with 3 where there is none: an empty front, or conditions that none meets. Raises `InputError` for a
-        number that the run does not have, and for no choice or two.
+        Exits with 3 where conditions leave none. Raises `NoDesigns` for an empty front, `InputError` for a number that
+        the run does not have, and for no choice or two.
         """
         if not result.designs:
-            end_without_design(result.message)
+            raise NoDesigns(result)
         if self.design is not None:
             require_alone(self.design, result, run, others=bool(self.picking or where))
             return self.design

@@ -13,7 +13,7 @@ from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give
 from ..text.tables import ROWS, show_design, show_front
-from .ending import end_without_design
+from .ending import NoDesigns, end_without_design
 from .optimise import show_files, show_result
 from .run_choice import Choice, run_of, shown_result
 
@@ -47,9 +47,7 @@ def front(
     """
     folder, result = run_of(run, runs)
     if not result.designs:
-        if json:
-            give(json_text(result.record()))
-        end_without_design(result.message)
+        raise NoDesigns(result)
     wanted = find_columns(columns, list(result.designs[0])) if columns else None
     chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
     one = choice.row(result, chosen) if choice.design is None else choice.number(result, run, where) - 1

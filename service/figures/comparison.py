@@ -83,7 +83,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
     first = robust_quantities(front.problem)[0]
     kind = first.case if first.case == "worst case" else f"{100.0 * first.share:.6g} % of machines"
     inner = {quantity.name: quantity.inner.title for quantity in robust_quantities(front.problem)}
-    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted_of(front)]
+    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted_of(front.problem)]
     runs = [
         Drawn("nominal front, without errors", found.nominal),
         Drawn(f"robust front, within tolerances ({kind})", found.robust),

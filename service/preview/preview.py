@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ...model.errors import InputError
+from ...model.errors import InfeasibleError, InputError
 from ...objectives.counted import counted
 from ...optimise.feasibility.relaxation import missed
 from ...optimise.front.constant import is_constant
@@ -28,10 +28,14 @@ _REST = "all other requirements on the dimensions"
 
 @dataclass(frozen=True)
 class Wrong:
-    """Something that is wrong. path: the key, as "mechanism.slider.mass" or "load #2.force"; "" for the whole job."""
+    """Something that is wrong. path: the key, as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
+
+    infeasible: whether it is stated rightly, and no design can meet it.
+    """
 
     path: str
     sentence: str
+    infeasible: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     whole, wrong, rest = None, list[Wrong](), tables
     beyond = None if stated is None else beyond_both(stated)
     if beyond is not None:  # it is said once; the rest of the job is checked without it
-        wrong.append(Wrong("constraints.time_ratio", beyond))
+        wrong.append(Wrong("constraints.time_ratio", beyond, infeasible=True))
         rest = {
             **tables,
             "constraints": {name: at for name, at in tables["constraints"].items() if name != "time_ratio"},
@@ -112,7 +116,8 @@ def _places(error: InputError) -> list[Wrong]:
             continue
         match = _PLACE.fullmatch(line)
         known = match is not None and re.split(r"[. ]", match[1])[0] in Job.model_fields
-        found.append(Wrong(match[1], match[2]) if match and known else Wrong("", line))
+        path, sentence = (match[1], match[2]) if match and known else ("", line)
+        found.append(Wrong(path, sentence, infeasible=isinstance(error, InfeasibleError)))
     return found
 
 

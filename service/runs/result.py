@@ -10,11 +10,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ...model.errors import InfeasibleError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...model.arrays import Array
     from ...optimise.front.front import ParetoFront
+    from ...optimise.problem.problem import Problem
 
 Cell = float | str | None
 Row = dict[str, Cell]
@@ -112,11 +115,11 @@ class Result:
         return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
 
 
-def wanted_of(front: ParetoFront) -> list[Wanted]:
-    """Return the objectives of a front as they are shown."""
+def wanted_of(problem: Problem) -> list[Wanted]:
+    """Return the objectives of a problem as they are shown."""
     wanted = []
-    for objective in front.objectives:
-        of = front.problem.quantity(objective.quantity)
+    for objective in problem.objectives:
+        of = problem.quantity(objective.quantity)
         target = None if objective.target is None else objective.target * of.unit.factor
         names = {"quantity": of.name, "column": of.field, "title": of.title, "unit": of.unit.symbol}
         wanted.append(Wanted(**names, sense=objective.sense, target=target))
@@ -135,7 +138,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         name=front.problem.name,
         status=front.status,
         message=front.message,
-        objectives=tuple(wanted_of(front)),
+        objectives=tuple(wanted_of(front.problem)),
         designs=rows_of(front.columns),
         hypervolume=float(front.hypervolume),
         evaluations=int(front.evaluations),
@@ -147,6 +150,28 @@ def result_of(front: ParetoFront, run: str) -> Result:
         warnings=(*front_warnings(front), *idle_rules(front.problem)),
         discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
+    )
+
+
+def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
+    """Return the result of what no design can meet, known before a search. run: its folder, "" without one."""
+    from ...optimise.problem.problem import Problem
+
+    problem = error.problem if isinstance(error.problem, Problem) else None
+    return Result(
+        run=run,
+        name="" if problem is None else problem.name,
+        status="infeasible",
+        message=str(error),
+        objectives=() if problem is None else tuple(wanted_of(problem)),
+        designs=[],
+        hypervolume=0.0,
+        evaluations=0,
+        seconds=0.0,
+        seed=0 if problem is None else int(problem.settings.seed),
+        extremes={},
+        knee=None,
+        trade_offs=[],
     )
 
 

@@ -14,11 +14,11 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ...model.errors import ForeignRecords, InputError, LeaseLost, StoreError
+from ...model.errors import ForeignRecords, InfeasibleError, InputError, LeaseLost, StoreError
 from ..jobs.submission import LONGEST_CALL, bounded, ending_own, parse_allowed
 from ..resources.disk import full_places, is_full
 from ..resources.memory import TOLERATED, Memory
-from ..runs.result import json_text, result_of
+from ..runs.result import json_text, result_of, unsearched_result
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Budget, Heartbeat, Stop
@@ -170,6 +170,9 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
     except Stopped:
         claim.hand_back("its worker stopped; another one goes on")
         _log.info("handed back")
+    except InfeasibleError as error:
+        claim.finish(unsearched_result(error, claim.job.run))
+        _log.info("infeasible: %s", error)
     except InputError as error:
         claim.fail(str(error), again=False)
         _log.warning("failed: %s", error)

@@ -159,7 +159,6 @@ def test_the_counterweight_that_is_shown_can_be_put_into_the_job(job: Path, comm
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("allocate", "--offset", "60 mm", "--limit", "0.001 mm"), "the limit must exceed the position error"),
         (("allocate", "--offset", "60 mm", "--limit", "0.1"), "--limit must be a length with its unit"),
         (("allocate", "--limit", "0.1 mm"), "--offset is needed"),
         (("allocate", *ALLOCATE, "--kind", "average"), "kind must be 'worst case' or 'rss'"),
@@ -174,6 +173,13 @@ def test_wrong_values_are_exit_code_2(arguments: tuple[str, ...], words: str, jo
     done = command(name, job, *rest)
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
+
+
+def test_a_limit_below_the_least_tolerances_is_infeasible(job: Path, command: Command) -> None:
+    done = command("allocate", job, "--offset", "60 mm", "--limit", "0.001 mm", "--json")
+    assert done.exit_code == 3
+    assert "the limit must exceed the position error" in done.stderr
+    assert json.loads(done.stdout)["status"] == "infeasible"
 
 
 def test_a_job_without_costs_has_no_allocation(job: Path, command: Command) -> None:

@@ -95,12 +95,10 @@ def test_objectives_may_come_in_another_order(runs: Path, command: Command) -> N
 
 def test_wrong_comparisons_are_exit_code_2(names: list[str], runs: Path, command: Command) -> None:
     other = keep(runs, "other", part(slice(0, 9), names=("peak_torque", "transmission_angle")))
-    nothing = keep(runs, "nothing", fronts.empty_front("infeasible", "contradiction"))
     for arguments, message in (
         (names[:1], "two runs or more; got one"),
         ([names[0], names[0]], "each run is compared once"),
         ([names[0], other], f"{other} has minimise peak_torque, maximise transmission_angle"),
-        ([names[0], nothing], "has no designs (contradiction); leave it out"),
         ([names[0], "absent"], "there is no run 'absent'"),
     ):
         done = command("compare", *arguments)

@@ -145,6 +145,7 @@ def test_the_first_job_of_an_empty_form_can_be_solved_and_its_sketch_moves_until
     assert drawn.inner_html() == before
 
 
+IMPOSSIBLE = "Impossible as asked: no design meets it."
 WRONG = [
     ("name", "", "is missing"),
     ("crank speed", "fast", "must be an angular speed"),
@@ -173,14 +174,21 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
         expect(field, label).to_have_attribute("aria-invalid", "true")
         described = field.get_attribute("aria-describedby")
         expect(page.locator(f"#{described}"), label).to_contain_text(re.compile(re.escape(sentence), re.IGNORECASE))
-        expect(status(page)).to_have_text("One thing to correct.")
+        impossible = label == "stroke, exactly"  # a wish that is typed rightly
+        expect(status(page)).to_have_text(IMPOSSIBLE if impossible else "One thing to correct.")
         field.fill(before)
         expect(field, label).not_to_have_attribute("aria-invalid", "true")
     page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("equals")
     exact = page.get_by_label("time ratio, exactly")
     exact.fill("1.5")  # more than the least transmission angle leaves
     expect(exact).to_have_attribute("aria-invalid", "true")
-    expect(page.locator(f"#{exact.get_attribute('aria-describedby')}")).to_contain_text("got exactly 1.5")
+    expect(page.locator(f"#{exact.get_attribute('aria-describedby')}")).to_contain_text(
+        re.compile(r"^Impossible: .*got exactly 1\.5")
+    )
+    expect(status(page)).to_have_text(IMPOSSIBLE)
+    start(page)
+    expect(page.get_by_role("alert")).to_have_text(f"{IMPOSSIBLE} Change what is marked.")
+    assert store.jobs() == []
     expect(page.get_by_text("Time ratio exactly 1.5 is asked, at the nearest 1.2")).to_be_visible()
     page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("max")
     page.get_by_label("time ratio, at most").fill("1.1")

@@ -66,11 +66,12 @@ export function showWrong(fields, wrong, { missing = false } = {}) {
   const told = new Map();
   /** @type {string[]} */
   const elsewhere = [];
-  for (const { path, sentence } of wrong) {
+  for (const { path, sentence, infeasible } of wrong) {
     const found = path === "" ? null : nearest(fields, path);
     const text = inWords(sentence);
-    if (!found) elsewhere.push(path ? `${path}: ${text}` : text);
-    else told.set(found, [...(told.get(found) ?? []), below(found, path) + text]);
+    const before = infeasible ? "Impossible: " : "";
+    if (!found) elsewhere.push(before + (path ? `${path}: ${text}` : text));
+    else told.set(found, [...(told.get(found) ?? []), before + below(found, path) + text]);
   }
   for (const [one, sentences] of told) {
     if (missing) for (const { dataset } of one.controls) dataset.touched = "yes";

@@ -6,10 +6,11 @@ const PREFIX = "api/v1";
 
 /** Refusal of the service, in its own sentence; status 0 is no answer at all. */
 export class Problem extends Error {
-  /** @param {number} status @param {string} detail */
-  constructor(status, detail) {
+  /** @param {number} status @param {string} detail @param {string} [type] */
+  constructor(status, detail, type = "about:blank") {
     super(detail);
     this.status = status;
+    this.type = type;
   }
 }
 
@@ -21,6 +22,11 @@ export function isAbort(error) {
 /** Return the status of the answer that is a problem; null of any other one. @type {(error: unknown) => number | null} */
 export function statusOf(error) {
   return error instanceof Problem ? error.status : null;
+}
+
+/** Whether what was asked is right, and no design can meet it. @type {(error: unknown) => boolean} */
+export function isInfeasible(error) {
+  return error instanceof Problem && error.type === "infeasible";
 }
 
 /**
@@ -108,7 +114,7 @@ async function ask(method, url, body, signal, more = {}) {
   } catch {
     throw new Problem(response.status, `The answer was no JSON (status ${response.status}).`);
   }
-  if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`);
+  if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`, answer?.type);
   return answer;
 }
 

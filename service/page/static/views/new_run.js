@@ -12,12 +12,16 @@ import { readyKinds } from "../lib/units.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob } from "../form/start.js";
 import { go, keep } from "../lib/address.js";
-import { get, post, statusOf } from "../lib/api.js";
+import { get, isInfeasible, post, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { system } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "New run";
+const IMPOSSIBLE = "Impossible as asked: no design meets it.";
+
+/** Return what is to be done about what is marked. @param {Api.Wrong[]} wrong */
+const correction = (wrong) => wrong.every(({ infeasible }) => infeasible) ? `${IMPOSSIBLE} Change what is marked.` : "Correct what is marked first.";
 
 /** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
@@ -169,9 +173,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     for (const one of form.fields.slice()) one.tell?.();
     document.activeElement?.dispatchEvent(new Event("names")); // there may be others now
     mark(answer.wrong);
-    const count = answer.wrong.length;
-    status.classList.toggle("good", count === 0);
-    say(count === 0 ? "Ready to start." : count === 1 ? "One thing to correct." : `${count} things to correct.`);
+    const count = answer.wrong.filter(({ infeasible }) => !infeasible).length;
+    status.classList.toggle("good", answer.wrong.length === 0);
+    if (count) say(count === 1 ? "One thing to correct." : `${count} things to correct.`);
+    else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
     showFacts(facts, answer);
     if (answer.swing) drawn.swing(answer.swing);
     else drawn.show(answer.example);
@@ -184,7 +189,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     if (checked?.wrong.length) {
       const worst = mark(checked.wrong, { missing: true });
       worst?.controls[0].focus();
-      refuse("Correct what is marked first.");
+      refuse(correction(checked.wrong));
       return;
     }
     start.disabled = true;
@@ -202,10 +207,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       start.disabled = false;
       const lines = (error instanceof Error ? error.message : "").split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
       const wrong = lines.flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []]).filter((found) => found.length);
-      const { first: marked, elsewhere } = statusOf(error) === 422
-        ? showWrong(form.fields, wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence })))
-        : { first: null, elsewhere: [] };
-      refuse(marked && !elsewhere.length ? "Correct what is marked first." : sentenceOf(error));
+      const infeasible = isInfeasible(error);
+      const refused = wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence, infeasible }));
+      const { first: marked, elsewhere } = statusOf(error) === 422 ? showWrong(form.fields, refused) : { first: null, elsewhere: [] };
+      refuse(marked && !elsewhere.length ? correction(refused) : sentenceOf(error));
     }
   }
   /** @param {string} sentence */

@@ -1,0 +1,260 @@
+"""What is stated rightly and no design can meet is infeasible at every door, before a search as after one."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from slidercrank.model.errors import InfeasibleError, InputError, JobError
+from slidercrank.optimise.job import parse_job
+from slidercrank.service.client import Client
+from slidercrank.service.runs.result import result_of
+from slidercrank.service.runs.run_folder import RunFolder
+from slidercrank.service.store import Store
+from slidercrank.service.workers.worker import work
+from tests.service import fronts
+from tests.service.api.fixed_front import served
+from tests.service.api.serving import client_of, refused
+from tests.service.conftest import Command
+
+SMALL = tomllib.loads(fronts.JOB)
+SIZE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
+WISH = {"constraints": {"time_ratio": {"min": 1.5}, "transmission_angle": {"min": "40 deg"}}}
+"""The two requirements of the README that exclude each other."""
+SAID = "with a least transmission angle of 40 deg"
+OF_JOBS = (
+    ("optimise",),
+    ("check",),
+    ("submit",),
+    ("analyse", *SIZE),
+    ("sweep", "--over", "offset=0 mm..20 mm:3", "--of", "stroke", *SIZE[:4]),
+    ("balance", *SIZE),
+    ("allocate", "--limit", "0.1 mm", *SIZE),
+    ("sections", *SIZE),
+    ("inverse", "--slider-position", "240 mm", *SIZE),
+)
+OF_RUNS = (
+    ("front",),
+    ("analyse", "--design", "1"),
+    ("inverse", "--design", "1", "--slider-position", "240 mm"),
+    ("wish", "--at", "peak_torque=keep"),
+    ("round", "1", "--to", "1 mm"),
+    ("like", "1", "--where", "peak_torque <= 1 N m"),
+    ("compare", "nothing"),
+)
+
+
+def changed(**tables: Any) -> dict[str, Any]:
+    """Return the small job with some of its tables changed, key by key."""
+    found = {**SMALL}
+    for name, table in tables.items():
+        found[name] = {**SMALL.get(name, {}), **table} if isinstance(table, Mapping) else table
+    return found
+
+
+CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
+    "two requirements": (changed(**WISH), "constraints.time_ratio"),
+    "a requirement beyond the ranges": (changed(constraints={"stroke": {"equals": "2 m"}}), "constraints.stroke"),
+    "ranges in which nothing turns": (changed(variables={"crank": ["700 mm", "800 mm"]}), "variables"),
+    "an offset that is needed": (
+        {
+            **changed(variables={"offset": "0 mm"}, constraints={"rod_to_offset": {"equals": 3.2}}),
+            "objectives": {"transmission_angle": "maximise"},
+        },
+        "constraints.rod_to_offset",
+    ),
+    "linear formulas": (
+        changed(constraints={"rod": {"equals": "3 * crank"}, "rod - 2 * crank": {"min": "250 mm"}}),
+        "which exclude each other",
+    ),
+    "one formula written twice": (
+        changed(constraints={"crank + rod": {"min": "300 mm"}, "crank +  rod": {"max": "200 mm"}}),
+        "requirements on one formula must leave something",
+    ),
+    "a slow stroke on the other side": (
+        changed(constraints={"slow_stroke": "outward"}, variables={"offset": ["0 mm", "200 mm"]}),
+        "constraints.slow_stroke",
+    ),
+    "a slow stroke without a time ratio": (
+        changed(
+            constraints={"slow_stroke": "inward", "time_ratio": {"max": 1.0}},
+            variables={"offset": ["-200 mm", "200 mm"]},
+        ),
+        "constraints.slow_stroke",
+    ),
+    "a quantity that is zero": (changed(constraints={"mean_torque": {"min": "1 N m"}}), "excludes zero"),
+    "options without a design": (
+        changed(
+            choice=[
+                {
+                    "name": "motor",
+                    "option": [
+                        {"name": "small", "constraints": {"stroke": {"max": "100 mm"}}},
+                        {"name": "large", "constraints": {"stroke": {"max": "200 mm"}}},
+                    ],
+                }
+            ]
+        ),
+        "choice",
+    ),
+    "a swing that no design makes": (
+        {
+            "name": "swing",
+            "mechanism": {"slider": {"mass": "2 kg"}},
+            "motion": {"kind": "swing", "from": "10 deg", "to": "170 deg", "driver": "crank"},
+            "variables": {"crank": "100 mm", "rod": ["20 mm", "40 mm"], "offset": "0 mm"},
+            "objectives": {"actuator_travel": "minimise"},
+        },
+        "motion: no design of the ranges closes",
+    ),
+    "values of which none fits": (
+        changed(
+            variables={
+                "crank": {"values": ["50 mm", "60 mm"]},
+                "rod": {"values": ["300 mm", "400 mm"]},
+                "offset": {"values": ["0 mm", "20 mm"]},
+            },
+        ),
+        "stroke",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", CONTRADICTIONS)
+def test_a_contradiction_is_infeasible_and_no_wrong_input(kind: str) -> None:
+    tables, said = CONTRADICTIONS[kind]
+    with pytest.raises(JobError) as told:
+        parse_job(tables)
+    assert said in str(told.value)
+    assert type(told.value) is InfeasibleError
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [
+        changed(constraints={"stroke": {"min": "90 mm", "max": "80 mm"}}),
+        changed(constraints={"time_ratio": {"max": 0.9}}),
+        changed(constraints={"peak_torque": {"max": "-5 N m"}}),
+        changed(variables={"crank": ["200 mm", "20 mm"]}),
+        changed(constraints={"strok": {"min": "90 mm"}}),
+        changed(objectives={"stroke": "maximise"}),
+    ],
+)
+def test_what_no_design_could_mean_is_wrong_input(tables: dict[str, Any]) -> None:
+    with pytest.raises(JobError) as told:
+        parse_job(tables)
+    assert not isinstance(told.value, InfeasibleError)
+
+
+@pytest.fixture
+def impossible(tmp_path: Path) -> Path:
+    """Return a job file that is right and that no design can meet."""
+    file = tmp_path / "impossible.json"
+    file.write_text(json.dumps(changed(**WISH)), encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def nothing(runs: Path) -> str:
+    """Return a run that found no design."""
+    with RunFolder(runs, "nothing") as run:
+        run.keep_result(result_of(fronts.empty_front("infeasible", "nothing meets it"), str(run.path)), {})
+    return run.path.name
+
+
+@pytest.mark.parametrize("arguments", OF_JOBS, ids=lambda arguments: arguments[0])
+def test_commands_that_take_an_impossible_job_end_with_3_and_its_json(
+    arguments: tuple[str, ...], impossible: Path, nothing: str, command: Command
+) -> None:
+    """The JSON has the keys of a run that found nothing."""
+    name, *rest = arguments
+    done = command(name, impossible, *rest) if name != "inverse" else command(name, *rest, impossible)
+    assert (done.exit_code, done.stdout) == (3, "")
+    assert SAID in done.stderr
+    done = command(*(name, impossible, *rest) if name != "inverse" else (name, *rest, impossible), "--json")
+    assert done.exit_code == 3
+    record = json.loads(done.stdout)
+    assert record.keys() == json.loads(command("front", nothing, "--json").stdout).keys()
+    assert (record["status"], record["designs"], record["name"], record["run"]) == ("infeasible", [], SMALL["name"], "")
+    assert SAID in record["message"]
+    assert [item["quantity"] for item in record["objectives"]] == ["time_ratio", "transmission_angle"]
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("arguments", OF_RUNS, ids=lambda arguments: arguments[0])
+def test_commands_that_take_a_run_without_designs_end_with_3_and_its_json(
+    arguments: tuple[str, ...], nothing: str, runs: Path, command: Command
+) -> None:
+    name, *rest = arguments
+    if name == "compare":
+        with RunFolder(runs, "some") as run:
+            run.keep_result(result_of(fronts.front(), str(run.path)), {})
+        given: tuple[str, ...] = (name, run.path.name, nothing)
+    else:
+        given = (name, *rest, nothing) if name == "inverse" else (name, nothing, *rest)
+    done = command(*given)
+    assert (done.exit_code, done.stdout) == (3, "")
+    assert "nothing meets it" in done.stderr
+    done = command(*given, "--json")
+    assert done.exit_code == 3
+    record = json.loads(done.stdout)
+    assert (record["status"], record["designs"]) == ("infeasible", [])
+    assert "nothing meets it" in record["message"]
+
+
+def test_an_impossible_job_leaves_no_run_and_no_job(impossible: Path, runs: Path, command: Command) -> None:
+    command("optimise", impossible, "--json")
+    command("submit", impossible)
+    assert not runs.exists()
+
+
+@pytest.mark.parametrize("place", ["jobs", "check"])
+def test_the_api_answers_with_a_problem_of_the_type_infeasible(place: str, store: Store) -> None:
+    with client_of(store) as client:
+        response = client.post(f"/{place}", json={"job": changed(**WISH)})
+        assert SAID in refused(response, 422)
+        assert response.json()["type"] == "infeasible"
+        wrong = client.post(f"/{place}", json={"job": changed(constraints={"strok": {"min": "90 mm"}})})
+        assert refused(wrong, 422)
+        assert wrong.json()["type"] == "about:blank"
+    assert store.jobs() == []
+
+
+def test_the_preview_says_which_mistakes_are_impossible_wishes(shared_preview: httpx.Client) -> None:
+    found = shared_preview.post("/preview", json={"job": changed(**WISH)}).json()["wrong"]
+    assert [(one["path"], one["infeasible"]) for one in found] == [("constraints.time_ratio", True)]
+    found = shared_preview.post("/preview", json={"job": CONTRADICTIONS["a quantity that is zero"][0]}).json()["wrong"]
+    assert [(one["path"], one["infeasible"]) for one in found] == [("constraints.mean_torque", True)]
+    found = shared_preview.post("/preview", json={"job": changed(mechanism={"speed": "fast"})}).json()["wrong"]
+    assert [(one["path"], one["infeasible"]) for one in found] == [("mechanism.speed", False)]
+
+
+@pytest.fixture
+def shared_preview(store: Store) -> Any:
+    """Return a client of a service."""
+    with client_of(store) as client:
+        yield client
+
+
+def test_the_client_tells_impossible_from_wrong(store: Store) -> None:
+    with served(store) as address, Client(address) as client:
+        with pytest.raises(InfeasibleError, match=SAID):
+            client.submit(changed(**WISH))
+        with pytest.raises(InputError) as told:
+            client.submit(changed(mechanism={"speed": "fast"}))
+        assert not isinstance(told.value, InfeasibleError)
+
+
+def test_a_worker_ends_a_job_that_is_found_impossible_as_infeasible(store: Store) -> None:
+    """Jobs are checked when they are submitted; what an earlier release let through is found by its worker."""
+    job = store.submit(changed(**WISH), name="impossible")
+    assert work(store, drain=True) == 1
+    ended = store.job(job.id)
+    assert ended.state == "infeasible"
+    assert SAID in ended.reason
