@@ -1,4 +1,4 @@
-"""Average torques: root mean square (what heats a motor) and mean (what the work costs) over the cycle."""
+"""Average torques: root mean square over time (what heats a motor), mean over the crank angle (what the work costs)."""
 
 from functools import partial
 
@@ -18,20 +18,23 @@ _average = partial(
 )
 RMS_TORQUE = _average(
     name="rms_torque",
-    title="RMS torque",
+    title="RMS torque over time",
+    short="RMS torque",
     which="rms",
     place=70,
-    sentence="The root mean square of the drive torque over a turn, which is what warms up a motor.",
+    sentence="The root mean square of the drive torque over the time of a cycle, which is what heats a motor.",
     advice="Compare it with the rated torque of the motor, and the peak torque with its greatest one.",
-    formula="sqrt(mean of T^2 over the crank angle)",
+    formula="sqrt(mean of T^2 over time), dt = d theta / omega",
     needs=(DRIVEN,),
     on_sheet=True,
 )
 MEAN_TORQUE = _average(
     name="mean_torque",
+    title="mean torque over the crank angle",
+    short="mean torque",
     which="mean",
     place=80,
-    sentence="The average of the drive torque over a turn: what the load takes, and friction.",
+    sentence="The average of the drive torque over the crank angle: work per angle, of load and friction.",
     advice="Inertia and gravity need no torque on average, however high their peaks.",
     formula="mean of T over the crank angle",
     signed=True,

@@ -28,12 +28,13 @@ PEAK_SHAKING_FORCE = _peak(
 )
 RMS_SHAKING_FORCE = _rms(
     name="rms_shaking_force",
-    title="RMS shaking force",
+    title="RMS shaking force over time",
+    short="RMS shaking force",
     kind=FORCE,
     signal=Signal.SHAKING_FORCE,
     place=250,
-    sentence="The root mean square, over a turn, of the force with which the moving links shake the frame.",
-    formula="sqrt(mean of |F_s|^2 over the crank angle)",
+    sentence="The root mean square, over time, of the force with which the moving links shake the frame.",
+    formula="sqrt(mean of |F_s|^2 over time)",
     picture="shaking force",
     needs=(MOTION, MASSES, SHAKES),
 )
@@ -49,12 +50,13 @@ PEAK_SHAKING_MOMENT = _peak(
 )
 RMS_SHAKING_MOMENT = _rms(
     name="rms_shaking_moment",
-    title="RMS shaking moment",
+    title="RMS shaking moment over time",
+    short="RMS shaking moment",
     kind=TORQUE,
     signal=Signal.SHAKING_MOMENT,
     place=270,
-    sentence="The root mean square, over a turn, of the moment with which the moving links twist the frame.",
-    formula="sqrt(mean of M_s^2 over the crank angle)",
+    sentence="The root mean square, over time, of the moment with which the moving links twist the frame.",
+    formula="sqrt(mean of M_s^2 over time)",
     picture="shaking moment",
     needs=(MOTION, MASSES, SWINGING_MASSES),
 )

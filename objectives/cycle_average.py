@@ -19,9 +19,11 @@ Which = Literal["mean", "rms"]
 
 @dataclass(frozen=True, kw_only=True)
 class CycleAverage(Quantity):
-    """The mean or the root mean square of a signal over crank angle.
+    """The mean of a signal over the crank angle, or its root mean square over time.
 
-    The torque counts with its sign. times_speed: the average times the crank speed over time, a power from a torque.
+    What heats or shakes does so over time; the mean of a torque over the crank angle is work. The
+    torque counts with its sign. times_speed: the average times the mean speed over time; of the mean torque that is the
+    mean power over time.
     """
 
     section: str = fact("10. Motor and balance")

@@ -83,7 +83,7 @@ MOTION_DEVIATION = _deviation(
 )
 MOTION_DEVIATION_RMS = _deviation(
     name="motion_deviation_rms",
-    title="motion deviation, root mean square",
+    title="motion deviation, root mean square over the points",
     measure="rms",
     place=290,
     sentence="The distance between the slider and the points of the wanted motion, as a root mean square.",

@@ -1,4 +1,4 @@
-"""Rubbing of the pins: mean of pressure times rubbing speed, and depth worn off."""
+"""Rubbing of the pins: mean of pressure times rubbing speed over time, and depth worn off."""
 
 from __future__ import annotations
 
@@ -83,26 +83,29 @@ _wear = partial(
 )
 PV_PIVOT = _pv(
     name="pv_pivot",
-    title="pv of the crank pivot",
+    title="mean pv of the crank pivot over time",
+    short="pv of the crank pivot",
     place=470,
-    sentence="The mean of pressure times rubbing speed in the bearing of the crank's pivot, over the crank's depth.",
-    formula="mean of |P| |omega| / (2 b) over the crank angle, b the depth of the bar",
+    sentence="The mean over time of pressure times rubbing speed at the crank's pivot, over the depth of the crank.",
+    formula="mean of |P| |omega| / (2 b) over time, b the depth of the bar",
     **of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_CRANK_PIN = _pv(
     name="pv_crank_pin",
-    title="pv of the crank pin",
+    title="mean pv of the crank pin over time",
+    short="pv of the crank pin",
     place=471,
-    sentence="The mean of pressure times rubbing speed in the crank pin's bearing, in the thinner of crank and rod.",
-    formula="mean of |A| (1 - phi') |omega| / (2 b) over the crank angle, b the depth of the bar",
+    sentence="The mean over time of pressure times rubbing speed at the crank pin, in the thinner of crank and rod.",
+    formula="mean of |A| (1 - phi') |omega| / (2 b) over time, b the depth of the bar",
     **of_pin("crank_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_SLIDER_PIN = _pv(
     name="pv_slider_pin",
-    title="pv of the slider pin",
+    title="mean pv of the slider pin over time",
+    short="pv of the slider pin",
     place=472,
-    sentence="The mean of pressure times rubbing speed in the slider pin's bearing, over the depth of the rod.",
-    formula="mean of |B| |phi'| |omega| / (2 b) over the crank angle, b the depth of the bar",
+    sentence="The mean over time of pressure times rubbing speed at the slider pin, over the depth of the rod.",
+    formula="mean of |B| |phi'| |omega| / (2 b) over time, b the depth of the bar",
     **of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 WEAR_PIVOT = _wear(

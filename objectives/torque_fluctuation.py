@@ -1,4 +1,4 @@
-"""Torque fluctuation: root mean square of the drive torque's deviation from its mean."""
+"""Torque fluctuation: root mean square of the drive torque's deviation from its mean, over the crank angle."""
 
 from __future__ import annotations
 
@@ -12,29 +12,32 @@ from .quantity import Array, Group, Quantity, Values
 
 
 class TorqueFluctuation(Quantity):
-    """sqrt(rms^2 - mean^2) of the drive torque; infinite where friction locks."""
+    """sqrt(rms^2 - mean^2) of the drive torque, both over the crank angle; infinite where friction locks."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         found = average_torque(mechanism, dimensions, gradients=gradients)
-        locks = np.isinf(found.rms)
-        mean, rms = np.where(locks, 0.0, found.mean), np.where(locks, 1.0, found.rms)
+        locks = np.isinf(found.rms_over_angle)
+        mean, rms = np.where(locks, 0.0, found.mean), np.where(locks, 1.0, found.rms_over_angle)
         values = np.sqrt(np.maximum(rms - np.abs(mean), 0.0) * (rms + np.abs(mean)))
         slopes = None
-        if found.mean_gradients is not None and found.rms_gradients is not None:
+        if found.mean_gradients is not None and found.rms_over_angle_gradients is not None:
             per = np.where(values > 0.0, 1.0 / np.where(values > 0.0, values, 1.0), 0.0)
-            slopes = (rms * per)[:, None] * found.rms_gradients - (mean * per)[:, None] * found.mean_gradients
+            slopes = (rms * per)[:, None] * found.rms_over_angle_gradients
+            slopes = slopes - (mean * per)[:, None] * found.mean_gradients
             slopes = np.where(locks[:, None], 0.0, slopes)
         return Values(np.where(locks, np.inf, values), slopes)
 
 
 TORQUE_FLUCTUATION = TorqueFluctuation(
     name="torque_fluctuation",
+    title="torque fluctuation over the crank angle",
+    short="torque fluctuation",
     kind=TORQUE,
     place=85,
     group=Group.DRIVE,
-    sentence="The root mean square of the drive torque's deviation from its mean over a turn.",
-    advice="A flywheel evens it out. It is the RMS torque where a turn takes no work.",
+    sentence="The root mean square over the crank angle of the drive torque's deviation from its mean.",
+    advice="A flywheel evens it out. At constant speed it is the RMS torque where a turn takes no work.",
     formula="sqrt(mean of (T - mean of T)^2 over the crank angle)",
     section="10. Motor and balance",
     picture="torque",

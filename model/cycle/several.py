@@ -20,6 +20,7 @@ from ..linkage.single import single
 from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
 from ..machine.members import members
+from ..machine.speed_profile import time_per_angle
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_of_equal import named_angle
 from ..signals.panels import Extreme, Panels, panels_of, peak_of
@@ -32,7 +33,7 @@ _SAMPLES = 256
 _ROUNDING = 1e-14  # of forces that cancel, as a share of their sizes
 _NOTHING = 1e-12
 """Share of what the cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
-_TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE = range(6)
+_TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 
 
 @dataclass(frozen=True)
@@ -57,9 +58,10 @@ class WholeCurves:
 class WholeCycle:
     """Numbers of all cylinders together over a turn; SI.
 
-    least, greatest: torque. peak: the one of greatest size. fluctuation: RMS deviation of the torque from its mean.
-    energy_change: range of the integral of torque minus mean, J, which a flywheel takes up. shaking_force,
-    shaking_moment, couple: greatest sizes.
+    least, greatest: torque. peak: the one of greatest size. mean: of the torque, over the crank angle. rms: of it, over
+    time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change: range of the
+    integral of torque minus mean, J, which a flywheel takes up. shaking_force, shaking_moment, couple: greatest sizes.
+    rms_shaking_force, rms_shaking_moment: over time.
     """
 
     least: Extreme
@@ -112,41 +114,44 @@ def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
     sizes = _sizes(mechanism, linkage)
-    found = panels_of(lambda theta: _followed(whole_curves(mechanism, linkage, theta)), ends, sizes)
+    found = panels_of(lambda theta: _followed(mechanism, whole_curves(mechanism, linkage, theta)), ends, sizes)
     least, greatest = (_real(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
     moment = peak_of(found.extremes(_MOMENT), period)
-    mean = found.mean(_TORQUE)
+    mean, time = found.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
     return WholeCycle(
         least=least,
         greatest=greatest,
         peak=peak_of((least, greatest), period),
         mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
-        rms=math.sqrt(found.mean_square(_TORQUE)),
+        rms=math.sqrt(found.mean_square(_TORQUE, time=time)),
         fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
         energy_change=found.swing(_TORQUE),
         shaking_force=_root(found, _FORCE, sizes, period),
-        rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE))),
+        rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE, time))),
         shaking_moment=_real(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
-        rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT)),
+        rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT, time=time)),
         couple=_root(found, _COUPLE, sizes, period),
     )
 
 
-def _followed(curves: WholeCurves) -> Array:
+def _followed(mechanism: Mechanism, curves: WholeCurves) -> Array:
     x, y = curves.force_x, curves.force_y
     couple = curves.couple_x**2 + curves.couple_y**2
-    return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple])
+    profile = mechanism.speed_profile
+    time = np.ones(len(x)) if profile is None else time_per_angle(profile, curves.crank_angle)
+    return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple, time])
 
 
 def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the sizes of the curves that are followed, if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
-    sizes = np.zeros(6)
+    profile, sizes = mechanism.speed_profile, np.zeros(7)
+    sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
     for member in members(mechanism):
         alone = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
         own = whole_curves(alone, linkage, theta)
         force, torque = np.hypot(own.force_x, own.force_y).max(), np.abs(own.torque).max()
-        sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place)])
+        sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place), 0.0])
     sizes[[_FORCE, _COUPLE]] **= 2
     return sizes
 

@@ -195,6 +195,14 @@ class SpeedTable:
 Profile = Harmonics | SpeedTable
 
 
+def time_per_angle(profile: Profile, theta: Array) -> Array:
+    """Return the time that the crank takes per crank angle, as a share of its mean over the turn: the mean of 1/p is 1.
+
+    It weighs what is averaged over time: dt = d(theta) / (speed p).
+    """
+    return np.asarray(profile.over_time / profile.ratio(theta))
+
+
 def _over_time(ratio: Callable[[Array], Array], ends: Array) -> float:
     """Return one over the mean of 1 / p, by panels of Gauss whose number is doubled until it settles."""
     nodes, weights = np.polynomial.legendre.leggauss(16)

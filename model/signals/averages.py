@@ -1,5 +1,7 @@
 """Means and root mean squares over the cycle, above all of the torque, with exact gradients.
 
+Here the speed is constant, so that the crank angle goes with time; along a profile it is `shaft_averages`.
+
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
 the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
@@ -50,15 +52,45 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Averages:
-    """Mean and RMS values (n,) over crank angle of n designs' curves; gradients (n, 3 + k) or None.
+    """Averages (3, n) of n designs' curves and their gradients (3, n, 3 + k) or None, over the cycle.
 
-    Where friction locks a design the mean is NaN and the RMS value infinite.
+    Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, which a flywheel evens
+    out; RMS value over time, which heats. At constant speed the last two are the same. Where friction locks a design
+    the mean is NaN and the RMS values are infinite.
     """
 
-    mean: Array
-    rms: Array
-    mean_gradients: Array | None
-    rms_gradients: Array | None
+    values: Array
+    gradients: Array | None
+
+    @property
+    def mean(self) -> Array:
+        """Mean over the crank angle (n,)."""
+        return np.asarray(self.values[0])
+
+    @property
+    def rms_over_angle(self) -> Array:
+        """RMS value over the crank angle (n,)."""
+        return np.asarray(self.values[1])
+
+    @property
+    def rms(self) -> Array:
+        """RMS value over time (n,)."""
+        return np.asarray(self.values[2])
+
+    @property
+    def mean_gradients(self) -> Array | None:
+        """Gradients (n, 3 + k) of the mean over the crank angle."""
+        return None if self.gradients is None else np.asarray(self.gradients[0])
+
+    @property
+    def rms_over_angle_gradients(self) -> Array | None:
+        """Gradients (n, 3 + k) of the RMS value over the crank angle."""
+        return None if self.gradients is None else np.asarray(self.gradients[1])
+
+    @property
+    def rms_gradients(self) -> Array | None:
+        """Gradients (n, 3 + k) of the RMS value over time."""
+        return None if self.gradients is None else np.asarray(self.gradients[2])
 
 
 @analytic
@@ -205,15 +237,14 @@ def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = Fa
 
 
 def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS value of a signal for fully turning designs (n, 3 + k): crank, rod, offset, m.
+    """Return mean and RMS values of a signal for fully turning designs (n, 3 + k): crank, rod, offset, m.
 
     The k columns more are the values of the machine's varying numbers.
     The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
     work over a turn. Several cylinders and a profile of the speed count as `of_shaft` says.
     """
     known = _of_batch(mechanism, designs, kind, gradients)
-    slopes = (known.mean_gradients, known.rms_gradients)
-    return Averages(known.mean.copy(), known.rms.copy(), *(None if each is None else each.copy() for each in slopes))
+    return Averages(known.values.copy(), None if known.gradients is None else known.gradients.copy())
 
 
 @remembered_batch
@@ -257,6 +288,8 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
     in_chunks(n, work)
     if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
         mean[:], slopes[0] = 0.0, 0.0
+    values = np.stack([mean, rms, rms])
     if not gradients:
-        return Averages(mean, rms, None, None)
-    return Averages(mean, rms, numbers.chain(slopes[0]), numbers.chain(slopes[1]))
+        return Averages(values, None)
+    by_mean, by_rms = (numbers.chain(each) for each in slopes)
+    return Averages(values, np.stack([by_mean, by_rms, by_rms]))

@@ -17,7 +17,7 @@ from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.members import alone, cylinder_count, cylinders_of
 from .shaft import Shaft
-from .shaft_averages import shaft_means
+from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
 from .shaft_peaks import shaft_peaks
 from .signals import Signal
@@ -98,49 +98,50 @@ def highest_of(parts: list[Found]) -> Found:
 
 def averages_of_shaft(
     mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool
-) -> tuple[Array, Array, Array | None, Array | None]:
-    """Return mean, root mean square and their derivatives of a signal that adds up; see `average`.
+) -> tuple[Array, Array | None]:
+    """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `average`.
 
     The mean of a signal that counts by its size is NaN, but for the reflected inertia.
     """
     members = tuple(range(cylinder_count(mechanism)))
-    found = _means(mechanism, [int(kind)], designs, members, gradients)
-    mean, rms, mean_slopes, rms_slopes = (None if part is None else part[:, 0] for part in found)
-    assert mean is not None
-    assert rms is not None
-    if kind is Signal.TORQUE:
-        if not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
-            mean = np.where(np.isnan(mean), np.nan, 0.0)
-            mean_slopes = None if mean_slopes is None else np.zeros_like(mean_slopes)
-    elif kind is not Signal.REFLECTED_INERTIA:
-        mean = np.full_like(mean, np.nan)
-        mean_slopes = None if mean_slopes is None else np.full_like(mean_slopes, np.nan)
-    return mean, np.where(np.isnan(rms), np.inf, rms), mean_slopes, rms_slopes
+    found, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
+    values, slopes = found[:, :, 0], None if slopes is None else slopes[:, :, 0]
+    locks = np.isnan(values[1])
+    values[1:, locks] = np.inf
+    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
+        values[0] = np.where(locks, np.nan, 0.0)
+        if slopes is not None:
+            slopes[0] = 0.0
+    elif kind not in (Signal.TORQUE, Signal.REFLECTED_INERTIA):
+        values[0] = np.nan
+        if slopes is not None:
+            slopes[0] = np.nan
+    return values, slopes
 
 
-def _means(
+def _averages(
     mechanism: Mechanism, kinds: Sequence[int], designs: Array, members: tuple[int, ...], gradients: bool
-) -> tuple[Array, Array, Array | None, Array | None]:
-    """Return mean and root mean square (n, c) of curves, NaN where friction locks. With derivatives (n, c, 3 + k)."""
-    shape = len(designs), len(kinds)
-    mean, rms = np.empty(shape), np.empty(shape)
-    slopes = np.empty((2, *shape, designs.shape[1])) if gradients else None
+) -> tuple[Array, Array | None]:
+    """Return `Averages` (3, n, c) of curves, NaN where friction locks, and their derivatives (3, n, c, 3 + k)."""
+    shape = 3, len(designs), len(kinds)
+    values, slopes = np.empty(shape), np.empty((*shape, designs.shape[1])) if gradients else None
 
     def work(begin: int, end: int) -> None:
         part = designs[begin:end]
         shaft = Shaft(mechanism, kinds[0], part, members=members, gradients=gradients)
         for place, kind in enumerate(kinds):
             found = shaft_means(shaft.of(kind), len(part))
-            root = np.where(found.nothing, 0.0, np.sqrt(found.square))
-            mean[begin:end, place], rms[begin:end, place] = np.where(found.nothing, 0.0, found.mean), root
-            if slopes is not None and found.mean_gradients is not None and found.square_gradients is not None:
-                there = (root > 0.0)[:, None]
-                slopes[0, begin:end, place] = np.where(found.nothing[:, None], 0.0, found.mean_gradients)
-                half = 0.5 / np.where(there, root[:, None], 1.0)
-                slopes[1, begin:end, place] = np.where(there, half * found.square_gradients, 0.0)
+            roots = np.where(found.nothing, 0.0, np.sqrt(found.values[SQUARE:]))
+            values[0, begin:end, place] = np.where(found.nothing, 0.0, found.values[MEAN])
+            values[1:, begin:end, place] = roots
+            if slopes is not None and found.gradients is not None:
+                there = (roots > 0.0)[:, :, None]
+                slopes[0, begin:end, place] = np.where(found.nothing[:, None], 0.0, found.gradients[MEAN])
+                half = 0.5 / np.where(there, roots[:, :, None], 1.0)
+                slopes[1:, begin:end, place] = np.where(there, half * found.gradients[SQUARE:], 0.0)
 
     in_chunks(len(designs), work, size=_CHUNK)
-    return mean, rms, None if slopes is None else slopes[0], None if slopes is None else slopes[1]
+    return values, slopes
 
 
 def turn_work_of_shaft(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[Array, Array | None]:
@@ -148,10 +149,10 @@ def turn_work_of_shaft(mechanism: Mechanism, designs: Array, *, gradients: bool)
     mean = np.zeros((len(designs), CURVES))
     slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
     for member in range(cylinder_count(mechanism)):
-        found = _means(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
+        found, own = _averages(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
         mean += found[0]
-        if slopes is not None and found[2] is not None:
-            slopes += found[2]
+        if slopes is not None and own is not None:
+            slopes += own[0]
     locks = np.isnan(mean)
     if slopes is not None:
         slopes[locks] = 0.0

@@ -20,12 +20,15 @@ from .first_of_equal import first_of_equal
 Curves = Callable[[Array], Array]
 
 _DEGREE = 15
+_PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
 _TAIL = 3  # coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-12  # ... and what is left of them then, of the curve's size
 _DEEPEST = 24  # halvings of a panel
 _MOST = 20_000  # panels: beyond it what is left is the rounding of the curves
 _THIN = 1e-12  # rad
 _NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
+_PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
+_AT_PRODUCT_NODES = legendre.legvander(_PRODUCT_NODES, _DEGREE)
 _FIT = (np.arange(_DEGREE + 1) + 0.5)[:, None] * (_WEIGHTS[:, None] * legendre.legvander(_NODES, _DEGREE)).T
 
 
@@ -52,16 +55,26 @@ class Panels:
     width: Array
     coefficients: Array
 
-    def mean(self, curve: int) -> float:
-        """Return the mean over the crank angle."""
+    def mean(self, curve: int, time: int | None = None) -> float:
+        """Return the mean over the crank angle, or over time. time: the curve of the time per crank angle, any unit."""
+        if time is not None:
+            return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
         return float(np.sum(self.width * self.coefficients[:, 0, curve]) / np.sum(self.width))
 
-    def mean_square(self, curve: int, less: float = 0.0) -> float:
-        """Return the mean of the square of the curve minus a number."""
+    def mean_square(self, curve: int, *, less: float = 0.0, time: int | None = None) -> float:
+        """Return the mean, as `mean` does, of the square of the curve minus a number."""
         c = self.coefficients[:, :, curve].copy()
         c[:, 0] -= less
-        squares = np.sum(c * c / (2.0 * np.arange(_DEGREE + 1) + 1.0), axis=1)
-        return float(np.sum(self.width * squares) / np.sum(self.width))
+        if time is None:
+            return self._mean_product(c, c)
+        values, weight = c @ _AT_PRODUCT_NODES.T, self.coefficients[:, :, time] @ _AT_PRODUCT_NODES.T
+        integrals = 0.5 * (values**2 * weight) @ _PRODUCT_WEIGHTS
+        return float(np.sum(self.width * integrals) / np.sum(self.width)) / self.mean(time)
+
+    def _mean_product(self, first: Array, second: Array) -> float:
+        """Return the mean over the crank angle of the product of two curves by their coefficients (p, 16)."""
+        products = np.sum(first * second / (2.0 * np.arange(_DEGREE + 1) + 1.0), axis=1)
+        return float(np.sum(self.width * products) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
         """Return the least and the greatest value; of equal ones the first (`first_of_equal`)."""

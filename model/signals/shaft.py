@@ -61,7 +61,7 @@ class Shaft:
         lead, bank = np.array([own.lead for own in cylinders]), np.array([own.bank for own in cylinders])
         place = np.array([own.place for own in cylinders])
         self._axes = Axes(lead, np.cos(bank), np.sin(bank), place)
-        self._pace, self._profile = pace_of(mechanism), mechanism.speed_profile
+        self._pace, self.profile = pace_of(mechanism), mechanism.speed_profile
         self._loads: list[Loads] = []
         plain, stepped = [], []
         for part in self._parts:

@@ -1,4 +1,8 @@
-"""Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives: Gauss on resolved panels."""
+"""Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives: Gauss on resolved panels.
+
+Over time every crank angle counts by the time that the crank takes there, 1 / p along a profile p of its speed. A panel
+is resolved where a curve T is, and for its mean square over time where T / sqrt(p) is.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Mask
+from ..arrays import Array, Mask, Whole
+from ..machine.speed_profile import time_per_angle
 from .panels import resolved_tail
 from .shaft import Shaft
 from .shaft_peaks import NOTHING
 from .shaft_segments import Segments, panels, segments_of
 
+MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
+"""Rows of `Means`: mean and mean square over the crank angle, mean square over time."""
 _RESOLVED = 1e-12  # what may be left of the last coefficients on a panel, of the curve's greatest size
 _DEEPEST = 24
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -20,15 +27,13 @@ _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 @dataclass(frozen=True)
 class Means:
-    """Mean and mean square (n,) over the crank angle, and their derivatives (n, v) or None.
+    """Means (3, n) in the rows above, and their derivatives (3, n, v) or None. NaN where friction locks a design.
 
-    NaN where friction locks a design. nothing: (n,), whether cylinders cancel but for rounding.
+    nothing: (n,), whether cylinders cancel but for rounding.
     """
 
-    mean: Array
-    square: Array
-    mean_gradients: Array | None
-    square_gradients: Array | None
+    values: Array
+    gradients: Array | None
     nothing: Mask
 
 
@@ -36,41 +41,59 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
     """Return the means of n designs."""
     segments = segments_of(shaft.breaks, shaft.period)
     row, inside, low, width, _ = panels(segments, shaft.fineness)
-    mean, square, size = np.zeros(count), np.zeros(count), np.zeros(count)
-    by_mean, by_square = (np.zeros((count, shaft.numbers)) for _ in range(2))
+    rows = 2 if shaft.profile is None else 3
+    sums, slopes, sizes = np.zeros((rows, count)), np.zeros((rows, count, shaft.numbers)), np.zeros((2, count))
     for depth in range(_DEEPEST + 1):
         angle = low[:, None] + width[:, None] * _NODES
-        found, sizes = shaft.at(row, inside, angle)
-        np.maximum.at(size, row, sizes.max(axis=1, initial=0.0))
-        left = resolved_tail(found[:, :, 0])
-        rough = (left * np.minimum(1.0, width) > _RESOLVED * size[row]) & (depth < _DEEPEST)
-        ready = ~rough
-        value, weight = found[ready, :, 0], width[ready, None] * _WEIGHTS / shaft.period
-        np.add.at(mean, row[ready], (weight * value).sum(axis=1))
-        np.add.at(square, row[ready], (weight * value**2).sum(axis=1))
+        found, size = shaft.at(row, inside, angle)
+        value, time = found[:, :, 0], _time(shaft, angle)
+        rough = _is_rough(value, size, sizes[0], row, width)
+        if time is not None:
+            rough |= _is_rough(np.sqrt(time) * value, np.sqrt(time) * size, sizes[1], row, width)
+        ready = ~rough if depth < _DEEPEST else np.ones(len(row), dtype=bool)
+        value, weight = value[ready], width[ready, None] * _WEIGHTS / shaft.period
+        weights = [weight] * 2 if time is None else [weight, weight, weight * time[ready]]
+        for place, own in enumerate(weights):
+            power = value if place == MEAN else value**2
+            np.add.at(sums[place], row[ready], (own * power).sum(axis=1))
         if shaft.gradients:
             slope = shaft.at(row[ready], inside[ready], angle[ready], wanted=True)[0][:, :, 2:]
-            np.add.at(by_mean, row[ready], np.einsum("pk,pkv->pv", weight, slope))
-            np.add.at(by_square, row[ready], np.einsum("pk,pkv->pv", 2.0 * weight * value, slope))
-        if not rough.any():
+            for place, own in enumerate(weights):
+                rate = own if place == MEAN else 2.0 * own * value
+                np.add.at(slopes[place], row[ready], np.einsum("pk,pkv->pv", rate, slope))
+        if not rough.any() or depth == _DEEPEST:
             break
         half = 0.5 * width[rough]
         row, inside = (np.concatenate([part[rough]] * 2) for part in (row, inside))
         low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
     if shaft.gradients:
-        _add_jumps(shaft, segments, by_mean, by_square)
-    mean[~shaft.drives] = square[~shaft.drives] = np.nan
-    nothing = np.sqrt(square) <= NOTHING * size
-    return Means(mean, square, by_mean if shaft.gradients else None, by_square if shaft.gradients else None, nothing)
+        _add_jumps(shaft, segments, slopes)
+    sums[:, ~shaft.drives] = np.nan
+    nothing = np.sqrt(sums[SQUARE]) <= NOTHING * sizes[0]
+    each = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
+    return Means(sums[each], slopes[each] if shaft.gradients else None, nothing)
 
 
-def _add_jumps(shaft: Shaft, segments: Segments, by_mean: Array, by_square: Array) -> None:
-    """Add what breakpoints that move give where the curve jumps there."""
+def _time(shaft: Shaft, angle: Array) -> Array | None:
+    """Return the time per crank angle at angles, as a share of its mean; None at constant speed."""
+    return None if shaft.profile is None else time_per_angle(shaft.profile, angle)
+
+
+def _is_rough(value: Array, size: Array, sizes: Array, row: Whole, width: Array) -> Mask:
+    """Return which panels (p,) are not resolved, by values and sizes (p, 16); sizes of designs (n,) are raised."""
+    np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
+    found: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
+    return found
+
+
+def _add_jumps(shaft: Shaft, segments: Segments, slopes: Array) -> None:
+    """Add to derivatives (rows, n, v) what breakpoints that move give where the curve jumps there."""
     ends = np.stack([segments.low, segments.high], axis=1)
     edge = shaft.at(segments.row, segments.inside, ends)[0][:, :, 0]
     rate = shaft.rates(segments.cut, segments.inside)
     before = np.empty(len(edge))
     before[segments.after] = edge[:, 1]
     jump, squares = (before - edge[:, 0]) / shaft.period, (before**2 - edge[:, 0] ** 2) / shaft.period
-    np.add.at(by_mean, segments.row, jump[:, None] * rate)
-    np.add.at(by_square, segments.row, squares[:, None] * rate)
+    time = _time(shaft, segments.low)
+    for place, own in enumerate([jump, squares] if time is None else [jump, squares, squares * time]):
+        np.add.at(slopes[place], segments.row, own[:, None] * rate)

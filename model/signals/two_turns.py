@@ -23,13 +23,9 @@ class _Peaks(Protocol):
 
 class _Averages(Protocol):
     @property
-    def mean(self) -> Array: ...
+    def values(self) -> Array: ...
     @property
-    def rms(self) -> Array: ...
-    @property
-    def mean_gradients(self) -> Array | None: ...
-    @property
-    def rms_gradients(self) -> Array | None: ...
+    def gradients(self) -> Array | None: ...
 
 
 def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
@@ -47,17 +43,18 @@ def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks)
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), gradients
 
 
-def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array, Array | None, Array | None]:
-    """Return mean, root mean square and their gradients over both turns."""
-    mean, square = 0.5 * (first.mean + second.mean), 0.5 * (first.rms**2 + second.rms**2)
+def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
+    """Return `Averages` (3, n) and their gradients over both turns of a crank at constant speed."""
+    mean, square = 0.5 * (first.values[:1] + second.values[:1]), 0.5 * (first.values[1:] ** 2 + second.values[1:] ** 2)
     rms = np.sqrt(square)
-    slopes = (first.mean_gradients, second.mean_gradients, first.rms_gradients, second.rms_gradients)
-    if any(slope is None for slope in slopes):
-        return mean, rms, None, None
-    of_mean, of_other_mean, of_rms, of_other_rms = (np.asarray(slope) for slope in slopes)
+    values = np.concatenate([mean, rms])
+    if first.gradients is None or second.gradients is None:
+        return values, None
+    one, other = (part.values[1:, :, None] * np.asarray(part.gradients)[1:] for part in (first, second))
     with np.errstate(invalid="ignore", divide="ignore"):
-        moved = 0.5 * (first.rms[:, None] * of_rms + second.rms[:, None] * of_other_rms) / rms[:, None]
-    return mean, rms, 0.5 * (of_mean + of_other_mean), np.where(rms[:, None] > 0.0, moved, 0.0)
+        moved = 0.5 * (one + other) / rms[:, :, None]
+    moved = np.where(rms[:, :, None] > 0.0, moved, 0.0)
+    return values, np.concatenate([0.5 * (first.gradients[:1] + second.gradients[:1]), moved])
 
 
 def _angles(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:

@@ -28,6 +28,7 @@ from ..signals.panels import Extreme, panels_of
 
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 360
+_TIME = 2  # row of the time per crank angle
 _SQUARES = ("pivot_force", "crank_pin_force", "slider_pin_force", "shaking_force")
 _SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration", "shaking_moment")
 
@@ -47,9 +48,10 @@ class UnevenCurves:
 
 @dataclass(frozen=True)
 class UnevenCycle:
-    """Numbers over a turn, SI. period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over it.
+    """Numbers over a turn, SI.
 
-    peaks: greatest sizes by name. work: of the drive torque over a turn, J.
+    period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over the mean speed.
+    peaks: greatest sizes by name. mean_torque: over the crank angle. rms_torque: over time. work: of the torque, J.
     """
 
     least_speed: Extreme
@@ -114,7 +116,7 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
     sizes = np.abs(followed(np.linspace(start, end, _SAMPLES))).max(axis=1)
     found = panels_of(followed, ends, np.where(sizes > 0.0, sizes, 1.0))
     least, greatest = found.extremes(0)
-    period = TURN * found.mean(2)
+    period = TURN * found.mean(_TIME)
     peaks = {name: _size(found.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
     for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
         top = found.extremes(row)[1]
@@ -130,7 +132,7 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
         fluctuation=(greatest.value - least.value) * period / TURN,
         peaks=peaks,
         mean_torque=mean,
-        rms_torque=math.sqrt(found.mean_square(torque)),
+        rms_torque=math.sqrt(found.mean_square(torque, time=_TIME)),
         work=way * TURN * mean,
     )
 

@@ -86,7 +86,7 @@ class UnitTable(BaseModel):
     kinds: list[KindModel]
     inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
     suffixes: dict[str, str] = Field(examples=[{"mm": "_mm", "m/s^2": "_m_s2"}])
-    titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque"}])
+    titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque over time"}])
 
 
 @router.get("/units")

@@ -17,6 +17,7 @@ from slidercrank.objectives.pin_rubbing import PinRubbing
 from slidercrank.objectives.quantity import Group, Pieces, Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, Array, fitted, random_designs, random_friction, random_machine
+from tests.model.test_averages_over_time import random_case
 from tests.objectives.richardson import Function, derivatives, steps_to_the_nearest_edge
 
 pytestmark = pytest.mark.usefixtures("shared_batches")
@@ -193,3 +194,18 @@ def test_gradient_with_friction_is_that_of_extrapolated_differences(name: str) -
         gradients = quantity.evaluate(machine, designs, gradients=True).gradients
         assert gradients is not None
         assert away(gradients, expected).max() < CLOSE
+
+
+AVERAGES = ("rms_torque", "mean_torque", "torque_fluctuation", "mean_power", "rms_shaking_force", "rms_shaking_moment")
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 10])  # harmonics, a table, several cylinders, two turns, friction
+@pytest.mark.parametrize("name", AVERAGES)
+def test_gradient_of_an_average_along_a_profile_is_that_of_extrapolated_differences(name: str, seed: int) -> None:
+    """Over time as over the crank angle; what jumps at a breakpoint that moves counts by the time that lasts there."""
+    quantity, case = QUANTITIES[name], random_case(seed)
+    designs = random_designs(1, seed=10 + seed, least_margin=0.5)
+    first = 0.3 * steps_to_the_nearest_edge(designs, kink_without_offset=True)
+    function, gradients = same_piece(quantity, case.machine, designs)
+    expected, _ = derivatives(function, designs, first)
+    assert away(gradients, expected).max() < CLOSE

@@ -111,13 +111,13 @@ def _cycle() -> dict[str, float]:
         "peak torque": torque,
         "peak torque at crank angle": angle,
         "peak torque per mm of rod": 1e-3 * float(slopes[0, 0, 1]),
-        "RMS torque": float(average_torque(MACHINE, _DESIGN).rms[0]),
+        "RMS torque over time": float(average_torque(MACHINE, _DESIGN).rms[0]),
         "peak torque, mass of 1.05 kg on the slider alone": peak(
             Signal.TORQUE, Mechanism(speed=251.0, slider_mass=1.05)
         )[0],
         "peak power": 1e-3 * peak(Signal.POWER)[0],
         "peak shaking force": peak(Signal.SHAKING_FORCE)[0],
-        "RMS shaking force": float(average(MACHINE, Signal.SHAKING_FORCE, _DESIGN).rms[0]),
+        "RMS shaking force over time": float(average(MACHINE, Signal.SHAKING_FORCE, _DESIGN).rms[0]),
     }
 
 

@@ -33,8 +33,8 @@ def _bare(mechanism: Mechanism) -> Mechanism | None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
 
-    Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The values without counterweight are
-    None if the machine has none.
+    Root mean squares are over time. Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The
+    values without counterweight are None if the machine has none.
     """
     design, weight, bare = row_of(linkage), mechanism.counterweight, _bare(mechanism)
     values: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
@@ -63,8 +63,9 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     for name, unit, _ in _CURVES:
         for which in ("peak", "rms"):
             without = numbers[f"{which}_{name}_without_counterweight_{unit}"]
-            remark = "" if without is None else f"{without:.6g} without counterweight"
-            lines.append(text.told(numbers, f"{which}_{name}_{unit}", remark))
+            remarks = ["over time"] if which == "rms" else []
+            remarks += [] if without is None else [f"{without:.6g} without counterweight"]
+            lines.append(text.told(numbers, f"{which}_{name}_{unit}", ", ".join(remarks)))
     title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
     text.show_lines(console, title, lines)
 

@@ -79,7 +79,8 @@ def show(screen: Console, numbers: dict[str, Any]) -> None:
     for name, unit in (("shaking_force", "N"), ("shaking_moment", "Nm")):
         for which in ("peak", "rms"):
             key = f"{which}_{name}_{unit}"
-            title = f"{'RMS' if which == 'rms' else which} {name.replace('_', ' ')}"
+            words = name.replace("_", " ")
+            title = f"RMS {words} over time" if which == "rms" else f"{which} {words}"
             before = f"{numbers['before'][key]:.6g} before"
             lines.append((title, numbers["after"][key], "N m" if unit == "Nm" else unit, before))
     text.show_lines(screen, f"Balance of least {numbers['measure']} shaking (moment about the crank pivot)", lines)

@@ -67,13 +67,15 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     one = numbers["cylinders"][0]["peak_torque_Nm"]
     remarks = {
         "peak_torque_Nm": f"{one:.6g} of the first alone",
-        **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm", "mean_torque_Nm", "rms_torque_Nm"), ""),
-        "torque_fluctuation_Nm": "RMS deviation from the mean",
+        **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
+        "mean_torque_Nm": "over the crank angle",
+        "rms_torque_Nm": "over time: what heats the motor",
+        "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
         "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
         "peak_shaking_force_N": f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone",
-        "rms_shaking_force_N": "",
+        "rms_shaking_force_N": "over time",
         "peak_shaking_moment_Nm": f"{numbers['peak_shaking_moment_of_one_Nm']:.6g} of one alone",
-        "rms_shaking_moment_Nm": "",
+        "rms_shaking_moment_Nm": "over time",
         "peak_rocking_couple_Nm": "about the shaft's zero, from the places of the cylinders",
     }
     lines = [text.told(numbers, key, remark) for key, remark in remarks.items()]

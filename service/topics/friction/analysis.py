@@ -97,6 +97,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     ):
         stem = name.replace(" ", "_")
         without = f"{numbers[f'{stem}_without_friction_{suffix}']:.6g} without friction"
+        without = f"over the crank angle, {without}" if name == "mean torque" else without
         lines.append((name, numbers[f"{stem}_{suffix}"], unit, without))
     efficiency = numbers["efficiency"]
     why = "the load takes no net work" if heat is not None else "nothing is determined"

@@ -68,7 +68,8 @@ def _entry(found: Deviation) -> dict[str, Any]:
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the deviation of each curve, then the shifts that fit best, and what was left out."""
     source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
-    console.print(f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}", style="bold", soft_wrap=True)
+    head = f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"
+    console.print(head, style="bold", soft_wrap=True)
     rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at\ndeg", "unit", ruled=True)
     fits = table("curve", ">crank angle\ndeg", ">value", ">RMS left", "unit", ruled=True)
     for entry in numbers["curves"].values():

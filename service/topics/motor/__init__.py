@@ -5,6 +5,6 @@ from ..topic import Topic
 TOPIC = Topic(
     __name__,
     30,
-    "power, RMS torque, reflected inertia",
+    "power, RMS torque over time, reflected inertia",
     tells=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
 )

@@ -34,7 +34,8 @@ _SAMPLES = 2048
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
-    Torque and power are None where friction locks the linkage. Of several cylinders they are those of all together.
+    RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
+    None where friction locks the linkage. Of several cylinders they are those of all together.
     """
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
@@ -77,8 +78,13 @@ def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
-    heats = {"rms_torque_Nm": "what heats the motor"}
-    lines = [text.told(numbers, key, heats.get(key, "")) for key in numbers if not key.endswith("_angle_deg")]
+    remarks = {
+        "rms_torque_Nm": "over time: what heats the motor",
+        "mean_torque_Nm": "over the crank angle",
+        "mean_power_W": "over time",
+        "mean_reflected_inertia_kg_m2": "over the crank angle",
+    }
+    lines = [text.told(numbers, key, remarks.get(key, "")) for key in numbers if not key.endswith("_angle_deg")]
     known = numbers["peak_torque_Nm"] is not None
     locks = "Motor: friction locks or jams the linkage, no torque is determined"
     text.show_lines(console, "Motor" if known else locks, lines)
@@ -99,8 +105,10 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
     power = Line("power", degrees, torque * pace(mechanism, theta)[0])
     panels = (
-        over_turn("drive torque, N m", Line("torque", degrees, torque), level=None if locks else ("RMS", rms)),
-        over_turn("power, W", power, level=None if locks else ("mean", mean)),
+        over_turn(
+            "drive torque, N m", Line("torque", degrees, torque), level=None if locks else ("RMS over time", rms)
+        ),
+        over_turn("power, W", power, level=None if locks else ("mean over time", mean)),
         over_turn("reflected inertia, kg m²", inertia, level=("mean", usual)),
     )
     return Sheet("Motor over the cycle", "", panels, width=6.4, height=2.25, stacked=True)

@@ -100,10 +100,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         ("error of the energy balance", "energy_imbalance", ""),
     ]
     then = [
-        ("steady running: mean speed", "mean_speed_rpm", "rpm"),
+        ("steady running: mean speed over time", "mean_speed_rpm", "rpm"),
         ("coefficient of speed fluctuation", "fluctuation", ""),
         ("peak motor torque", "peak_motor_torque_Nm", "N m"),
-        ("mean motor power", "mean_power_W", "W"),
+        ("mean motor power over time", "mean_power_W", "W"),
     ]
     steady = numbers["steady"]
     told = [line for line in told if line[1] != "friction_work_J" or numbers["friction_work_J"]]

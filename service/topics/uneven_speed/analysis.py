@@ -79,8 +79,9 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         *(told(key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
         told("speed_fluctuation", "(greatest - least) / mean over time"),
         ("period", numbers["period_s"], "s", "of a turn"),
-        *(told(key) for key in ("peak_crank_acceleration_rad_s2", "mean_torque_Nm")),
-        told("rms_torque_Nm", f"{numbers['rms_torque_at_constant_speed_Nm']:.6g} at constant speed"),
+        told("peak_crank_acceleration_rad_s2"),
+        told("mean_torque_Nm", "over the crank angle"),
+        told("rms_torque_Nm", f"over time, {numbers['rms_torque_at_constant_speed_Nm']:.6g} at constant speed"),
         told("mean_power_W", "over time"),
     ]
     for name, unit in _UNITS.items():

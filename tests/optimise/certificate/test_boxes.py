@@ -229,7 +229,7 @@ def test_sums_of_cylinders_and_an_uneven_speed_are_refused_and_rule_nothing_out(
 def test_what_cannot_be_bounded_is_refused_by_name() -> None:
     rubbing = replace(MACHINE, friction=Friction(guide=0.1))
     for wishes, machine, reason in (
-        ({"rms_torque": "minimise"}, MACHINE, "RMS torque has no bound"),
+        ({"rms_torque": "minimise"}, MACHINE, "RMS torque over time has no bound"),
         ({"peak_torque": "minimise"}, rubbing, "peak torque has no bound over a range of designs where there is"),
         ({"peak_torque": "maximise"}, MACHINE, "peak torque is bounded from below only"),
         ({"peak_slider_speed": 3.0}, MACHINE, "bounded from below only"),

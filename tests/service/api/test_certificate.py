@@ -49,4 +49,4 @@ def test_a_run_without_designs_is_proven_infeasible_and_one_that_cannot_be_bound
         assert answer["certificate"]["infeasible"] is True
         refused = client.get(f"{API}/jobs/{unbounded}/certificate")
     assert refused.status_code == 422
-    assert "RMS torque has no bound" in refused.json()["detail"]
+    assert "RMS torque over time has no bound" in refused.json()["detail"]

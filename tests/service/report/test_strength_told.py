@@ -73,7 +73,7 @@ def test_a_job_says_the_limits_of_each_option_and_only_counts_them_where_they_ar
     rules = summarise(parse_job(press()))["rules"]
     for name, (peak, mean) in OPTIONS.items():
         assert f"with {name}: peak torque at most {peak}" in rules
-        assert f"with {name}: RMS torque at most {mean}" in rules
+        assert f"with {name}: RMS torque over time at most {mean}" in rules
     job = press()
     job["choice"][0]["option"] = [option(f"motor {n}", f"{400 + n} N m", f"{250 - n} N m") for n in range(13)]
     rules = summarise(parse_job(job))["rules"]
@@ -96,7 +96,7 @@ def test_requirements_of_a_report_have_their_bounds_those_of_the_chosen_option_a
         asked = {row[0]: row[place] for row in table.rows}
         peak, mean = OPTIONS[str(subject.row["choice_motor"])]
         assert asked["peak torque"] == f"at most {peak.removesuffix(' N m')}"
-        assert asked["RMS torque"] == f"at most {mean.removesuffix(' N m')}"
+        assert asked["RMS torque over time"] == f"at most {mean.removesuffix(' N m')}"
         assert asked["least transmission angle"] == "at least 10"
         assert all(asked.values())
 

@@ -1,0 +1,312 @@
+"""RMS values along a speed profile against integration over time, the crank angle from its differential equation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.several import whole_cycle
+from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.load import Load
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics, Profile, SpeedTable
+from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.signals import Signal
+from slidercrank.model.transient.uneven import uneven_cycle
+from slidercrank.optimise.job import load_job
+from tests.model.bodies import bodies
+from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
+from tests.model.contour import distance_to_locking, motion_in_time
+from tests.model.test_averages import breakpoints
+from tests.model.virtual_work import drive_torque, path
+
+Array = NDArray[np.float64]
+TURN = 2.0 * math.pi
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+FEEDER = np.array([[0.0376, 0.0998, 0.03119]])
+
+
+@dataclass(frozen=True)
+class Case:
+    """A machine along a profile, one design of it (3,), and the turns of its cycle."""
+
+    machine: Mechanism
+    design: Array
+    turns: int
+
+    @property
+    def profile(self) -> Profile:
+        profile = self.machine.speed_profile
+        assert profile is not None
+        return profile
+
+
+def random_profile(random: np.random.Generator, seed: int) -> Profile:
+    """Return up to six harmonics that leave a tenth of the mean speed, or a table whose speeds differ fivefold."""
+    if seed % 2:
+        waves = random.normal(size=(2, random.integers(1, 7)))
+        waves *= random.uniform(0.1, 0.9) / np.hypot(*waves).sum()
+        return Harmonics(cosines=tuple(waves[0].tolist()), sines=tuple(waves[1].tolist()))
+    count = int(random.integers(4, 10))
+    angles = random.uniform(-2.0, 2.0) + TURN / count * (np.arange(count) + random.uniform(-0.2, 0.2, count))
+    speeds = np.exp(random.uniform(0.0, math.log(5.0), count))
+    while True:
+        try:
+            return SpeedTable(angles=tuple(angles.tolist()), speeds=tuple(speeds.tolist()))
+        except ValueError:  # the spline swings below zero
+            speeds = np.sqrt(speeds * speeds.mean())
+
+
+def random_case(seed: int) -> Case:
+    """Return a case: every third of several cylinders, every fourth of two turns, every fifth with friction."""
+    random = np.random.default_rng(seed)
+    machine = replace(random_machine(random), acceleration=0.0)
+    several, two, rubs = seed % 3 == 0, seed % 4 == 0, seed % 5 == 0
+    if two:
+        angles = np.sort(random.uniform(-0.5, 2.0 * TURN - 0.6, 7))
+        table = AngleTable(
+            angles=tuple(angles.tolist()), forces=tuple(random.uniform(-900.0, 900.0, 7).tolist()), cycle="720 deg"
+        )
+        machine = replace(machine, loads=(*machine.loads[:5], table))
+    if several:
+        phases, banks = random.uniform(-7.0, 7.0, (2, int(random.integers(2, 4))))
+        machine = replace(machine, arrangement=Arrangement(phases=tuple(phases), banks=tuple(banks)))
+    machine = replace(
+        machine,
+        speed_profile=random_profile(random, seed),
+        friction=random_friction(random) if rubs else Friction(),
+    )
+    return Case(machine, random_designs(1, seed=seed, least_margin=0.5 if rubs else 0.03)[0], 2 if two else 1)
+
+
+class Turning:
+    """The crank angle over time: dtheta/dt = speed p(theta), solved from theta = 0 on, anew from every knot of p."""
+
+    def __init__(self, case: Case) -> None:
+        self._speed, self._profile = case.machine.speed, case.profile
+        end = TURN * case.turns
+        knots = {float(angle) % TURN + TURN * turn for angle in self._profile.knots for turn in range(case.turns)}
+        ends = sorted(knots | {0.0, end})
+        if self._speed < 0.0:
+            ends = [angle - end for angle in reversed(ends)]
+        self.parts = [self._solved(a, b) for a, b in pairwise(ends)]
+        self.starts = np.concatenate([[0.0], np.cumsum([part.t_events[0][0] for part in self.parts])])
+        self.period = float(self.starts[-1])
+
+    def _solved(self, start: float, end: float) -> Any:
+        def there(_: float, y: Any) -> Any:
+            return (y[0] - end) * math.copysign(1.0, self._speed)
+
+        there.terminal, there.direction = True, 1.0  # type: ignore[attr-defined]
+        width = abs(end - start)
+        return solve_ivp(
+            lambda _, y: self._speed * self._profile.ratio(y),
+            (0.0, 100.0 * width / abs(self._speed)),
+            [start],
+            method="DOP853",
+            rtol=3e-14,
+            atol=1e-14,
+            max_step=0.02 / abs(self._speed),
+            events=there,
+            dense_output=True,
+        )
+
+    def angle(self, time: Array) -> Array:
+        """Return crank angles at times (n,)."""
+        place = np.clip(np.searchsorted(self.starts, time, side="right") - 1, 0, len(self.parts) - 1)
+        found = np.empty(len(time))
+        for k in np.unique(place):
+            own = place == k
+            found[own] = self.parts[k].sol(time[own] - self.starts[k])[0]
+        return found
+
+    def times(self, angles: Array) -> Array:
+        """Return the times of crank angles (n,), any turn, by bisection."""
+        low, high = np.zeros(len(angles)), np.full(len(angles), self.period)
+        way = math.copysign(1.0, self._speed)
+        wanted = np.mod(way * angles, abs(self.angle(np.array([self.period]))[0]))
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            late = way * self.angle(middle) > wanted
+            low, high = np.where(late, low, middle), np.where(late, middle, high)
+        found: Array = 0.5 * (low + high)
+        return found
+
+
+def over_time(case: Case, curve: Callable[[Array, Array, Array], Array]) -> Array:
+    """Return the means over time of squares of curves (m, n) of crank angle, speed and acceleration, (m,).
+
+    Gauss over panels of time between breakpoints, which are halved until both halves say the same.
+    """
+    speed, profile, turning = case.machine.speed, case.profile, Turning(case)
+
+    def gauss(low: Array, width: Array) -> Array:
+        theta = turning.angle((low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)).ravel())
+        ratio = profile.ratio(theta)
+        values = curve(theta, speed * ratio, speed**2 * ratio * profile.slope(theta))
+        found: Array = (values**2).reshape(len(values), len(low), -1) @ WEIGHTS * (0.5 * width)
+        return found
+
+    kinks = turning.times(breakpoints_of(case))
+    edges = np.unique(np.concatenate([turning.starts, kinks, np.linspace(0.0, turning.period, 1 + 300 * case.turns)]))
+    low, width = edges[:-1], np.diff(edges)
+    whole = gauss(low, width)
+    size, total = whole.sum(axis=1), np.zeros(len(whole))
+    for depth in range(46):
+        half = 0.5 * width
+        parts = gauss(np.concatenate([low, low + half]), np.concatenate([half, half]))
+        both = parts[:, : len(low)] + parts[:, len(low) :]
+        rough = (np.abs(both - whole) > 1e-15 * size[:, None]).any(axis=0) & (depth < 45)
+        total += both[:, ~rough].sum(axis=1)
+        if not rough.any():
+            break
+        whole = np.concatenate([parts[:, : len(low)][:, rough], parts[:, len(low) :][:, rough]], axis=1)
+        low, width = np.concatenate([low[rough], (low + half)[rough]]), np.concatenate([half[rough], half[rough]])
+    found: Array = total / turning.period
+    return found
+
+
+def breakpoints_of(case: Case) -> Array:
+    """Return crank angles of the shaft at which a torque may have a kink or a jump, but for those of friction."""
+    plain, tables = split(case.machine)
+    found = [0.0]
+    for one, lead, _ in cylinders(plain):
+        own = [*breakpoints(one, case.design), *(angle % (2.0 * TURN) for table in tables for angle in table.angles)]
+        found += [angle + turn * TURN - lead for angle in own for turn in range(case.turns)]
+    return np.array(found)
+
+
+def split(machine: Mechanism) -> tuple[Mechanism, list[AngleTable]]:
+    """Return a machine without its tables of two turns, and these."""
+    tables: list[AngleTable] = []
+    others: list[Load] = []
+    for load in machine.loads:
+        if isinstance(load, AngleTable) and load.cycle == "720 deg":
+            tables.append(load)
+        else:
+            others.append(load)
+    return replace(machine, loads=tuple(others)), tables
+
+
+def torque_of_one(machine: Mechanism, design: Array, theta: Array, speed: Array, acceleration: Array) -> Array:
+    """Return the drive torque of one cylinder: by virtual work, or by `cycle` where it rubs.
+
+    Without friction the torque is a polynomial of second order in a speed of one sign and of first order in the
+    acceleration. `cycle` with friction is compared with nine equations in `test_friction`.
+    """
+    if machine.friction != Friction():
+        linkage = linkage_of(design, machine.branch)
+        return np.asarray(cycle(machine, linkage, theta, speed=speed, acceleration=acceleration).torque)
+    plain, tables = split(machine)
+    w = machine.speed
+    at = [drive_torque(replace(plain, speed=k * w), design, theta) for k in (0.5, 1.0, 2.0)]
+    inertia = drive_torque(replace(plain, acceleration=1.0), design, theta) - at[1]
+    k = speed / w
+    found = (
+        at[0] * (k - 1.0) * (k - 2.0) / 0.75 - at[1] * (k - 0.5) * (k - 2.0) / 0.5 + at[2] * (k - 0.5) * (k - 1.0) / 1.5
+    )
+    sign = 1.0 if machine.branch == "open" else -1.0
+    for table in tables:
+        force = np.interp(theta, table.angles, table.forces, period=2.0 * TURN)
+        found = found - sign * force * path(design, theta, sign).x_1
+    return np.asarray(found + inertia * acceleration)
+
+
+def cylinders(machine: Mechanism) -> list[tuple[Mechanism, float, float]]:
+    """Return each cylinder as a machine of its own, how far its crank leads the shaft, and its bank."""
+    one = replace(machine, speed_profile=None, arrangement=None)
+    if machine.arrangement is None:
+        return [(one, 0.0, 0.0)]
+    found = []
+    for phase, bank in zip(machine.arrangement.phases, machine.arrangement.banks, strict=True):
+        pull = complex(*machine.gravity) * np.exp(-1j * bank)
+        found.append((replace(one, gravity=(float(pull.real), float(pull.imag))), phase - bank, bank))
+    return found
+
+
+def torque_over_time(case: Case) -> float:
+    """Return the RMS torque over time of all cylinders together."""
+
+    def curve(theta: Array, speed: Array, acceleration: Array) -> Array:
+        parts = [
+            torque_of_one(one, case.design, theta + lead, speed, acceleration)
+            for one, lead, _ in cylinders(case.machine)
+        ]
+        return np.stack([np.sum(parts, axis=0)])
+
+    return math.sqrt(over_time(case, curve)[0])
+
+
+def shaking_over_time(case: Case) -> tuple[float, float]:
+    """Return RMS shaking force and moment over time, from momentum and angular momentum of mass points."""
+    reach = distance_to_locking(*case.design)
+
+    def curve(theta: Array, speed: Array, acceleration: Array) -> Array:
+        found = np.zeros((3, len(theta)))
+        for one, lead, bank in cylinders(case.machine):
+            force = np.zeros(len(theta), dtype=complex)
+            for part in bodies(one, case.design).values():
+                x, y, turn = (
+                    motion_in_time(f, theta + lead, speed=1.0, acceleration=0.0, reach=reach)
+                    for f in (part.x, part.y, part.turn)
+                )
+                second, first = speed**2, acceleration
+                push_x, push_y = (part.mass * (second * q[2] + first * q[1]) for q in (x, y))
+                force -= push_x + 1j * push_y
+                found[2] -= x[0] * push_y - y[0] * push_x + part.inertia * (second * turn[2] + first * turn[1])
+            force *= np.exp(1j * bank)
+            found[:2] += np.stack([force.real, force.imag])
+        return found
+
+    x, y, moment = over_time(case, curve)
+    return math.sqrt(x + y), math.sqrt(moment)
+
+
+SEEDS = [pytest.param(seed, marks=[] if seed < 15 else pytest.mark.slow) for seed in range(100)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_rms_torque_along_a_profile_is_over_time(seed: int) -> None:
+    """Both sides resolve the torque to some 1e-12 of its greatest value."""
+    case = random_case(seed)
+    wanted = torque_over_time(case)
+    assert average_torque(case.machine, case.design[None]).rms[0] == pytest.approx(wanted, rel=1e-9)
+    linkage = linkage_of(case.design, case.machine.branch)
+    if case.machine.arrangement is not None:
+        assert whole_cycle(case.machine, linkage).rms == pytest.approx(wanted, rel=1e-9)
+    else:
+        assert uneven_cycle(case.machine, linkage).rms_torque == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=[] if seed < 4 else pytest.mark.slow) for seed in range(20)])
+def test_rms_shaking_along_a_profile_is_over_time(seed: int) -> None:
+    case = random_case(seed)
+    case = Case(replace(case.machine, friction=Friction(), loads=()), case.design, 1)
+    design, wanted = case.design[None], shaking_over_time(case)
+    for kind, rms in zip((Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT), wanted, strict=True):
+        assert average(case.machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-9)
+    if case.machine.arrangement is not None:
+        whole = whole_cycle(case.machine, linkage_of(case.design, case.machine.branch))
+        assert (whole.rms_shaking_force, whole.rms_shaking_moment) == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize(("cosine", "rms"), [(0.5, 88.22), (-0.5, 43.82)])
+def test_a_feeder_at_2400_rpm_heats_its_motor_by_the_time_it_takes(
+    cosine: float, rms: float, pytestconfig: pytest.Config
+) -> None:
+    """Over the crank angle these would be 96.80 and 49.10 N m."""
+    machine = load_job(pytestconfig.rootpath / "runs/feeder.toml").mechanism
+    machine = replace(machine, speed_profile=Harmonics(cosines=(cosine,)))
+    assert average_torque(machine, FEEDER).rms[0] == pytest.approx(rms, abs=0.005)
+    assert uneven_cycle(machine, linkage_of(FEEDER[0])).rms_torque == pytest.approx(rms, abs=0.005)
