@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import Array
@@ -15,6 +17,13 @@ def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
         return np.full(crank_angle.shape, speed), np.full(crank_angle.shape, mechanism.acceleration)
     ratio = profile.ratio(crank_angle)
     return speed * ratio, speed**2 * ratio * profile.slope(crank_angle)
+
+
+def turn_time(mechanism: Mechanism) -> float:
+    """Return the time of one turn, s, along the profile; infinite at rest. An acceleration has no such time."""
+    profile = mechanism.speed_profile
+    over_time = mechanism.speed * (1.0 if profile is None else profile.over_time)
+    return 2.0 * math.pi / abs(over_time) if over_time else math.inf
 
 
 def bend(mechanism: Mechanism, crank_angle: Array) -> Array:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +19,7 @@ import numpy as np
 
 from ..arrays import Array, Whole
 from ..errors import InputError
+from .loads.load import Load
 from .mechanism import Mechanism
 from .remembered import remembered
 from .varying import Varying
@@ -27,7 +29,12 @@ TURN = 2.0 * math.pi
 
 def cycle_turns(mechanism: Mechanism) -> int:
     """Return how many turns of the crank make a cycle: 2 where a load has a cycle of two."""
-    return max((load.cycle_turns for load in mechanism.loads), default=1)
+    return turns_with(mechanism.loads)
+
+
+def turns_with(loads: Iterable[Load]) -> int:
+    """Return how many turns of the crank a cycle with some loads takes."""
+    return max((load.cycle_turns for load in loads), default=1)
 
 
 @remembered

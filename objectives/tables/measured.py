@@ -92,6 +92,11 @@ def columns_of(
             f"time becomes a crank angle at constant speed; got a crank acceleration of {mechanism.acceleration:g} "
             "rad/s^2; give crank angles"
         )
+    elif mechanism.speed_profile is not None:
+        raise InputError(
+            f"time becomes a crank angle at constant speed; got one that varies, {mechanism.speed_profile.text}; give "
+            "crank angles"
+        )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:
         near = next((close for name in names if name not in found and (close := _curve_near(name, spoken))), None)

@@ -13,12 +13,10 @@ from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
 from ...objectives.units import shown
-from .speed_profile import SpeedProfilePart
+from .crank_speed import CrankSpeedPart
 from .values import (
     Angle,
     AngleTolerance,
-    AngularAcceleration,
-    AngularSpeed,
     Built,
     Checked,
     Clearance,
@@ -147,29 +145,9 @@ class SliderPart(Part):
     mass: Mass = required("of the slider and all that moves with it", "0.8 kg")
 
 
-def _turning(speed: float) -> float:
-    if speed == 0.0:
-        raise InputError(
-            "must not be 0, because its sign says which way the crank turns; got 0; "
-            'give a very slow machine a small speed, for example "0.1 rpm"'
-        )
-    return speed
-
-
-class MechanismPart(Part):
+class MechanismPart(CrankSpeedPart):
     """Drive and masses of the machine; lengths belong in [variables]."""
 
-    speed: Annotated[AngularSpeed, AfterValidator(_turning)] | None = optional(
-        "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
-        "300 rpm",
-    )
-    acceleration: AngularAcceleration = optional(
-        "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
-    )
-    speed_profile: SpeedProfilePart | None = optional(
-        "how the speed goes over the crank angle; quantities are those along it, but for stresses and wear",
-        {"cosines": [0.0, 0.05]},
-    )
     crank: AnyLink | None = optional("section or mass of the crank; massless if left out", {"mass": "0.2 kg"})
     rod: AnyLink | None = optional(
         "section or mass of the connecting rod; massless if left out",
@@ -203,12 +181,6 @@ class MechanismPart(Part):
                 "gravity_direction needs gravity; got a direction alone; "
                 'add gravity = "9.81 m/s^2" or leave out gravity_direction'
             )
-        return self
-
-    @model_validator(mode="after")
-    def _of_the_mean(self) -> MechanismPart:
-        if self.speed_profile is not None and self.speed is not None:
-            self.speed_profile.require_mean(self.speed)
         return self
 
     @property

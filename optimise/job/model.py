@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import turns_with
 from ...objectives.units import shown
 from ..methods.registry import methods
 from ..problem.problem import Settings
@@ -173,12 +174,13 @@ class Job(Part):
         parts: dict[str, Any] = {"crank": own.crank, "rod": own.rod, "counterweight": own.counterweight}
         parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": own.cylinders}
         parts |= {"speed_profile": own.speed_profile}
+        loads = tuple(load.build() for load in self.load)
         return Mechanism(
-            speed=own.speed or 0.0,
+            speed=own.crank_speed(turns_with(loads)),
             acceleration=own.acceleration,
             slider_mass=0.0 if own.slider is None else own.slider.mass,
             gravity=own.gravity_vector,
-            loads=tuple(load.build() for load in self.load),
+            loads=loads,
             tolerances=self.tolerances.build(),
             friction=self.friction.with_pins(None if self.sections is None else self.sections.pins),
             branch=own.branch,

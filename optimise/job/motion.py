@@ -17,6 +17,7 @@ from ...objectives.kinds import ANGLE
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
 from ..problem.requirements import Constraint
+from .crank_speed import STATED
 from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
@@ -207,16 +208,19 @@ def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part
                 raise JobError(f"{table}.{of.name}: {reason}")
 
 
-def require_speed(swing: Swing | None, speed: float | None, varying: Iterable[str]) -> None:
+def require_speed(swing: Swing | None, stated: bool, varying: Iterable[str]) -> None:
     """Raise JobError for a crank that turns through at no speed, and for a swing with a varying one.
 
-    varying: paths of the numbers that variables and options set.
+    stated: whether the job says how fast the crank turns. varying: paths of the numbers that variables and options set.
     """
     if swing is None:
-        if speed is None:
-            raise JobError('mechanism.speed: is missing, but required; add for example speed = "300 rpm"')
+        if not stated:
+            raise JobError(
+                "mechanism.speed: is missing, but required where neither cycle_time nor strokes_per_minute is given; "
+                'add for example speed = "300 rpm"'
+            )
         return
-    for path in ("mechanism.speed", "mechanism.acceleration"):
+    for path in (*(f"mechanism.{key}" for key in (*STATED, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
                 f"{path}: a swing has a motion of its own, that of [motion]; got it as a variable, or in an option; "

@@ -13,6 +13,7 @@ from .own import declared
 
 _MOST = 6  # plain numbers that are told one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
+_PACE = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
 _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
@@ -41,9 +42,12 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
             'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
         )
     notes += _pins(job)
-    if job.motion.build() is not None and job.mechanism.speed is not None:
-        notes.append("mechanism.speed: a swing has a motion of its own, that of [motion]; leave the speed out")
     if job.motion.build() is not None:
+        notes += [
+            f"mechanism.{key}: a swing has a motion of its own, that of [motion]; leave the {words} out"
+            for key, words in _PACE.items()
+            if getattr(job.mechanism, key) is not None
+        ]
         notes += [
             f"{name}: it is of a crank that turns through, and says nothing of a swing; leave it out"
             for name in ("drive", "clearance")

@@ -42,21 +42,21 @@ def _profile(**given: Any) -> Profile:
 
 
 class SpeedProfilePart(Checked[Profile]):
-    """How the crank speed goes over the crank angle; speed is its mean."""
+    """How the crank speed goes over the crank angle; speed is its mean, a time of the cycle scales it."""
 
     makes = staticmethod(_profile)
 
     cosines: tuple[Number, ...] | None = optional(
-        "share of the speed in cos(k crank angle), k = 1, 2, ...", [0.0, 0.05], max_length=100
+        "share of the mean in cos(k crank angle), k = 1, 2, ...", [0.0, 0.05], max_length=100
     )
-    sines: tuple[Number, ...] | None = optional("share of the speed in sin(k crank angle)", [0.02], max_length=100)
+    sines: tuple[Number, ...] | None = optional("share of the mean in sin(k crank angle)", [0.02], max_length=100)
     crank_angles: tuple[Angle, ...] | None = optional(
         "crank angles of points, increasing, spanning less than 360 deg; a periodic cubic spline joins them",
         ["0 deg", "90 deg", "180 deg", "270 deg"],
         max_length=_MOST,
     )
     speeds: tuple[AngularSpeed, ...] | None = optional(
-        "speed at each point, with the sign of the speed",
+        "speed at each point, with the sign of the direction; of any size where the time of a cycle is given",
         ["300 rpm", "290 rpm", "310 rpm", "300 rpm"],
         max_length=_MOST,
     )

@@ -23,10 +23,12 @@ from ...model.machine.numbers import unit_of
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
 from ...objectives.formula.formulas import Formulas
+from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.units import shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
+from .crank_speed import STATED, TIMED
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
@@ -245,6 +247,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
+    _require_speed_itself(path, key, jobs)
     lower, upper = (_number(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
@@ -264,6 +267,17 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         return Varying(name=path, sets=tuple(sets), lower=lower, upper=upper)
     except InputError as error:
         raise JobError(f"{key}: {error}") from None
+
+
+def _require_speed_itself(path: str, key: str, jobs: list[Job]) -> None:
+    """Refuse a range of a number that states the crank speed in another way. jobs: those of the ends of its range."""
+    stated = path.removeprefix("mechanism.")
+    if path.startswith("mechanism.") and stated in TIMED:
+        low, high = sorted(ANGULAR_SPEED.metric.factor * other.machine().speed for other in jobs)
+        raise JobError(
+            f"{key}: of the crank only its speed varies over a range; got a range of {stated}; give speed in place of "
+            f'{stated} and variables.mechanism.speed = ["{low:.6g} rpm", "{high:.6g} rpm"], or let {stated} be a choice'
+        )
 
 
 def _require_smooth(path: str, places: list[str]) -> None:
@@ -287,7 +301,7 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         try:
             data = with_number(data, path, value)
         except LookupError:
-            raise JobError(f"{key}: {unknown_path(path, job.model_dump(exclude_unset=True))}") from None
+            raise JobError(f"{key}: {_unknown(path, job)}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
@@ -296,6 +310,17 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         for path in values:
             sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
         raise JobError(f"{key}: {sentence}") from None
+
+
+def _unknown(path: str, job: Job) -> str:
+    """Return in words that a job gives no number at a path, or states the crank speed in another way."""
+    stated, key = job.mechanism.stated, path.removeprefix("mechanism.")
+    if stated and path.startswith("mechanism.") and key in STATED:
+        return (
+            f"must name a number that the job gives; got {path}, where it gives mechanism.{stated[0]}; give {key} in "
+            f"[mechanism] in place of {stated[0]}"
+        )
+    return unknown_path(path, job.model_dump(exclude_unset=True))
 
 
 def _number(job: Job, path: str, key: str) -> float:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...model.cycle.pace import turn_time
 from ...model.errors import InputError
-from ...model.machine.two_turns import TURN, cycle_turns
+from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import placed, require_swing
 from ...objectives.kinds import System
 from ..runs.result import csv_text
@@ -42,7 +43,7 @@ def design_curves(of: StoredDesign, count: int) -> DesignCurves:
     if of.part.motion is None:
         turns = cycle_turns(of.mechanism)
         inner, outer = (math.degrees(float(angle)) for angle in of.linkage.dead_centre_angles)
-        seconds = turns * TURN / abs(of.mechanism.speed) if of.mechanism.speed else None
+        seconds = turns * turn_time(of.mechanism) if of.mechanism.speed else None
         columns = cycle_table(of.mechanism, of.linkage, angles=count, turns=turns)
         at_inner, at_outer = (1e3 * float(x) for x in of.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)

@@ -12,6 +12,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.gas_cycle import cylinders
 from ...model.cycle.indicator import indicator
+from ...model.cycle.pace import turn_time
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
@@ -92,7 +93,7 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
         record={
             **places(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,
-            "perSecond": abs(mechanism.speed) / (2.0 * math.pi),
+            "perSecond": 1.0 / turn_time(mechanism),
         },
         columns=[
             *(column for key in _READOUT for column in curves if column.key.startswith(key)),

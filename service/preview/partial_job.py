@@ -11,9 +11,8 @@ from pydantic import ValidationError
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...objectives.closed_form import ClosedFormQuantity
-from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.registry import QUANTITIES
-from ...objectives.units import to_si
+from ...optimise.job.crank_speed import STATED, CrankSpeedPart
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.values import RangeOf
 from ...optimise.job.varying import ends_of
@@ -81,9 +80,10 @@ def is_closed(name: str) -> bool:
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
     given = part if isinstance(part, Mapping) else {}
+    stated = {key: given[key] for key in (*STATED, "direction") if key in given}
     try:
-        speed = to_si(given.get("speed"), ANGULAR_SPEED) or 1.0
-    except InputError:
+        speed = CrankSpeedPart.model_validate(stated).crank_speed(turns=1) or 1.0
+    except ValidationError:
         speed = 1.0
     return Mechanism(speed=speed, branch="crossed" if given.get("branch") == "crossed" else "open")
 

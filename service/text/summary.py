@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...model.cycle.pace import turn_time
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
+from ...model.machine.two_turns import cycle_turns
 from ...model.machine.varying import Varying
 from ...model.swing.ends import start_column
 from ...objectives.counted import counted
@@ -82,9 +84,16 @@ def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
 def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
     if problem.motion is not None:
         return []
+    if not mechanism.speed:
+        return ["no crank speed: static"]
     turning = "clockwise" if mechanism.speed < 0.0 else "counter-clockwise"
-    speed = mechanism.speed * 30.0 / math.pi
-    return [f"crank speed {speed:.6g} rpm ({turning})" if speed else "no crank speed: static"]
+    mean = "" if mechanism.speed_profile is None else "mean over the crank angle, "
+    speed = f"crank speed {mechanism.speed * 30.0 / math.pi:.6g} rpm ({mean}{turning})"
+    if mechanism.acceleration:
+        return [speed]
+    turns, seconds = cycle_turns(mechanism), turn_time(mechanism)
+    cycle = "a cycle" if turns == 1 else "a cycle of two turns"
+    return [f"{speed}: {turns * seconds:.6g} s {cycle}, {60.0 / seconds:.6g} strokes a minute"]
 
 
 def _given(mechanism: Mechanism) -> list[str]:

@@ -305,6 +305,39 @@ def test_the_text_and_the_form_are_in_step_and_no_part_is_lost(form: Open, store
     expect(page.get_by_label("crank speed", exact=True)).to_have_value("80")
 
 
+@pytest.mark.slow
+def test_a_time_of_a_cycle_stands_in_place_of_the_speed(form: Open, store: Store) -> None:
+    page = form(store, "#/new")
+    ready(page)
+    page.get_by_text("The job as text").click()
+    job = text_of(page)
+    rest = {key: value for key, value in job["mechanism"].items() if key != "speed"}
+    job["mechanism"] = {**rest, "cycle_time": "2 s", "direction": "clockwise"}
+    page.locator("#job-text").fill(json.dumps(job))
+    seconds = page.get_by_label("time of a cycle", exact=True)
+    expect(seconds).to_have_value("2")
+    expect(page.get_by_label("direction", exact=True)).to_have_value("-")
+    ready(page)
+    assert text_of(page) == job
+    expect(page.locator("body")).to_contain_text("2 s a cycle, 30 strokes a minute")
+    seconds.fill("1.5")
+    page.get_by_label("direction", exact=True).select_option("")
+    ready(page)
+    assert text_of(page)["mechanism"] == {**rest, "cycle_time": "1.5 s"}
+    page.get_by_label("direction", exact=True).select_option("-")
+    page.get_by_label("speed given by", exact=True).select_option("strokes a minute")
+    strokes = page.get_by_label("strokes a minute", exact=True)
+    expect(strokes).to_be_focused()
+    expect(page.locator("#f-mechanism-strokes_per_minute-c-error")).to_contain_text("strokes a minute")
+    strokes.fill("40")
+    ready(page)
+    assert text_of(page)["mechanism"] == {**rest, "strokes_per_minute": 40, "direction": "clockwise"}
+    page.get_by_label("speed given by", exact=True).select_option("")
+    page.get_by_label("crank speed", exact=True).fill("90")
+    ready(page)
+    assert text_of(page)["mechanism"] == {**rest, "speed": "-90 rpm"}
+
+
 NO_TABLES: dict[str, tuple[tuple[str, ...], Any]] = {
     "mechanism.crank": (("mechanism", "crank"), "2 kg"),
     "load #1": (("load",), ["200 N"]),

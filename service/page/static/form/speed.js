@@ -1,33 +1,50 @@
-/** The speed of the crank and the way in which it turns: one value of the job, whose sign is the direction. */
+/** The speed of the crank and the way in which it turns: a speed, whose sign is the direction, or a time and a direction. */
 
 import { h } from "../lib/dom.js";
-import { byschema, changeUnit, numberInput, unitSelect } from "./controls.js";
+import { byschema, changeUnit, choice, number as counted, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { points } from "./points.js";
 import { taken } from "./typed_field.js";
 import { split } from "../lib/units.js";
 
-const PATH = ["mechanism", "speed"];
+const TABLE = ["mechanism"];
+const DIRECTION = [...TABLE, "direction"];
+/** What states the speed: its key, by its label. @type {Record<string, string>} */
+const STATED = { "crank speed": "speed", "time of a cycle": "cycle_time", "strokes a minute": "strokes_per_minute" };
+/** @type {Record<string, string | null>} */
+const KINDS = { speed: "angular speed", cycle_time: "time", strokes_per_minute: null };
+/** @type {Record<string, string>} */
+const WHY = {
+  speed: "The speed at which the crank turns; with a speed profile its mean over the crank angle.",
+  cycle_time: "The time of one turn; of two where a load has a cycle of 720 deg. A speed profile is scaled to it.",
+  strokes_per_minute: "How often the crank turns in a minute. A speed profile is scaled to it.",
+};
 
 /** Return the fields of a speed that goes up and down over the turn: harmonics, or points. @param {Form.Whole} form */
 export function speedProfile(form) {
   const path = ["mechanism", "speed_profile"];
   const table = points(form, path, [{ key: "crank_angles", label: "crank angle", kind: "angle" }, { key: "speeds", label: "crank speed", kind: "angular speed" }],
-    "Measured speeds, with the sign of the speed, at crank angles that increase and span less than a turn; a smooth curve joins them. The speed of the job is their mean", { optional: true, title: "speeds over the turn, one a line" });
+    "Measured speeds, with the sign of the speed, at crank angles that increase and span less than a turn; a smooth curve joins them. The speed of the job is their mean; to a time of the cycle they are scaled", { optional: true, title: "speeds over the turn, one a line" });
   const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service opens no files
   return h("fieldset", { class: "inner" }, h("legend", {}, "speed profile"), h("div", { class: "fields" }, byschema(form, [...path, "cosines"]), byschema(form, [...path, "sines"]), table, file));
 }
 
-/** Return the fields of speed and direction. @param {Form.Whole} form */
+/** Return the fields of speed and direction; a time of a cycle, or strokes a minute, may stand in place of the speed. @param {Form.Whole} form */
 export function speed(form) {
-  const { number, unit } = split(form.at(PATH), "angular speed");
-  const backwards = number.startsWith("-");
-  const input = numberInput(idOf(PATH, "c"), number.replace(/^[+-]/, ""));
-  const units = unitSelect("crank speed", "angular speed", unit, false, idOf(PATH, "u"));
+  const key = Object.values(STATED).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
+  const [usual, ...others] = Object.keys(STATED);
+  const label = Object.keys(STATED).find((one) => STATED[one] === key) ?? usual;
+  const path = [...TABLE, key];
+  const kind = KINDS[key];
+  const signed = key === "speed"; // its sign is the direction
+  const { number, unit } = split(form.at(path), kind);
+  const backwards = signed ? number.startsWith("-") : form.at(DIRECTION) === "clockwise";
+  const input = numberInput(idOf(path, "c"), signed ? number.replace(/^[+-]/, "") : number);
+  const units = kind ? unitSelect(label, kind, unit, false, idOf(path, "u")) : null;
   const way = h(
     "select",
-    { id: idOf(PATH, "way") },
+    { id: idOf([...TABLE, "speed"], "way") },
     [["", "counter-clockwise"], ["-", "clockwise"]].map(([sign, text]) => h("option", { value: sign, selected: (sign === "-") === backwards }, text)),
   );
   const write = () => {
@@ -36,17 +53,32 @@ export function speed(form) {
       way.value = "-"; // as typed, so that nothing is turned round twice
       input.value = typed.slice(1);
     }
-    const found = taken(input, { kind: "angular speed", select: units });
-    form.put(PATH, found && way.value + found);
+    const found = kind ? taken(input, { kind, select: units }) : counted(input);
+    form.put(DIRECTION, !signed && way.value ? "clockwise" : undefined);
+    if (signed) form.put(path, found && way.value + found);
+    else form.put(path, found ?? ""); // so that it is this one that is missing
   };
   input.addEventListener("input", write);
   way.addEventListener("change", write);
-  units.addEventListener("change", () => {
-    changeUnit(units, [input], "angular speed");
+  units?.addEventListener("change", () => {
+    changeUnit(units, [input], kind);
     write();
   });
+  const stated = choice(
+    { ...form, at: () => (key === "speed" ? undefined : label), put: (_, chosen) => state(form, STATED[String(chosen ?? usual)], way.value) },
+    [...TABLE, "stated"],
+    { options: others, fallback: usual, label: "speed given by", why: "The speed at which the crank turns, which is its mean over the crank angle; the time of a cycle; or how often the crank turns in a minute. A speed profile is scaled to the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, STATED[chosen || usual]], "c")) },
+  );
   return [
-    field(form, PATH, "crank speed", [input, units], "The speed at which the crank turns; it is taken as steady."),
-    field(form, [...PATH, "direction"], "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
+    stated,
+    field(form, path, label, units ? [input, units] : [input], WHY[key]),
+    field(form, [...TABLE, "speed", "direction"], "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
   ];
+}
+
+/** State the speed in another way, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */
+function state(form, key, sign) {
+  for (const other of Object.values(STATED)) form.put([...TABLE, other], undefined);
+  form.put([...TABLE, key], key === "speed" ? sign : "");
+  form.put(DIRECTION, key !== "speed" && sign ? "clockwise" : undefined);
 }

@@ -23,6 +23,8 @@ const PARTS = {
 /** Titles of the parts that have some keys of a table for themselves. @type {Record<string, string>} */
 const OWN = {
   "mechanism.speed": "Motion",
+  "mechanism.cycle_time": "Motion",
+  "mechanism.strokes_per_minute": "Motion",
   "mechanism.speed_profile": "Motion",
   "mechanism.cylinders": "Several cylinders on one crankshaft",
   "mechanism.counterweight": "Counterweight",
@@ -30,6 +32,10 @@ const OWN = {
 
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
+  [/ where neither cycle_time nor strokes_per_minute is given/g, ""],
+  [/\bcycle_time\b/g, "time of a cycle"],
+  [/\bstrokes_per_minute\b/g, "strokes a minute"],
+  [/\bdirection = "([a-z-]+)"/g, (_, way) => `the direction ${way}`],
   [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
   [/\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g, (whole, table, key) => (PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole)],
   [/got \[motion\] kind = "swing"/g, "got one that swings"],

@@ -1,0 +1,124 @@
+"""How fast the crank turns, as a job states it: by its speed, by the time of a cycle, or by strokes a minute."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, model_validator
+
+from ...model.errors import InputError
+from ...model.machine.speed_profile import SpeedTable
+from ...objectives.kinds import TIME
+from .speed_profile import SpeedProfilePart
+from .values import AngularAcceleration, AngularSpeed, Part, StrokeRate, Within, optional
+
+Direction = Literal["counter-clockwise", "clockwise"]
+STATED = ("speed", "cycle_time", "strokes_per_minute")
+"""Keys that say how fast the crank turns; a job has one of them."""
+TIMED = STATED[1:]
+"""Those that say it by a time, so that a profile is a shape without a size."""
+_RPM = 30.0 / math.pi
+
+
+_CYCLE = Within(
+    TIME,
+    "positive",
+    rule="a time from 20 us to 1e9 s",
+    hint="a shorter one is beyond any machine; check the unit",
+    least=2e-5,
+    most=TIME.limit,
+)
+
+
+def _turning(speed: float) -> float:
+    if speed == 0.0:
+        raise InputError(
+            "must not be 0, because its sign says which way the crank turns; got 0; "
+            'give a very slow machine a small speed, for example "0.1 rpm"'
+        )
+    return speed
+
+
+class CrankSpeedPart(Part):
+    """Speed of the crank, and how it goes over the turn."""
+
+    speed: Annotated[AngularSpeed, AfterValidator(_turning)] | None = optional(
+        "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
+        "300 rpm",
+    )
+    cycle_time: Annotated[float, _CYCLE] | None = optional(
+        "instead of speed: time of a cycle, one turn, or two where a load has a cycle of 720 deg", "2 s"
+    )
+    strokes_per_minute: StrokeRate | None = optional("instead of speed: turns of the crank in a minute", 30)
+    direction: Direction | None = optional(
+        "in which the crank turns, with cycle_time or strokes_per_minute; counter-clockwise if left out", "clockwise"
+    )
+    acceleration: AngularAcceleration = optional(
+        "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
+    )
+    speed_profile: SpeedProfilePart | None = optional(
+        "how the speed goes over the crank angle; quantities are those along it, but for stresses and wear",
+        {"cosines": [0.0, 0.05]},
+    )
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """Keys that say how fast the crank turns: one, or none of a swing."""
+        return tuple(key for key in STATED if getattr(self, key) is not None)
+
+    def crank_speed(self, turns: int) -> float:
+        """Return the mean speed over the crank angle, rad/s, with cycles of some turns; 0 where none is stated.
+
+        A turn takes the time 2 pi / (speed s), with s the profile's mean over time as a share of that over the angle.
+        """
+        if self.speed is not None:
+            return self.speed
+        rate = 0.0 if self.strokes_per_minute is None else self.strokes_per_minute / _RPM
+        if self.cycle_time is not None:
+            rate = 2.0 * math.pi * turns / self.cycle_time
+        share = 1.0 if self.speed_profile is None else self.speed_profile.build().over_time
+        return (-rate if self.direction == "clockwise" else rate) / share
+
+    @model_validator(mode="after")
+    def _of_the_mean(self) -> CrankSpeedPart:
+        if self.speed_profile is not None and self.speed is not None:
+            self.speed_profile.require_mean(self.speed)
+        return self
+
+    @model_validator(mode="after")
+    def _stated_once(self) -> CrankSpeedPart:
+        if len(self.stated) > 1:
+            raise InputError(
+                f"one of {', '.join(STATED)} says how fast the crank turns; got {' and '.join(self.stated)}; leave out "
+                "all but one"
+            )
+        if self.speed is not None and self.direction not in (None, _direction(self.speed)):
+            raise InputError(
+                f"the sign of speed is the direction, positive counter-clockwise; got {_RPM * self.speed:.6g} rpm and "
+                f'direction = "{self.direction}"; give speed = "{-_RPM * self.speed:.6g} rpm", or leave out direction'
+            )
+        if self.speed is None and self.stated:
+            self._require_timed(self.stated[0])
+        return self
+
+    def _require_timed(self, key: str) -> None:
+        """Refuse what has no cycle of a given time."""
+        if self.acceleration:
+            raise InputError(
+                f"a crank that accelerates has no cycle that repeats; got {key} and an acceleration of "
+                f"{self.acceleration:g} rad/s^2; give speed, that at every crank angle, in place of {key}"
+            )
+        way = self.direction or "counter-clockwise"
+        profile = None if self.speed_profile is None else self.speed_profile.build()
+        if isinstance(profile, SpeedTable) and _direction(profile.mean) != way:
+            other = _direction(profile.mean)
+            raise InputError(
+                "speeds of speed_profile have the sign of the direction, positive counter-clockwise; got "
+                f'{_RPM * profile.speeds[0]:.6g} rpm, {other}, with direction = "{way}"; give direction = "{other}", '
+                "or correct the signs"
+            )
+
+
+def _direction(speed: float) -> Direction:
+    return "clockwise" if speed < 0.0 else "counter-clockwise"
