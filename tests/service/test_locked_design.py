@@ -14,6 +14,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
+from slidercrank.objectives.registry import QUANTITIES
 from tests.service.api.fixed_front import API, Solved, client_of
 from tests.service.conftest import Command
 
@@ -58,9 +59,8 @@ def test_the_command_says_why_a_locked_design_has_no_mean_torque(command: Comman
     assert all(record[key] is None and record["undefined"][key].startswith(REASON) for key in BLANK.values())
     assert {key for key, value in record.items() if value is None} <= {*record["undefined"], "peak_torque_angle_deg"}
     text = " ".join(command(*line).stdout.split())
-    assert (
-        "mean torque, delivered work, share: friction locks this design: the self-locking margin must be more" in text
-    )
+    titles = ", ".join([*(QUANTITIES[name].title for name in ("mean_torque", "delivered_work")), "share"])
+    assert f"{titles}: friction locks this design: the self-locking margin must be more" in text
     assert "friction locks" in " ".join(command(*line, "--show", "extremes").stdout.split("Extremes over")[1].split())
 
 
