@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,9 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
+from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.optimise.job import load_job
+from slidercrank.optimise.problem.violation import greatest_violation
 from tests.optimise.problems import RUNS
 
 PRESS = load_job(Path(__file__).parents[2] / "runs/press.toml").part(0)
@@ -39,6 +43,25 @@ def test_the_slow_stroke_is_the_loaded_one() -> None:
     design = np.array([[*LENGTHS, 0.046, 0.053, 0.025]])
     assert loaded_stroke(PRESS.mechanism, design).tolist() == ["outward"]
     assert PRESS.slow_stroke == "outward"
+
+
+def test_a_press_slowed_while_it_presses_needs_a_stronger_gearmotor() -> None:
+    """The torque stays, but lasts: over the crank angle both keep to 118 N m, the limit of a gearmotor of 0.37 kW."""
+    design, share = np.array([[*LENGTHS, 0.046, 0.053, 0.025]]), 0.5 * math.sqrt(0.5)
+    limit = replace(next(c for c in PRESS.constraints if c.quantity == "rms_torque"), upper=118.0)
+    profile = Harmonics(cosines=(-share,), sines=(-share,))  # half the speed at 45 deg
+    even = replace(PRESS, constraints=(limit,))  # strength is that at a constant speed
+    slowed = replace(even, mechanism=replace(PRESS.mechanism, speed_profile=profile))
+    curves = slowed.analyse(design[0]).cycle(20_000).iloc[:-1]
+    theta, torque = curves["crank_angle_rad"].to_numpy(), curves["torque_Nm"].to_numpy()
+    time = 1.0 / profile.ratio(theta)
+    over_time, over_angle = (math.sqrt(np.average(torque**2, weights=each)) for each in (time, np.ones(len(time))))
+    found = slowed.evaluate(design, ["rms_torque"])[0, 0]
+    assert found == pytest.approx(over_time, rel=1e-4)  # the load turns sharply between samples
+    assert over_angle < 105.0
+    assert found > 134.0
+    assert greatest_violation(even, design, [limit])[0] == 0.0
+    assert greatest_violation(slowed, design, [limit])[0] == pytest.approx(found / 118.0 - 1.0, rel=1e-9)
 
 
 def stroke() -> float:
