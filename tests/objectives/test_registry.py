@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.objectives.cycle_average import CycleAverage
 from slidercrank.objectives.registry import FACTS, QUANTITIES, quantity
 
 # Names in job files are promises: they never change.
@@ -53,3 +54,22 @@ def test_a_quantity_of_the_product_is_itself_where_another_process_takes_it_up()
 def test_a_changed_quantity_keeps_its_change_where_another_process_takes_it_up() -> None:
     changed = replace(QUANTITIES["time_ratio"], title="another title")
     assert pickle.loads(pickle.dumps(changed)).title == "another title"
+
+
+AVERAGES = {
+    **dict.fromkeys(("rms_torque", "mean_power", "rms_shaking_force", "rms_shaking_moment"), "over time"),
+    **dict.fromkeys(("pv_pivot", "pv_crank_pin", "pv_slider_pin"), "over time"),
+    **dict.fromkeys(("mean_torque", "torque_fluctuation"), "over the crank angle"),
+}
+
+
+def test_every_average_says_over_what_it_is_taken() -> None:
+    """What heats or shakes is over time, work over the crank angle. The mean effective pressure is work over volume."""
+    told = {name for name, each in QUANTITIES.items() if isinstance(each, CycleAverage) or "mean of" in each.formula}
+    told |= {name for name in QUANTITIES if name.startswith(("mean_", "rms_"))}
+    assert told - {"mean_effective_pressure", "delivered_work"} == set(AVERAGES)
+    for name, over in AVERAGES.items():
+        found = QUANTITIES[name]
+        assert over in found.title, name
+        assert over in found.sentence.replace("over the time of a cycle", "over time"), name
+        assert over in found.formula, name
