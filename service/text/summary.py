@@ -93,7 +93,7 @@ def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
         return [speed]
     turns, seconds = cycle_turns(mechanism), turn_time(mechanism)
     cycle = "a cycle" if turns == 1 else "a cycle of two turns"
-    return [f"{speed}: {turns * seconds:.6g} s {cycle}, {60.0 / seconds:.6g} strokes a minute"]
+    return [speed, f"time of {cycle} {turns * seconds:.6g} s, {60.0 / seconds:.6g} strokes a minute"]
 
 
 def _given(mechanism: Mechanism) -> list[str]:

@@ -319,7 +319,7 @@ def test_a_time_of_a_cycle_stands_in_place_of_the_speed(form: Open, store: Store
     expect(page.get_by_label("direction", exact=True)).to_have_value("-")
     ready(page)
     assert text_of(page) == job
-    expect(page.locator("body")).to_contain_text("2 s a cycle, 30 strokes a minute")
+    expect(page.locator("body")).to_contain_text("time of a cycle 2 s, 30 strokes a minute")
     seconds.fill("1.5")
     page.get_by_label("direction", exact=True).select_option("")
     ready(page)
