@@ -13,10 +13,8 @@ Per turn, with dt = dtheta / w at constant speed:
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -27,11 +25,12 @@ from ..linkage.single import single
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.averages import average
+from ..signals.panels import panels_of
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
 
-_NODES, _TAIL, _ROUNDS = 16, 3, 40
-_RESOLVED = 1e-12  # what may be left of the last Legendre coefficients of a panel
+_PIECES = 8  # panels between two breakpoints at least
+_SAMPLES = 720
 _ROUNDING = 1e-12
 
 
@@ -99,34 +98,11 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
 
     turns = cycle_turns(mechanism)
     edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
-    whole = _integral(rates, np.array(edges))
+    ends = np.concatenate([edges[:1], *(np.linspace(a, b, 1 + _PIECES)[1:] for a, b in pairwise(edges))])
+    sizes = np.abs(rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
+    panels = panels_of(rates, ends, np.where(sizes > 0.0, sizes, 1.0))
+    whole = map(panels.integral, range(len(sizes)))
     given, useful, guide, pivot, crank_pin, slider_pin, throughput = (energy / turns for energy in whole)
     inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
     stored = turn * 2.0 * np.pi * mechanism.acceleration * float(inertia)
     return Energies(given, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)
-
-
-def _integral(rates: Callable[[Array], Array], edges: Array) -> list[float]:
-    """Return integrals by Gauss-Legendre panels between edges, halved until the last Legendre coefficients die out."""
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    orders = np.arange(_NODES - _TAIL, _NODES)
-    basis = np.polynomial.legendre.legvander(nodes, _NODES - 1)[:, orders]
-    tail = (orders + 0.5)[:, None] * (weights[:, None] * basis).T
-    panels = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in pairwise(edges)])
-    ends = np.concatenate([np.linspace(a, b, 9)[1:] for a, b in pairwise(edges)])
-    total: Array | None = None
-    scale: Any = 0.0
-    for left in range(_ROUNDS, 0, -1):
-        half = 0.5 * (ends - panels)
-        at = (0.5 * (ends + panels))[:, None] + half[:, None] * nodes
-        values = rates(at.ravel()).reshape(-1, *at.shape)
-        scale = np.maximum(scale, np.abs(values).max(axis=(1, 2)))
-        rough = (np.abs(values @ tail.T) > _RESOLVED * scale[:, None, None]).any(axis=(0, 2)) & (left > 1)
-        found = (values @ weights * half)[:, ~rough].sum(axis=1)
-        total = found if total is None else total + found
-        if not rough.any():
-            break
-        middle = 0.5 * (panels + ends)[rough]
-        panels, ends = np.concatenate([panels[rough], middle]), np.concatenate([middle, ends[rough]])
-    assert total is not None
-    return [float(value) for value in total]

@@ -10,7 +10,8 @@ Without friction the torque is continuous (loads that jump at a dead centre do s
 moving breakpoints add nothing to the derivatives.
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
-to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out.
+to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
+what rounding leaves of a load that changes within a hair's breadth.
 """
 
 from __future__ import annotations
@@ -40,7 +41,20 @@ from ..machine.raw import Loads
 from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .of_shaft import averages_of_shaft
-from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
+from .quadrature import (
+    DEEPEST,
+    EVEN,
+    MOST,
+    NOISE,
+    PANELS,
+    RESOLVED,
+    ROUNDING,
+    gaps_of,
+    panel_rule,
+    rough,
+    square_along,
+    steepness,
+)
 from .signals import Signal, signal
 from .two_turns import averaged
 from .watch import inputs_of, watch_of
@@ -152,7 +166,7 @@ def _average(
         if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        first = second = 0.0
+        first, second, left = 0.0, 0.0, MOST
         for v in range(nv + 1):
             greatest[v] = 0.0
         for s in range(count):
@@ -194,12 +208,17 @@ def _average(
                     if rubbing:
                         for i in range(points):
                             greatest[nv] = max(greatest[nv], abs(value[i]))
-                        halve = rough(value, tail, RESOLVED[0] * resolved * greatest[nv])
+                        allowed = max(
+                            RESOLVED[0] * resolved * greatest[nv], ROUNDING * steepness(value[:points], width)
+                        )
+                        halve = rough(value, tail, allowed)
                         for v in range(nv):
                             for i in range(points):
                                 greatest[v] = max(greatest[v], abs(slope[v, i]))
-                            halve = halve or rough(slope[v], tail, RESOLVED[1] * resolved * greatest[v])
-                        if halve and depth < DEEPEST:
+                            steep = ROUNDING * steepness(slope[v, :points], width)
+                            halve = halve or rough(slope[v], tail, max(RESOLVED[1] * resolved * greatest[v], steep))
+                        if halve and depth < DEEPEST and left > 0:
+                            left -= 1
                             for half in range(2):  # the left one on top: panels are added up in order
                                 stack[top, 0] = begin + 0.5 * width * (1 - half)
                                 stack[top, 1], stack[top, 2] = 0.5 * width, depth + 1.0

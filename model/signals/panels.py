@@ -1,8 +1,8 @@
 """Curves over the crank angle as polynomials on panels: means, extremes and integrals to rounding.
 
 On every panel each curve is its polynomial of degree 15 through the nodes of Gauss and Legendre. Panels are halved
-until the last coefficients have died out. Extremes are at ends of panels, by their one-sided limits, or where the
-derivative of the polynomial is zero.
+until the last coefficients have died out, or are what rounding of the crank angle makes of a steep curve. Extremes are
+at ends of panels, by their one-sided limits, or where the derivative of the polynomial is zero.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.polynomial import legendre
 
 from ..arrays import Array
 from .first_of_equal import first_of_equal
+from .quadrature import ROUNDING
 
 Curves = Callable[[Array], Array]
 
@@ -24,7 +25,7 @@ _PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
 _TAIL = 3  # coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-12  # ... and what is left of them then, of the curve's size
 _DEEPEST = 24  # halvings of a panel
-_MOST = 20_000  # panels: beyond it what is left is the rounding of the curves
+_MOST = 20_000  # panels that halving may add: beyond it what is left is the rounding of the curves
 _THIN = 1e-12  # rad
 _NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
 _PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
@@ -59,7 +60,7 @@ class Panels:
         """Return the mean over the crank angle, or over time. time: the curve of the time per crank angle, any unit."""
         if time is not None:
             return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
-        return float(np.sum(self.width * self.coefficients[:, 0, curve]) / np.sum(self.width))
+        return self.integral(curve) / float(np.sum(self.width))
 
     def mean_square(self, curve: int, *, less: float = 0.0, time: int | None = None) -> float:
         """Return the mean, as `mean` does, of the square of the curve minus a number."""
@@ -79,6 +80,10 @@ class Panels:
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
         """Return the least and the greatest value; of equal ones the first (`first_of_equal`)."""
         return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
+
+    def integral(self, curve: int) -> float:
+        """Return the integral over the crank angle."""
+        return float(np.sum(self.width * self.coefficients[:, 0, curve]))
 
     def swing(self, curve: int) -> float:
         """Return the range of the integral of the curve minus its mean: of a torque, J."""
@@ -120,13 +125,14 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     low, width = ends[:-1], np.diff(ends)
     low, width = low[width > _THIN], width[width > _THIN]
     kept: list[tuple[Array, Array, Array]] = []
-    total = 0
+    most, total = len(low) + _MOST, 0
     for depth in range(_DEEPEST + 1):
         angles = low[:, None] + 0.5 * width[:, None] * (1.0 + _NODES)
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
         found = np.einsum("ki,mpi->pkm", _FIT, values)
-        rough = np.any(np.abs(found[:, -_TAIL:]) > _RESOLVED * sizes, axis=(1, 2))
-        if depth == _DEEPEST or total + 2 * len(low) > _MOST:
+        steep = ROUNDING * np.ptp(values, axis=2).T / width[:, None]
+        rough = np.any(np.abs(found[:, -_TAIL:]).max(axis=1) > np.maximum(_RESOLVED * sizes, steep), axis=1)
+        if depth == _DEEPEST or total + 2 * len(low) > most:
             rough[:] = False
         total += len(low)
         kept.append((low[~rough], width[~rough], found[~rough]))

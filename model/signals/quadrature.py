@@ -18,6 +18,8 @@ EVEN = 0.21
 DEEPEST = 24  # halvings of a panel
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
 RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
+MOST = 20_000  # halvings of the panels of one design: beyond it what is left is the rounding of the curves
+ROUNDING = 1e-13  # rad, by which rounding of angles and positions moves a curve: no halving lessens its slope times it
 NOISE = 0.004  # of a curve's rounding, in units of RESOLVED, times kappa^2: that of the crank angle itself
 
 
@@ -44,6 +46,15 @@ def rough(values: Any, tail: Any, allowed: Any) -> bool:
         if abs(found) > allowed:
             return True
     return False
+
+
+@analytic
+def steepness(values: Any, width: Any) -> Any:
+    """Return the mean slope of values on a panel between the least and the greatest of them."""
+    least = greatest = values[0]
+    for i in range(values.shape[0]):
+        least, greatest = min(least, values[i]), max(greatest, values[i])
+    return (greatest - least) / width
 
 
 @lru_cache(maxsize=1)

@@ -119,8 +119,10 @@ class Runner:
         """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
 
         The least is 0 where the crank all but stops: below a millionth of the greatest. inertia: see `constant`.
-        Raises `InputError` where viscous loads or friction leave no steady running that is found.
+        Raises `InputError` where nothing has an inertia at some crank angle, so that speeds are not defined, and where
+        viscous loads or friction leave no steady running that is found.
         """
+        self.equation.require_inertia(inertia)
         try:
             running = self.constant(inertia)
         except InputError:

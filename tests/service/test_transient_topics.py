@@ -105,6 +105,19 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
     assert words in stream.getvalue()
 
 
+@pytest.mark.parametrize("slider", [50.0, 0.0])
+def test_a_machine_without_inertia_has_a_flywheel_and_the_reason_why_it_has_no_speeds_without(slider: float) -> None:
+    machine = Mechanism(speed=2.5, slider_mass=slider, loads=(StrokeForce(outward=0.0, inward=900.0),))
+    numbers = flywheel.numbers(machine, Linkage(0.06, 0.3, 0.0), fluctuation=0.4)
+    assert numbers["flywheel_kgm2"] == pytest.approx(numbers["classical_estimate_kgm2"], rel=0.1)
+    assert numbers["fluctuation_without_flywheel"] is numbers["least_speed_without_flywheel_rpm"] is None
+    assert numbers["reason_without_flywheel"].startswith("forward dynamics needs an inertia at every crank angle")
+    json.dumps(numbers, allow_nan=False)
+    stream = io.StringIO()
+    flywheel.show(Console(file=stream, width=400), numbers)
+    assert "without one no steady running was found: forward dynamics needs an inertia" in stream.getvalue()
+
+
 def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> None:
     with pytest.raises(InputError, match=r"add a \[drive\]"):
         start_up.numbers(STROKES, LINKAGE)

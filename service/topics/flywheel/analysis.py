@@ -28,7 +28,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     found = design_flywheel(mechanism, linkage, fluctuation)
     tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
-    bare = _without(mechanism, linkage)
+    bare, reason = _without(mechanism, linkage)
     return {
         "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
         "wanted_fluctuation": fluctuation,
@@ -36,6 +36,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
         "classical_estimate_kgm2": found.estimate,
         "fluctuation_without_flywheel": None if bare is None else bare[0],
         "least_speed_without_flywheel_rpm": None if bare is None else RPM * bare[1],
+        "reason_without_flywheel": reason,
         "steady": steady_numbers(found.running),
         "fluctuations": list(_TRIED),
         "flywheels_kgm2": [design.inertia for design in tried],
@@ -43,17 +44,17 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     }
 
 
-def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float] | None:
-    """Return fluctuation and least speed, rad/s, of the machine without a flywheel; None if no running is found."""
+def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[tuple[float, float] | None, str | None]:
+    """Return fluctuation and least speed, rad/s, of the machine without a flywheel, or why it has none."""
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
         if drive is None:
             least, greatest = runner.speeds(0.0)
-            return (greatest - least) / runner.speed, least
+            return ((greatest - least) / runner.speed, least), None
         running = runner.under(replace(drive, flywheel=0.0))
-        return running.fluctuation, float(abs(running.speed).min())
-    except InputError:
-        return None
+        return (running.fluctuation, float(abs(running.speed).min())), None
+    except InputError as error:
+        return None, str(error)
 
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
@@ -62,7 +63,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
     slowest = numbers["least_speed_without_flywheel_rpm"]
     if bare is None:
-        without = "no steady running was found"
+        without = f"no steady running was found: {numbers['reason_without_flywheel']}"
     elif slowest:
         without = f"it is {bare:.4g} (least speed {slowest:.4g} rpm)"
     else:
