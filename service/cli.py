@@ -111,7 +111,13 @@ def _log_of(error: Exception) -> str:
     for note in getattr(error, "__notes__", []):
         if note.startswith("log: "):
             return str(note.removeprefix("log: "))
-    options: dict[str, Any] = {"prefix": "slidercrank-", "suffix": ".log", "delete": False, "encoding": "utf-8"}
+    options: dict[str, Any] = {
+        "prefix": "slidercrank-",
+        "suffix": ".log",
+        "delete": False,
+        "encoding": "utf-8",
+        "errors": "backslashreplace",
+    }
     try:
         with tempfile.NamedTemporaryFile("w", **options) as file:
             file.write("".join(traceback.format_exception(error)))

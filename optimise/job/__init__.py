@@ -16,6 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
+from ...model.file_names import path_named, path_text
 from ...model.machine.strength import Material
 from ...objectives.units import shown
 from ..problem.problem import Problem
@@ -50,7 +51,7 @@ def load_job(
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
     data = read_job(path)
     with _named(path):
-        return parse_job(data, values, folder=Path(path).parent, allow_user_code=allow_user_code)
+        return parse_job(data, values, folder=path_named(path).parent, allow_user_code=allow_user_code)
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
@@ -59,7 +60,8 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
     Raises JobError for files that cannot be read.
     """
     with _named(path):
-        return with_files(read(Path(path)), Path(path).parent)
+        file = path_named(path)
+        return with_files(read(file), file.parent)
 
 
 def with_files(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -72,16 +74,17 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
     try:
         yield
     except JobError as error:
-        name = str(path)
+        name = path_text(path)
         error.args = (f"{name if name.isprintable() else shown(name)}: {error}",)
         raise error from None
 
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:
     """Return the files beside a job file that it needs: points, speeds, catalogues, modules of its own functions."""
-    data, folder = read(Path(path)), Path(path).parent
-    files = [*(file for file in (points_file(data), speeds_file(data)) if file), *catalogues(data)]
-    return [*(folder / file for file in dict.fromkeys(files)), *modules_beside(data, folder)]
+    file = path_named(path)
+    data, folder = read(file), file.parent
+    files = [*(name for name in (points_file(data), speeds_file(data)) if name), *catalogues(data)]
+    return [*(folder / path_named(name) for name in dict.fromkeys(files)), *modules_beside(data, folder)]
 
 
 def parse_job(
@@ -119,8 +122,9 @@ def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     load_job(path)  # tells what is wrong with the file, if anything is
     data = read_job(path)
     part = job_with(declared(data, allowed=True)).model_validate(data).sections
-    if part is None:
-        raise JobError(f"{path}: sizing sections needs the table [sections]; got none; add its material and its pins")
+    with _named(path):
+        if part is None:
+            raise JobError("sizing sections needs the table [sections]; got none; add its material and its pins")
     return part.build()
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ...model.file_names import path_text
 from ..designs.proof import certificate_record, infeasible_record, sentences_of, sizes_of
 from ..designs.shown_units import record_in
 from ..runs.result import Result, csv_text, json_text, rows_of
@@ -56,7 +57,7 @@ def certify(
         options = {"epsilon": epsilon, "seconds": seconds}
         found = certify_designs(problem, sizes_of(result), **options, progress=tell, cancelled=interruption.asked)
     rows = rows_of(found.table.to_dict("list")) if len(found.table) else []
-    record = certificate_record(found, problem, str(folder), rows)
+    record = certificate_record(found, problem, path_text(folder), rows)
     write_file(folder / "certificate.json", json_text(record))
     write_file(folder / "certificate.csv", csv_text(rows))
     answer(json, record_in(record, units), lambda screen: _show(screen, found, result, folder, units))

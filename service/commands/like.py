@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
+from ...model.file_names import path_text
 from ..designs.columns import DIMENSIONS, find_column
 from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
@@ -60,11 +61,15 @@ def like(
         found = nearest(problem, row, given, span, constraints, ranges)
     if not len(found):
         if json:
-            give(json_text({"run": str(folder), "number": number, "status": found.status, "message": found.message}))
+            give(
+                json_text(
+                    {"run": path_text(folder), "number": number, "status": found.status, "message": found.message}
+                )
+            )
         end_without_design(found.message)
     apart = float(distance(found.values, given, span)[0])
     after = rows_of(found.columns)[0]
-    record = record_in(_record(str(folder), number, found, apart, row, after), units)
+    record = record_in(_record(path_text(folder), number, found, apart, row, after), units)
     rows = row_in(row, units), row_in(after, units)
     answer(json, record, lambda screen: _show(screen, result_in(result, units), number, where, apart, *rows))
 

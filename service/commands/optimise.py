@@ -15,6 +15,7 @@ import typer
 
 from ...model.errors import InputError, OutputLost, StoreError
 from ...model.extras import is_installed, required
+from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.shown_units import result_in
 from ..jobs.stores import FILE, Address, open_store
@@ -97,7 +98,7 @@ def optimise(
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
         front = _solve(problem, run, interruption, claim, opened.enter_context(engine_of(options)))
         with waiting("writing the designs"):
-            result = result_of(front, str(run.path))
+            result = result_of(front, path_text(run.path))
             versions = dict(front.versions)
             if is_installed("matplotlib"):
                 from importlib.metadata import version
@@ -120,7 +121,7 @@ def optimise(
     if lost is not None:
         raise lost
     if not json:
-        show_files(shown)
+        show_files(run.path)
     elif result.status != "done":
         say(f"slidercrank: {result.message}")
     if figures is None and result.status == "done" and not drawn:
@@ -198,12 +199,12 @@ def show_result(result: Result) -> None:
     sys.stdout.flush()
 
 
-def show_files(result: Result) -> None:
+def show_files(run: Path) -> None:
     """Write where the files of a run are."""
     screen = console()
-    screen.print(f"\nFiles: {result.run}", soft_wrap=True)
-    listed = [name for name in _FILES if (Path(result.run) / name).exists()]
-    pictures = len(list(Path(result.run, "figures").glob("*.png")))
+    screen.print(f"\nFiles: {path_text(run)}", soft_wrap=True)
+    listed = [name for name in _FILES if (run / name).exists()]
+    pictures = len(list((run / "figures").glob("*.png")))
     listed += [f"figures/ ({pictures} pictures)"] if pictures else []
     if listed:
         screen.print(f"  {', '.join(listed)}", soft_wrap=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.columns import find_column, key_in, split_unit
 from ..designs.rounding import rounded_record, rounded_record_in, steps_of
@@ -46,7 +47,7 @@ def round(
     steps = steps_of(to, front.part(number - 1), key="--to")
     with waiting("rounding"):
         found = front.rounded(number - 1, steps, count=count)
-        record = {"run": str(folder), "number": number} | rounded_record(found)
+        record = {"run": path_text(folder), "number": number} | rounded_record(found)
     if json:
         give(json_text(rounded_record_in(units, record, found)))
     elif len(found):

@@ -70,7 +70,7 @@ def front(
         show_design(screen, result.designs[one], only=names)
     elif not (where or sort or reverse or columns or rows != ROWS):
         show_result(result)
-        show_files(result)
+        show_files(folder)
     elif chosen:
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, StoreError
+from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.columns import find_column
 from ..designs.shown_units import row_in
@@ -73,7 +74,7 @@ def wish(
     with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
         keep_wish(folder, told_wishes(front, answer.wishes), number)
     if json:
-        give(json_text({"run": str(folder), "wishes": wishes} | wished_record(answer, units)))
+        give(json_text({"run": path_text(folder), "wishes": wishes} | wished_record(answer, units)))
     elif len(answer):
         _show(result.name, wishes, answer, units)
     if not len(answer):
@@ -94,7 +95,7 @@ def _list(folder: Path, title: str, front: ParetoFront, units: System, *, json: 
             found.append((one, words, solver.wish(words, row=None if one.design is None else one.design - 1)))
     records = [{"at": one.at, "wishes": words} | wished_record(answer, units) for one, words, answer in found]
     if json:
-        give(json_text({"run": str(folder), "made": records}))
+        give(json_text({"run": path_text(folder), "made": records}))
         return
     screen = console()
     if not made:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...model.errors import InputError, NotFound
+from ...model.file_names import path_text
 from ..runs.run_folder import MARK, RunFolder
 from .stores import has_store, open_store
 
@@ -42,7 +43,7 @@ def export_job(store: Store, job: Job, place: Path) -> Path:
     with RunFolder(place, job.name) as folder:
         folder.rename(job.run)
         folder.keep_files(files)
-        folder.keep_result(replace(result, run=str(path)), versions)
+        folder.keep_result(replace(result, run=path_text(path)), versions)
     return path
 
 
@@ -84,7 +85,7 @@ def find_folder(text: str, place: Path) -> Path:
         some = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
         raise InputError(f"the start of a run's name must be unique; {text!r} fits {some}; give more of it")
     last = f"; the latest is {names[-1]}" if names else ""
-    raise InputError(f"there is no run {text!r}, neither as a folder nor in {place}{last}")
+    raise InputError(f"there is no run {path_text(text)!r}, neither as a folder nor in {place}{last}")
 
 
 def _runs(place: Path) -> list[Path]:

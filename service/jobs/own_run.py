@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import InputError, LeaseLost, RunError, StoreError
+from ...model.file_names import path_text
 from ..runs.run_folder import RunFolder
 from ..store import Artefact, Claim, Job, Store
 from .find_run import find_folder
@@ -24,7 +25,10 @@ _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 def files_of(job: Path, beside: Sequence[Path]) -> list[Artefact]:
     """Return a job file and the files beside it that it names, as they are kept in the store."""
-    kept = {f"job{job.suffix.lower()}": job, **{file.relative_to(job.parent).as_posix(): file for file in beside}}
+    kept = {
+        f"job{job.suffix.lower()}": job,
+        **{path_text(file.relative_to(job.parent).as_posix()): file for file in beside},
+    }
     return [
         Artefact(name=name, media_type=_MEDIA.get(file.suffix.lower(), "text/plain"), content=file.read_bytes())
         for name, file in kept.items()

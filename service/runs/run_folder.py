@@ -27,6 +27,7 @@ from pathlib import Path
 from types import TracebackType
 
 from ...model.errors import InputError, RunError
+from ...model.file_names import path_named, path_text
 from ..resources.disk import is_full, room
 from .result import Result, csv_text, json_text
 
@@ -102,7 +103,7 @@ class RunFolder:
     def log(self, line: str) -> None:
         """Add a line to log.txt."""
         with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
-            file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {line}\n")
+            file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {path_text(line)}\n")
 
     def rename(self, name: str) -> None:
         """Give the folder another name. Raises `RunError` where that is taken."""
@@ -113,7 +114,7 @@ class RunFolder:
     def keep_files(self, files: Mapping[str, bytes]) -> None:
         """Write files under their names, which may lead into folders but not out of this one."""
         for name, content in files.items():
-            kept = self.path / name
+            kept = self.path / path_named(name)
             if not kept.resolve().is_relative_to(self.path.resolve()):
                 raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
             with disk(self.path):
@@ -219,7 +220,7 @@ def _rename(hidden: Path, wanted: Path) -> Path:
 
 
 def _bytes(content: str | bytes) -> bytes:
-    return content.encode() if isinstance(content, str) else content
+    return content.encode(errors="surrogateescape") if isinstance(content, str) else content  # of paths in it
 
 
 def _write(path: Path, content: str | bytes) -> None:

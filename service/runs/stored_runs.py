@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
+from ...model.file_names import path_text
 from .result import Exact, Result, Row, Wanted, json_ready, rows_from_csv
 from .run_folder import MARK
 
@@ -29,7 +30,7 @@ def read_run(folder: Path) -> Result:
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
         if json_ready(rows) != record["designs"]:
             raise ValueError("front.csv and front.json differ")
-        result = result_from(record, rows, str(folder))
+        result = result_from(record, rows, path_text(folder))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise RunError(f"the run {folder} is damaged: {type(error).__name__}: {reason}; run its job again") from error

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 from urllib.parse import quote
 
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
 from ...model.errors import InputError
+from ...model.file_names import path_named, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
 HIDDEN = "***"
@@ -30,7 +30,7 @@ def without_secrets(text: str) -> str:
 def shown_url(url: URL) -> str:
     """Return an address as it may be shown."""
     hidden = {name: value if name in _OPEN else HIDDEN for name, value in url.query.items()}
-    text = url.set(query=hidden).render_as_string(hide_password=True)
+    text = url.set(query=hidden, database=url.database and path_text(url.database)).render_as_string(hide_password=True)
     return text.replace(quote(HIDDEN), HIDDEN).replace("+psycopg://", "://", 1)
 
 
@@ -45,7 +45,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     """Return the database at an address. Raises `InputError` for one of another kind of database."""
     text = str(address)
     if "://" not in text:
-        return URL.create("sqlite", database=str(Path(text)))
+        return URL.create("sqlite", database=str(path_named(text)))
     try:
         url = make_url(text)
     except (ArgumentError, ValueError):
@@ -54,7 +54,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     if scheme in ("postgresql", "postgres"):
         return url.set(drivername="postgresql+psycopg")
     if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
-        return url.set(drivername="sqlite")
+        return url.set(drivername="sqlite", database=str(path_named(url.database)))
     raise InputError(
         f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
         "give one of these"

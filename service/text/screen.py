@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ...model.file_names import path_text
 from ..runs.result import json_text
 from ..runs.run_folder import disk
 
@@ -41,7 +42,7 @@ def _console(stream: TextIO) -> Console:
 def say(message: str) -> None:
     """Write a message to standard error; where nothing can be written there, it is lost."""
     with contextlib.suppress(OSError):
-        sys.stderr.write(f"{message}\n")
+        sys.stderr.write(f"{path_text(message)}\n")
 
 
 def give(text: str) -> None:

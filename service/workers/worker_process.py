@@ -6,6 +6,7 @@ stops in an orderly way on SIGTERM, or when standard input ends: then its superv
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 import signal
@@ -49,12 +50,13 @@ class WorkerSettings:
 
     def line(self) -> bytes:
         """Return the settings as the process reads them."""
-        return TypeAdapter(WorkerSettings).dump_json(self) + b"\n"
+        given = TypeAdapter(WorkerSettings).dump_python(self)
+        return json.dumps(given).encode() + b"\n"  # which writes bytes of a path that no encoding has
 
     @classmethod
     def read(cls, line: bytes) -> WorkerSettings:
         """Return the settings of a line."""
-        return TypeAdapter(WorkerSettings).validate_json(line)
+        return TypeAdapter(WorkerSettings).validate_python(json.loads(line))
 
 
 def main() -> int:
