@@ -29,7 +29,7 @@ from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, column_models
 from .job_requests import given_problem
-from .models import UnitsAsked, Whole
+from .models import PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
 from .settings import SettingsDep
 from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length
@@ -173,7 +173,9 @@ def show_curves(
     found: FrontDep,
     design: DesignNumber,
     angles: Annotated[
-        Whole, Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced; of a swing times")
+        int,
+        Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced; of a swing times"),
+        PLAIN_DIGITS,
     ] = 360,
 ) -> CurvesModel:
     """Give slider motion, drive, transmission angle and joint forces over the cycle: see the answer's description."""

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ..designs.comparing import compared_in_words
 from ..jobs.differences import differences
-from .models import LARGEST, UnitsAsked, Whole
+from .models import LARGEST, PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontsDep
@@ -18,7 +18,7 @@ from .stored_fronts import FrontsDep
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 MOST = 6
-_Number = Annotated[Whole, Query(ge=1, le=LARGEST)]
+_Number = Annotated[int, Query(ge=1, le=LARGEST), PLAIN_DIGITS]
 
 
 class DifferenceModel(BaseModel):

@@ -25,7 +25,7 @@ from fastapi.sse import format_sse_event
 from ...model.errors import NotFound, StoreError
 from ..store import Event, Store
 from ..store.records import ENDED
-from .models import LARGEST, EventPage, JobNumber, Whole
+from .models import LARGEST, PLAIN_DIGITS, EventPage, JobNumber
 from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
@@ -175,11 +175,12 @@ async def list_events(
     request: Request,
     number: JobNumber,
     store: StoreDep,
-    after: Annotated[Whole, Query(ge=0, le=LARGEST, description="events after the one of this number")] = 0,
-    limit: Annotated[Whole, Query(ge=1, le=1000, description="at most so many, in a page of JSON")] = 1000,
+    after: Annotated[int, Query(ge=0, le=LARGEST, description="events after the one of this number"), PLAIN_DIGITS] = 0,
+    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many, in a page of JSON"), PLAIN_DIGITS] = 1000,
     last_event_id: Annotated[
-        Whole | None,
+        int | None,
         Header(ge=0, le=LARGEST, description="the same as `after`, as browsers send it to reconnect"),
+        PLAIN_DIGITS,
     ] = None,
 ) -> Response:
     """Return the events of a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""

@@ -17,7 +17,7 @@ from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
 from ..page.router import tagged
 from ..runs.result import Cell, json_ready
-from .models import JobNumber, Whole
+from .models import PLAIN_DIGITS, JobNumber
 from .problems import problem_responses, tagged_json
 from .settings import StoreDep
 from .stored_fronts import DesignNumber, FrontDep, StoredFront
@@ -195,8 +195,8 @@ def list_designs(
     ] = None,
     reverse: Annotated[bool, Query(description="turn the order round")] = False,
     columns: Columns = None,
-    offset: Annotated[Whole, Query(ge=0, le=2**31, description="pass over so many designs")] = 0,
-    limit: Annotated[Whole, Query(ge=1, le=MOST_ROWS, description="at most so many designs")] = 100,
+    offset: Annotated[int, Query(ge=0, le=2**31, description="pass over so many designs"), PLAIN_DIGITS] = 0,
+    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most so many designs"), PLAIN_DIGITS] = 100,
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = found.result

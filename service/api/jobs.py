@@ -21,7 +21,7 @@ from ..page.router import tag_of, tagged
 from ..store import Job, State
 from .exports import download, formats
 from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
-from .models import LARGEST, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown, Whole
+from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
 from .problems import problem_responses, tagged_json
 from .settings import SettingsDep, StoreDep
 from .throttle import READING, limit_submissions
@@ -37,7 +37,7 @@ _FILE: dict[int | str, dict[str, Any]] = {
     200: {"description": "The file", "content": {"*/*": {"schema": {"type": "string", "format": "binary"}}}}
 }
 _MOST_FRONTS = 100
-_Number = Annotated[Whole, Field(ge=1, le=LARGEST)]
+_Number = Annotated[int, Field(ge=1, le=LARGEST), PLAIN_DIGITS]
 FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
 
 
@@ -80,8 +80,10 @@ def list_jobs(
     store: StoreDep,
     state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
     name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
-    before: Annotated[Whole | None, Query(ge=1, le=LARGEST, description="older than the job of this number")] = None,
-    limit: Annotated[Whole, Query(ge=1, le=1000, description="at most so many")] = 100,
+    before: Annotated[
+        int | None, Query(ge=1, le=LARGEST, description="older than the job of this number"), PLAIN_DIGITS
+    ] = None,
+    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many"), PLAIN_DIGITS] = 100,
 ) -> dict[str, Any]:
     """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)

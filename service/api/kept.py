@@ -19,7 +19,7 @@ from ..runs.result import csv_text, json_ready
 from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
 from .exports import download, of_type
 from .fronts import Cells, ColumnModel, column_models
-from .models import UnitsAsked, Whole
+from .models import PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
@@ -33,7 +33,9 @@ router = APIRouter(tags=["designs"], responses=problem_responses(409))
 _NAME = Annotated[str, Field(max_length=200)]
 _TEXT = Annotated[str, Field(max_length=4000)]
 _LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
-KeptNumber = Annotated[Whole, Path(ge=1, le=2**31, description="number of a kept design, from 1", examples=[1])]
+KeptNumber = Annotated[
+    int, Path(ge=1, le=2**31, description="number of a kept design, from 1", examples=[1]), PLAIN_DIGITS
+]
 
 
 class KeepAsked(BaseModel, extra="forbid", strict=True):

@@ -22,9 +22,12 @@ def _plain(given: Any) -> Any:
     return given
 
 
-Whole = Annotated[int, BeforeValidator(_plain)]
-"""A whole number in an address, in digits: not all that Python takes for one, such as "6.0", "1_0" and " 6"."""
-JobNumber = Annotated[Whole, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1])]
+PLAIN_DIGITS = BeforeValidator(_plain)
+"""Of a whole number in an address: not all that Python takes for one, such as "6.0", "1_0" and " 6".
+
+Behind the limits of the number, or its schema has them under names that JSON Schema does not know.
+"""
+JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
 UnitsAsked = Annotated[

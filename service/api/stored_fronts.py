@@ -26,7 +26,7 @@ from ..designs.variation import Variation, variation_of, with_lengths
 from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..store import Job, Store
-from .models import JobNumber, Whole
+from .models import PLAIN_DIGITS, JobNumber
 from .settings import part_of_app
 from .throttle import Turns
 
@@ -39,7 +39,7 @@ MOST_DESIGNS = 40_000
 _MOST_KEPT = 10_000_000  # bytes of a front's figures, files and columns, and one if it is longer
 
 DesignNumber = Annotated[
-    Whole, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3])
+    int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3]), PLAIN_DIGITS
 ]
 
 

@@ -10,6 +10,7 @@ import itertools
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from inspect import Parameter, Signature, signature
 from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -97,6 +98,16 @@ class Table:
     def __post_init__(self) -> None:
         if self.key not in {entry.name for entry in self.entries}:
             raise ValueError(f"a table of loads is told by the key of one of its entries; got {self.key!r}; name one")
+        keys, taken = {entry.name for entry in self.entries}, signature(self.build).parameters.values()
+        named = {each.name for each in taken if each.kind is not Parameter.VAR_KEYWORD}
+        needed = {each.name for each in taken if each.name in named and each.default is Parameter.empty}
+        unknown = keys - named if len(named) == len(taken) else set()
+        if unknown or needed - keys:
+            raise ValueError(
+                f"a table of loads is built from its entries by their names; got {_listed(unknown)} that the build of "
+                f"{self.name} does not take, and no {_listed(needed - keys)}; say which field an entry is of with "
+                "built(kind, key='field')"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,9 +198,20 @@ class Load:
         raise NotImplementedError
 
 
+def _listed(names: set[str]) -> str:
+    return " and ".join(sorted(names)) or "other"
+
+
 def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
     """Return the function that builds a load from the values of its table. fields: of the load, by keys that differ."""
-    return lambda **given: kind(**{fields.get(key, key): value for key, value in given.items()})
+    keys = {field: key for key, field in fields.items()}
+
+    def build(**given: Any) -> Load:
+        return kind(**{fields.get(key, key): value for key, value in given.items()})
+
+    named = [each.replace(name=keys.get(name, name)) for name, each in signature(kind).parameters.items()]
+    build.__signature__ = Signature(named)  # type: ignore[attr-defined]
+    return build
 
 
 def points(name: str, kind: str, description: str, *example: str) -> Entry:

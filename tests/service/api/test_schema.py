@@ -8,6 +8,8 @@ from pathlib import Path
 import httpx
 import pytest
 
+from slidercrank.optimise.job import job_schema
+from tests.schema_words import KNOWN, OF_OPENAPI, schemas_within, unknown_words
 from tests.service.api import schema_cases
 
 CASES = "SLIDERCRANK_CASES"
@@ -33,3 +35,32 @@ def test_the_description_names_what_every_operation_may_answer(shared: httpx.Cli
     submission = described["paths"]["/api/v1/jobs"]["post"]
     assert set(submission["requestBody"]["content"]) == {"application/json", "application/toml"}
     assert submission["responses"]["201"]["links"]["show_job"]["parameters"] == {"number": "$response.body#/id"}
+
+
+def test_every_schema_of_the_description_has_words_of_json_schema_alone(shared: httpx.Client) -> None:
+    """Whole numbers had their limits as "ge" and "le", which no reader knows."""
+    described = shared.get("/openapi.json").json()
+    found = dict(schemas_within(described))
+    assert len(found) > 300
+    words = [word for place, schema in found.items() for word in unknown_words(schema, KNOWN | OF_OPENAPI, place)]
+    assert words == []
+    limits = {each["name"]: each["schema"] for each in described["paths"]["/api/v1/jobs"]["get"]["parameters"]}
+    assert limits["limit"] == {**limits["limit"], "type": "integer", "minimum": 1, "maximum": 1000}
+    assert limits["before"]["anyOf"][0] == {"type": "integer", "minimum": 1, "maximum": 2**53 - 1}
+
+
+def test_schemas_follow_the_rules_of_json_schema_itself(shared: httpx.Client) -> None:
+    judge = pytest.importorskip("jsonschema_rs")
+    for place, schema in schemas_within(shared.get("/openapi.json").json()):
+        assert judge.meta.is_valid(schema), place
+    judge.meta.validate(job_schema())
+    assert list(unknown_words(job_schema())) == []
+
+
+@pytest.mark.parametrize("text", ["6.0", "1_0", " 6", "0x1", "+6", "06"])
+def test_a_whole_number_of_an_address_has_digits_alone(text: str, shared: httpx.Client) -> None:
+    for path in ("/jobs", "/jobs?before=1"):
+        assert shared.get(path, params={"limit": text}).status_code == 422
+    assert shared.get("/jobs", params={"before": text}).status_code == 422
+    assert shared.get(f"/jobs/{text}").status_code == 422
+    assert shared.get("/front-points", params={"job": text}).status_code == 422
