@@ -10,6 +10,7 @@ from ..model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
 from .quantity import Array, Pieces, Quantity, Values, fact
+from .reach import Reach
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,14 @@ class ClosedFormQuantity(Quantity):
     def of_dimensions(self) -> bool:
         """True."""
         return True
+
+    def is_closed(self, mechanism: Mechanism) -> bool:
+        """Return whether its closed form holds for a machine, and what follows from it: `rises` and `reach`."""
+        return True
+
+    def reach_for(self, mechanism: Mechanism) -> Reach | None:
+        """Return its reach if its closed form holds for the machine."""
+        return self.reach if self.is_closed(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -123,10 +123,10 @@ JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, face("in/s^3", _PER_
 _VOLUME = face("in^3", 1.0 / _INCH**3), face("cm^3", 1e6)
 VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME)
 ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
+TIME = _kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
 """The kinds above, in their order: those of numbers of a job and of quantities."""
-TIME = _kind("a time", "s, min", "30 s", 1e9)
 STROKE_RATE = _kind("a number of strokes a minute", "", "30", 9e6)
 _PER_ANGLE = Kind("a length per angle", "m/rad", "", 0.0, per("mm/rad", 1e3), per("in/rad", _PER_INCH))
 _PER_SQUARED_ANGLE = Kind(

@@ -74,6 +74,10 @@ def _loaded(machine: Mechanism) -> bool:
     return linkage_loaded(machine.fullest)
 
 
+def _alike_in_time(machine: Mechanism) -> bool:
+    return machine.speed_profile is None or cylinder_count(machine) == 1
+
+
 def _pivot_loaded(machine: Mechanism) -> bool:
     return pivot_loaded(machine.fullest)
 
@@ -96,6 +100,12 @@ FRICTION = Need(
     without="equal",
 )
 SPEED = Need(_speed, _SPEED)
+TURNING = _defining(_speed, _SPEED)
+REPEATS = _defining(
+    lambda machine: machine.fullest.acceleration == 0.0,
+    "a stroke has a time where the speed repeats with every turn; got a crank acceleration; leave it out, or use "
+    "time_ratio",
+)
 MOTION = Need(_motion, _SPEED)
 """A crank that turns or is about to."""
 MASSES = Need(_masses, _MASSES)
@@ -149,6 +159,11 @@ COUPLES = _defining(
 ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,
     "a stroke is of one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
+)
+ONE_TIMING = _defining(
+    _alike_in_time,
+    "along a speed profile each cylinder has stroke times of its own; got several on one crankshaft; use "
+    "crank_angle_ratio, which they share, or leave out speed_profile",
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,

@@ -216,6 +216,10 @@ class Quantity(ABC):
         """Whether it follows from crank, rod and offset alone, without a search over the cycle."""
         return False
 
+    def reach_for(self, mechanism: Mechanism) -> Reach | None:
+        """Return its reach if that holds for a machine."""
+        return self.reach
+
     @property
     def made_of(self) -> tuple[Quantity, ...]:
         """The quantities that it is computed from, if it is made of others."""

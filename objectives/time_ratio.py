@@ -1,19 +1,25 @@
-"""Time ratio: how much longer the slower stroke takes than the faster one, at constant crank speed."""
+"""Time ratio, how much longer the slower stroke takes than the faster one, and crank angle ratio, that of angles."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+
+import numpy as np
 
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
+from ..model.machine.mechanism import Mechanism
 from .closed_form import ClosedFormQuantity
 from .kinds import RATIO
-from .quantity import Domain, Group
+from .needs import ONE_TIMING
+from .quantity import Array, Domain, Group, Pieces, Values
 from .reach import Ranges, Reach
+from .stroke_times import of_strokes
 
 
 def ratio_of(excess: float) -> float:
-    """Return the time ratio of an excess angle, rad."""
+    """Return the crank angle ratio of an excess angle, rad: the time ratio at constant speed."""
     return (math.pi + excess) / (math.pi - excess)
 
 
@@ -27,7 +33,47 @@ def _within(box: Ranges) -> tuple[float, float]:
     return float(geometry.time_ratio(box.r0, box.l1, box.a0)), float(greatest)
 
 
-TIME_RATIO = ClosedFormQuantity(
+@dataclass(frozen=True, kw_only=True)
+class TimeRatio(ClosedFormQuantity):
+    """The time ratio: a closed form at constant speed, along a profile the greater of two quotients of stroke times."""
+
+    def is_closed(self, mechanism: Mechanism) -> bool:
+        """Return whether the machine turns at constant speed."""
+        return mechanism.speed_profile is None
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.is_closed(mechanism):
+            return super().evaluate(mechanism, dimensions, gradients=gradients)
+        found, slopes = of_strokes(mechanism, dimensions, lambda of: of.ratio, gradients)
+        return Values(np.maximum(found, 1.0 / found), None if slopes is None else _greater(found, slopes))
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as the greater of its quotients; see `Quantity`."""
+        if self.is_closed(mechanism):
+            return super().pieces(mechanism, dimensions)
+        found, slopes = of_strokes(mechanism, dimensions, lambda of: of.ratio, True)
+        assert slopes is not None
+        values = np.stack([found, 1.0 / found], axis=1)
+        labels = np.broadcast_to(np.arange(2.0), values.shape)
+        return Pieces(values, np.stack([slopes, _turned(found, slopes)], axis=1), labels)
+
+
+def _turned(ratio: Array, slopes: Array) -> Array:
+    """Return the derivatives of one over a ratio."""
+    return -slopes / np.square(ratio)[:, None]
+
+
+def _greater(ratio: Array, slopes: Array) -> Array:
+    return np.where((ratio >= 1.0 / ratio)[:, None], slopes, _turned(ratio, slopes))
+
+
+_REACH = Reach(
+    bounds=_within,
+    more="raise the upper end of crank or of offset",
+    less="lower the lower end of offset",
+)
+TIME_RATIO = TimeRatio(
     name="time_ratio",
     kind=RATIO,
     forms=(ClosedForm.TIME_RATIO,),
@@ -35,11 +81,17 @@ TIME_RATIO = ClosedFormQuantity(
     place=10,
     group=Group.MOTION,
     sentence=(
-        "The time ratio says how many times longer the slower stroke takes than the faster one while the crank "
-        "turns steadily: 1 without offset, more for a quick return."
+        "The time ratio says how many times longer the slower stroke takes than the faster one. At constant speed it "
+        "is 1 without offset, and more for a quick return."
     ),
-    advice="Which stroke is the slow one follows from the sign of the offset and from the direction of rotation.",
-    formula="Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r))",
+    advice=(
+        "At constant speed the sign of the offset and the direction of rotation say which stroke is the slow one; a "
+        "speed profile changes both."
+    ),
+    formula=(
+        "Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r)); along a "
+        "speed profile the times of the strokes instead of their crank angles"
+    ),
     picture="time ratio",
     example=1.2,
     better="high",
@@ -52,10 +104,30 @@ TIME_RATIO = ClosedFormQuantity(
     # A drive's speed varies by about one percent itself, and without offset neither stroke is slow.
     floor=1.01,
     in_line=1.0,
-    reach=Reach(
-        bounds=_within,
-        more="raise the upper end of crank or of offset",
-        less="lower the lower end of offset",
-    ),
+    needs=(ONE_TIMING,),
+    reach=_REACH,
     offered=("motion", "objective"),
+)
+CRANK_ANGLE_RATIO = ClosedFormQuantity(
+    name="crank_angle_ratio",
+    kind=RATIO,
+    forms=(ClosedForm.TIME_RATIO,),
+    rises=(True, False, True),
+    place=101,
+    group=Group.MOTION,
+    sentence="The crank angle of the longer stroke divided by that of the shorter one.",
+    advice="At constant speed it is the time ratio. It follows from the linkage alone, whatever the speed does.",
+    formula="(180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r))",
+    picture="time ratio",
+    example=1.2,
+    better="high",
+    domain=Domain(
+        lower=1.0,
+        open=False,
+        rule="the crank angle ratio is the longer stroke over the shorter, so 1 or more",
+        remedy="give the inverse",
+    ),
+    in_line=1.0,
+    reach=_REACH,
+    plain=True,
 )

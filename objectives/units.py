@@ -23,16 +23,13 @@ from typing import Any, Literal
 
 from ..model.errors import InputError
 from .counted import counted
-from .kinds import KINDS, TIME, Face, Kind, kind_in
+from .kinds import KINDS, Face, Kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
 """Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
 
-_OTHERS = (
-    TIME,
-    Kind("a frequency, not saying of turns or of radians", "s^-1", "", 0.0, Face("1/s", "")),
-)
+_OTHERS = (Kind("a frequency, not saying of turns or of radians", "s^-1", "", 0.0, Face("1/s", "")),)
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
 # within the two forces. Degrees carry pi to 36 digits.

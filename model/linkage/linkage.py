@@ -129,7 +129,7 @@ class Linkage:
         return found
 
     def slow_stroke(self, *, direction: float = 1.0) -> NDArray[np.str_]:
-        """Return which stroke is the slow one: "outward", "inward" or "equal" (no offset).
+        """Return which stroke is the slow one at constant speed: "outward", "inward" or "equal" (no offset).
 
         direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch the inner dead
         centre comes pi + b after the outer one counter-clockwise, so the inward stroke is the slow one.

@@ -7,7 +7,6 @@ w dw/d(theta) = speed^2 p p'.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -18,6 +17,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite
 from ..errors import InputError
+from .elapsed import Elapsed
 
 _RPM = 30.0 / math.pi
 _TURN = 2.0 * math.pi
@@ -25,8 +25,6 @@ _MOST = 100  # harmonics
 _LEAST = 4  # points of a table
 _SAMPLES = 64  # of the highest harmonic's period
 _CLOSED = 1e-9  # rad
-_SETTLED = 1e-14  # of a mean, relative
-_PANELS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,9 +75,14 @@ class Harmonics:
         return np.asarray(found)
 
     @cached_property
+    def elapsed(self) -> Elapsed:
+        """Time over the crank angle."""
+        return Elapsed.of(self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines))))
+
+    @property
     def over_time(self) -> float:
         """Mean speed over time, as a share of that over the crank angle."""
-        return _over_time(self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines))))
+        return _TURN / self.elapsed.turn
 
     @property
     def pairs(self) -> list[tuple[float, float]]:
@@ -177,9 +180,14 @@ class SpeedTable:
         return np.asarray(self._spline(theta, 2) / self.mean)
 
     @cached_property
+    def elapsed(self) -> Elapsed:
+        """Time over the crank angle."""
+        return Elapsed.of(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
+
+    @property
     def over_time(self) -> float:
         """Mean speed over time, as a share of that over the crank angle."""
-        return _over_time(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
+        return _TURN / self.elapsed.turn
 
     @property
     def pieces(self) -> tuple[Array, Array]:
@@ -201,18 +209,6 @@ def time_per_angle(profile: Profile, theta: Array) -> Array:
     It weighs what is averaged over time: dt = d(theta) / (speed p).
     """
     return np.asarray(profile.over_time / profile.ratio(theta))
-
-
-def _over_time(ratio: Callable[[Array], Array], ends: Array) -> float:
-    """Return one over the mean of 1 / p, by panels of Gauss whose number is doubled until it settles."""
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    found, before = math.nan, math.inf
-    while not abs(found - before) <= _SETTLED * abs(found) and len(ends) < _PANELS:
-        width = np.diff(ends)
-        angle = ends[:-1, None] + 0.5 * width[:, None] * (1.0 + nodes)
-        found, before = _TURN / float(np.sum(0.5 * width[:, None] * weights / ratio(angle))), found
-        ends = np.sort(np.concatenate([ends, ends[:-1] + 0.5 * width]))
-    return found
 
 
 def _require_positive(theta: Array, ratio: Array) -> None:

@@ -282,9 +282,10 @@ class Formulas:
         crank, rod, offset = (self._intervals[name] for name in DIMENSIONS)
         sizes = sorted((abs(offset.lower), abs(offset.upper)))
         least = 0.0 if offset.spans_zero else sizes[0]
-        if of.reach is None or not self._turning or rod.upper <= (crank.lower + least) * CLEAR:
+        reach = of.reach_for(self._machine)
+        if reach is None or not self._turning or rod.upper <= (crank.lower + least) * CLEAR:
             return found
-        lower, upper = of.reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
+        lower, upper = reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
         return Interval(lower, upper, found.apart)
 
     def _advice(self, names: Iterable[str]) -> dict[str, str]:

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array
+from ...model.cycle.strokes import strokes
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.follow import follow_forces
+from ..needs import ONE_TIMING
 
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]
@@ -98,7 +100,17 @@ class Designs:
 
     @property
     def time_ratio(self) -> Numbers:
-        """Duration of the slower stroke over the faster, (n, 1)."""
+        """Duration of the slower stroke over the faster, (n, 1). Raises `InputError` where cylinders differ in it."""
+        if self.mechanism.speed_profile is None:
+            return self.crank_angle_ratio
+        if not ONE_TIMING.met(self.mechanism):
+            raise InputError(f"time_ratio: {ONE_TIMING.missing}")
+        found = strokes(self.mechanism, self.crank, self.rod, self.offset).ratio
+        return cast(Numbers, np.where(np.real(found) >= 1.0, found, 1.0 / found))
+
+    @property
+    def crank_angle_ratio(self) -> Numbers:
+        """Crank angle of the longer stroke over that of the shorter, (n, 1)."""
         return cast(Numbers, geometry.time_ratio(self.crank, self.rod, magnitude(self.offset)))
 
     @property

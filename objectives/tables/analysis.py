@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.cycle.strokes import slow_stroke, time_ratio
 from ...model.kinematics.in_line import without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
@@ -35,8 +36,8 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
 
     own: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
-    carry their unit. Dead centres are crank angles, deg; the slow stroke is that at the mechanism's direction of
-    rotation, the loaded stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors
+    carry their unit. Dead centres are crank angles, deg; the slow stroke is that of `strokes.slow_stroke`, the loaded
+    stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors
     without tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     import pandas as pd
@@ -61,8 +62,8 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
         "offset_mm": 1e3 * dimensions[:, 2],
         **{key: unit.factor * dimensions[:, 3 + place] for place, (key, unit) in enumerate(varying)},
         STROKE.field: 1e3 * linkage.stroke,
-        TIME_RATIO.field: linkage.time_ratio,
-        SLOW_STROKE: linkage.slow_stroke(direction=mechanism.direction),
+        TIME_RATIO.field: time_ratio(mechanism, linkage),
+        SLOW_STROKE: slow_stroke(mechanism, linkage),
         LOADED_STROKE: loaded_stroke(mechanism, dimensions),
         OUTER_DEAD_CENTRE: np.degrees(outer),
         INNER_DEAD_CENTRE: np.degrees(inner),

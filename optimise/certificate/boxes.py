@@ -20,6 +20,7 @@ from ...model.signals.of_shaft import apart
 from ...model.signals.signals import Signal
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
+from ...objectives.quantity import Quantity
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
@@ -38,13 +39,15 @@ def covered(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
     Bounded are all closed forms, and from below the peaks over the cycle of machines without friction; of several
-    cylinders those of one alone, and with a speed profile those that the speed does not matter to.
+    cylinders those of one alone, and with a speed profile those that the speed does not matter to. A time ratio along a
+    speed profile is not a closed form.
     """
     quantity = problem.quantity(objective.quantity)
-    if isinstance(quantity, ClosedFormQuantity):
+    if _is_closed(problem, quantity):
         return ""
     if not isinstance(quantity, CyclePeak):
-        return f"{quantity.title} has no bound over a range of designs"
+        profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
+        return f"{quantity.title}{profile} has no bound over a range of designs"
     if quantity.signal.needs_forces and problem.mechanism.friction.acts:
         return f"{quantity.title} has no bound over a range of designs where there is friction"
     if not cranks_of(problem.mechanism, quantity.signal):
@@ -55,6 +58,10 @@ def covered(problem: Problem, objective: Objective) -> str:
     if objective.sense != "minimise":
         return f"{quantity.title} is bounded from below only, so it can be certified as minimised, not otherwise"
     return ""
+
+
+def _is_closed(problem: Problem, quantity: Quantity) -> bool:
+    return isinstance(quantity, ClosedFormQuantity) and quantity.is_closed(problem.mechanism)
 
 
 def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
@@ -71,7 +78,7 @@ def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
 def usable(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
     quantity = problem.quantity(constraint.quantity)
-    if isinstance(quantity, ClosedFormQuantity):
+    if _is_closed(problem, quantity):
         return True
     wanted = Objective(quantity=constraint.quantity, sense="minimise")
     return constraint.upper is not None and not covered(problem, wanted)

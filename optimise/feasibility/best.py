@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ...model.arrays import Array
-from ...model.machine.mechanism import Mechanism
+from ...model.cycle.strokes import with_times_alone
 from ..engine.engine import Engine
 from ..methods.auto.auto import AUTO, searched_by
 from ..problem.problem import Problem, Settings, Variant
@@ -90,6 +90,8 @@ def wanting(problem: Problem, name: str, sense: Sense, target: float | None = No
 def on_dimensions(problem: Problem) -> Problem:
     """Return the problem with its requirements on the dimensions alone, of a machine that weighs nothing.
 
+    How long its strokes take is kept.
+
     Choices that leave the dimensions and what is asked of them as they are fall together.
     """
     parts = list(dict.fromkeys(_weightless(part) for part in problem.parts()))
@@ -115,6 +117,6 @@ def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _weightless(part: Problem) -> Problem:
-    machine = Mechanism(speed=part.mechanism.nominal.speed, branch=part.mechanism.nominal.branch)
+    machine = with_times_alone(part.mechanism)
     own = tuple(of for of in part.own if of.of_dimensions)
     return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=own, costs=None)

@@ -12,7 +12,7 @@ from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
 from ...objectives.reach import CLEAR, Ranges
 from ...objectives.registry import QUANTITIES
-from ...objectives.time_ratio import TIME_RATIO, ratio_of
+from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, ratio_of
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 SLACK = 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
+RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
+"""Ratios of the strokes that trade against the transmission angle."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other requirements on the dimensions"
 _ANY = Range(lower=0.0, upper=1.0)
@@ -67,12 +69,13 @@ def require_reachable(problem: Problem) -> None:
     if ROD_TO_OFFSET.name in constraints:
         box = _with_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
     formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.of_dimensions)
-    for of in (ROD_TO_CRANK, STROKE, TIME_RATIO, TRANSMISSION_ANGLE, *formulas):
+    for of in (ROD_TO_CRANK, STROKE, *RATIOS, TRANSMISSION_ANGLE, *formulas):
         if of.name in constraints:
             _require_within(of, constraints[of.name], box, problem)
-    wrong = beyond_both(problem, box.share)
-    if wrong:
-        raise InfeasibleError(f"constraints.{TIME_RATIO.name}: {wrong}")
+    for of in RATIOS:
+        wrong = beyond_both(problem, of, box.share)
+        if wrong:
+            raise InfeasibleError(f"constraints.{of.name}: {wrong}")
 
 
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
@@ -104,14 +107,15 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise InfeasibleError unless the constraint and what is possible meet."""
-    key = key_of(["constraints", of.name])
+    key, reach = key_of(["constraints", of.name]), problem.reach_of(of)
+    if reach is None:
+        return
     least, greatest = box.possible(of)
-    assert of.reach is not None
     room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + room:
-        told, remedy = _possible(problem, constraint), f"{of.reach.more}, or ask for less"
+        told, remedy = _possible(problem, constraint), f"{reach.more}, or ask for less"
     elif constraint.upper is not None and constraint.upper + room < least:
-        told, remedy = _possible(problem, constraint), f"{of.reach.less}, or ask for more"
+        told, remedy = _possible(problem, constraint), f"{reach.less}, or ask for more"
     else:
         return
     same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
@@ -153,13 +157,13 @@ def _nearest(problem: Problem, constraint: Constraint, kept: tuple[Constraint, .
     return next((one for one in found if isinstance(one, Relaxation)), None)
 
 
-def beyond_both(problem: Problem, share: Range = _ANY) -> str | None:
-    """Return in words why no linkage has both time ratio and transmission angle as asked; None if one may.
+def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | None:
+    """Return in words why no linkage has one of `RATIOS` and the transmission angle as asked; None if one may.
 
     share: where offset / rod may lie.
     """
-    asked = {constraint.quantity: constraint for constraint in problem.constraints}
-    ratio, angle = asked.get(TIME_RATIO.name), asked.get(TRANSMISSION_ANGLE.name)
+    asked = {constraint.quantity: constraint for constraint in problem.constraints if problem.reach_of(of) is not None}
+    ratio, angle = asked.get(of.name), asked.get(TRANSMISSION_ANGLE.name)
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
     if not 0.0 < angle.lower < 0.5 * math.pi or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * (

@@ -10,10 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from ...model.errors import InfeasibleError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
+from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
@@ -145,13 +148,36 @@ def _require_free(problem: Problem, name: str) -> None:
             f"got constraints.{name} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
-    everywhere = problem.quantity(name).in_line
-    if centred and everywhere is not None:
-        value = "infinite" if everywhere == math.inf else f"{everywhere:g}"
+    if centred and problem.quantity(name).in_line is not None:
+        # Along a speed profile a ratio of times is the same for every design too, though not one.
+        found = {_in_line(part, name) for part in problem.parts()}
+        if len(found) > 1:
+            return
+        value = found.pop()
         raise JobError(
             f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
             "at 0; give variables.offset a range or leave out the objective"
         )
+
+
+def _in_line(part: Problem, name: str) -> str:
+    """Return the value of a quantity that is the same for every design without offset, in words."""
+    one = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
+    value = float(part.quantity(name).evaluate(part.mechanism, one).values[0])
+    return "infinite" if value == math.inf else f"{value:.6g}"
+
+
+def _require_times(part: Problem) -> None:
+    """Raise `InfeasibleError` for a bound on the quotient of stroke times that asks for the other stroke to be slow."""
+    name, outward = OUTWARD_TO_INWARD_TIME.name, part.slow_stroke == "outward"
+    for item in part.constraints:
+        for word, bound in item.sides if item.quantity == name else ():
+            if (bound <= 1.0 and word != "min") if outward else (bound >= 1.0 and word != "max"):
+                raise InfeasibleError(
+                    f"constraints.slow_stroke: a slow {part.slow_stroke} stroke is one whose {name} is "
+                    f"{'above' if outward else 'below'} 1; got constraints.{name} with {word} {bound:.6g}; leave out "
+                    "one of the two"
+                )
 
 
 def require_slow_stroke(problem: Problem) -> None:
@@ -170,6 +196,10 @@ def require_slow_stroke(problem: Problem) -> None:
             f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
             "or leave out slow_stroke"
         )
+    for part in parts:
+        _require_times(part)
+    if any(part.mechanism.speed_profile is not None for part in parts):
+        return  # there neither the sign of the offset nor a closed form says which stroke is slow
     ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]
     narrowed = replace(
         problem,

@@ -52,7 +52,7 @@ def _reasons(problem: Problem, variant: int) -> Iterator[str]:
         return
     for constraint in part.constraints:
         of = part.quantity(constraint.quantity)
-        if of.reach is None or not of.of_dimensions:
+        if part.reach_of(of) is None or not of.of_dimensions:
             continue
         least, greatest = box.possible(of)
         room = SLACK * max(abs(least), abs(greatest))

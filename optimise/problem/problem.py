@@ -20,7 +20,9 @@ from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
+from ...objectives.reach import Reach
 from ...objectives.registry import QUANTITIES, listed
+from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
 from ...objectives.tables.evaluate import evaluate
 from ...objectives.tables.swinging import (
     require_in_motion,
@@ -104,7 +106,8 @@ class Problem:
     variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and
     constraints may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset
-    has one sign only, see `slow_side`, and the time ratio is above 1, see `violation.constraints_of`. discrete:
+    has one sign only, see `slow_side`, unless the speed follows a profile, and the time ratio is above 1, see
+    `violation.constraints_of`. discrete:
     which of a design's numbers have one of some values only; their ranges are the hulls of these. motion: a swing
     of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
     refused.
@@ -140,6 +143,10 @@ class Problem:
         self._take_formulas()
         require_own_columns(self.own, self.mechanism.varying, self.choices)
         _require_stroke(self.slow_stroke)
+        for variant in self.variants or (self,):
+            reason = OUTWARD_TO_INWARD_TIME.undefined_because([variant.mechanism])
+            if reason and (self.slow_stroke or variant.slow_stroke):
+                raise InputError(f"constraints.slow_stroke: {reason}")
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
                 raise InputError(
@@ -153,7 +160,7 @@ class Problem:
         if not self.objectives:
             raise InputError(f"a problem needs at least one objective; choose from {listed(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
-        machines = [variant.mechanism for variant in self.variants] or [self.mechanism]
+        machines = self.machines
         keys = [("objectives", name) for name in names]
         keys += [("constraints", constraint.quantity) for constraint in self.every_constraint]
         for table, name in keys:
@@ -323,9 +330,18 @@ class Problem:
         return lengths | {item.name: Range(lower=item.lower, upper=item.upper) for item in self.mechanism.varying}
 
     @property
+    def machines(self) -> tuple[Mechanism, ...]:
+        """The machine of every variant; that of the problem if there is nothing to choose."""
+        return tuple(variant.mechanism for variant in self.variants) or (self.mechanism,)
+
+    @property
     def every_constraint(self) -> tuple[Constraint, ...]:
         """The constraints and those that come with choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
+
+    def reach_of(self, of: Quantity) -> Reach | None:
+        """Return the reach of a quantity if it holds for every machine of the problem."""
+        return of.reach if all(of.reach_for(machine) is not None for machine in self.machines) else None
 
     def without_gradient(self) -> list[str]:
         """Return the names in objectives and constraints, those of choices too, that have no gradient."""
@@ -336,8 +352,10 @@ class Problem:
         """Sign of the offset (+1 or -1) that gives the slow stroke asked for; None where none is asked.
 
         The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
+        None along a speed profile too: there no sign makes a stroke slow, and a constraint does, see
+        `violation.constraints_of`.
         """
-        if self.slow_stroke is None:
+        if self.slow_stroke is None or self.mechanism.speed_profile is not None:
             return None
         side = self.mechanism.direction * self.mechanism.sign
         return side if self.slow_stroke == "inward" else -side

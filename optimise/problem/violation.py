@@ -11,11 +11,12 @@ from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.quantity import Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
+from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from .problem import Problem
-from .requirements import Constraint, Objective
+from .requirements import Constraint, Objective, merged
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
@@ -27,7 +28,8 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
     They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
-    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio. Of a swing the
+    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio, along a speed
+    profile on that of the stroke asked for. Of a swing the
     only one is on its transmission angle: the margin from its dead points.
     """
     if problem.motion is not None:
@@ -38,8 +40,25 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     if may_deliver_nothing(problem.mechanism):
         found = _with_floor(found, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
-        found = _with_floor(found, TIME_RATIO, above=1.0)
+        found = _with_slow_stroke(problem, found)
     return found
+
+
+def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
+    """Return constraints with a time ratio above 1, along a speed profile that of the stroke which is to be slow."""
+    found = _with_floor(constraints, TIME_RATIO, above=1.0)
+    if problem.mechanism.speed_profile is None:
+        return found
+    least = next(c.lower for c in found if c.quantity == TIME_RATIO.name)
+    assert least is not None
+    outward = problem.slow_stroke == "outward"
+    own = next((c for c in constraints if c.quantity == OUTWARD_TO_INWARD_TIME.name), None)
+    if own is not None and outward and own.upper is not None:
+        least = min(least, 1.0 + 0.5 * (own.upper - 1.0))
+    if own is not None and not outward and own.lower is not None:
+        least = min(least, 1.0 + 0.5 * (1.0 / own.lower - 1.0))
+    ends = {"lower": least} if outward else {"upper": 1.0 / least}
+    return merged((*constraints, Constraint(quantity=OUTWARD_TO_INWARD_TIME.name, **ends)))
 
 
 def _with_floor(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Mask
+from ...model.cycle.strokes import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
@@ -41,10 +42,10 @@ def expected_warnings(problem: Problem) -> list[str]:
         if part.slow_stroke is not None or not part.mechanism.loads or not len(designs):
             continue
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
-        slow = np.atleast_1d(linkage.slow_stroke(direction=part.mechanism.direction))
+        slow = np.atleast_1d(slow_stroke(part.mechanism, linkage))
         loaded = loaded_stroke(part.mechanism, designs)
         found = _fast(slow, loaded)
-        fast, turning = fast + int(found.sum()), turning + int(((slow != "equal") & (loaded != "equal")).sum())
+        fast, turning = fast + int(found.sum()), turning + int((_one_sided(slow) & _one_sided(loaded)).sum())
         sides += [str(stroke) for stroke in loaded[found]]
     if not fast:
         return _left_out(problem)
@@ -88,7 +89,11 @@ def _left_out(problem: Problem) -> list[str]:
 
 
 def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> Mask:
-    return np.asarray((slow != "equal") & (loaded != "equal") & (slow != loaded))
+    return np.asarray(_one_sided(slow) & _one_sided(loaded) & (slow != loaded))
+
+
+def _one_sided(strokes: NDArray[np.str_]) -> Mask:
+    return np.isin(strokes, ("outward", "inward"))
 
 
 def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:

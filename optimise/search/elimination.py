@@ -22,7 +22,7 @@ from ...model.kinematics import geometry
 from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.linear import Linear
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
-from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
@@ -123,7 +123,7 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
     other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
-    leaves one sign. Raises `InfeasibleError` where the ranges have no offset of that sign.
+    leaves one sign at constant speed. Raises `InfeasibleError` where the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -173,7 +173,7 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
     others = {name: value for name, value in wanted.items() if name not in equations and eliminate}
-    rules = [*_rules(others), *swing_rules(problem, others, sign)]
+    rules = [*_rules(others, steady=problem.mechanism.speed_profile is None), *swing_rules(problem, others, sign)]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
@@ -242,21 +242,20 @@ def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
     return single
 
 
-def _rules(wanted: dict[str, float]) -> list[Rule]:
-    """Return every rule that the wanted values give."""
+def _rules(wanted: dict[str, float], *, steady: bool) -> list[Rule]:
+    """Return every rule that the wanted values give. steady: whether the time ratio is that of the crank angles."""
     rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():
         names = origin.split("+")
-        if all(name in wanted for name in names):
+        if all(name in wanted for name in names) and (steady or TIME_RATIO.name not in names):
             rules.append(ClosedRule(origin, target, sources, tuple(wanted[name] for name in names)))
-    # At a time ratio of one the dead centres lie opposite, whatever the rod.
-    if TIME_RATIO.name in wanted and _excess(wanted[TIME_RATIO.name])[1] == 1.0:
-        rules = [rule for rule in rules if (rule.origin, rule.target) != (_PAIR, "rod")]
-    return rules
+    # At a ratio of one the dead centres lie opposite, whatever the rod.
+    level = {pair for name, pair in _PAIRS.items() if name in wanted and _excess(wanted[name])[1] == 1.0}
+    return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
 
 def _excess(ratio: float) -> tuple[float, float]:
-    """Return sine and cosine of the excess angle b that gives a time ratio."""
+    """Return sine and cosine of the excess angle b that gives a ratio of crank angles."""
     b = math.pi * (ratio - 1.0) / (ratio + 1.0)
     return math.sin(b), math.cos(b)
 
@@ -276,7 +275,11 @@ def _rod_of_pair(stroke: float, ratio: float, r: Any) -> Any:
     return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
 
 
-_PAIR = f"{STROKE.name}+{TIME_RATIO.name}"
+def _offset_of_ratio(ratio: float, r: Any, l: Any) -> Any:
+    return geometry.offset_from_excess_angle(r, l, *_excess(ratio))
+
+
+_PAIRS = {of.name: f"{STROKE.name}+{of.name}" for of in (TIME_RATIO, CRANK_ANGLE_RATIO)}
 _FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
     (ROD_TO_OFFSET.name, "rod"): (("offset",), lambda k, a: k * a),
     (ROD_TO_OFFSET.name, "offset"): (("rod",), lambda k, l: l / k),
@@ -285,14 +288,14 @@ _FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
     (TRANSMISSION_ANGLE.name, "rod"): (("crank", "offset"), lambda mu, r, a: (r + a) / math.cos(mu)),
     (TRANSMISSION_ANGLE.name, "crank"): (("rod", "offset"), lambda mu, l, a: math.cos(mu) * l - a),
     (TRANSMISSION_ANGLE.name, "offset"): (("crank", "rod"), lambda mu, r, l: math.cos(mu) * l - r),
-    (_PAIR, "crank"): (("rod",), _crank_of_pair),
-    (_PAIR, "rod"): (("crank",), _rod_of_pair),
-    (TIME_RATIO.name, "offset"): (
-        ("crank", "rod"),
-        lambda ratio, r, l: geometry.offset_from_excess_angle(r, l, *_excess(ratio)),
-    ),
+    (_PAIRS[TIME_RATIO.name], "crank"): (("rod",), _crank_of_pair),
+    (_PAIRS[TIME_RATIO.name], "rod"): (("crank",), _rod_of_pair),
+    (TIME_RATIO.name, "offset"): (("crank", "rod"), _offset_of_ratio),
     (STROKE.name, "crank"): (("rod", "offset"), geometry.crank_from_stroke),
     (STROKE.name, "rod"): (("crank", "offset"), geometry.rod_from_stroke),
     (STROKE.name, "offset"): (("crank", "rod"), geometry.offset_from_stroke),
+    (_PAIRS[CRANK_ANGLE_RATIO.name], "crank"): (("rod",), _crank_of_pair),
+    (_PAIRS[CRANK_ANGLE_RATIO.name], "rod"): (("crank",), _rod_of_pair),
+    (CRANK_ANGLE_RATIO.name, "offset"): (("crank", "rod"), _offset_of_ratio),
 }
 """Of requirements and target: the sources, and the target by what is wanted and these."""

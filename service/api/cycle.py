@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
+from ...model.cycle.strokes import slow_stroke
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
@@ -84,7 +85,7 @@ def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
     """Return the curves of a design as JSON has them."""
     found = design_curves(of, angles)
     inner, outer = found.centres or (None, None)
-    slow = None if inner is None else str(of.linkage.slow_stroke(direction=of.mechanism.speed or 1.0))
+    slow = None if inner is None else str(slow_stroke(of.mechanism, of.linkage))
     return CycleModel(
         turns=found.turns,
         seconds=found.seconds,

@@ -9,8 +9,10 @@ import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field, ValidationError
 
+from ...model.cycle.strokes import slow_stroke, time_ratio
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import Kind
+from ...objectives.needs import ONE_TIMING
 from .job_files import Understood, understood
 from .job_requests import Submission, given_problem
 from .problems import rule_and_value
@@ -96,7 +98,7 @@ class ExampleModel(BaseModel):
     slow_stroke: str = Field(examples=["outward"])
     stroke_mm: float
     slider_ends_mm: tuple[float, float] = Field(examples=[(59.2, 139.6)])
-    time_ratio: float
+    time_ratio: float | None = Field(description="null where cylinders differ in it", examples=[1.2])
     least_transmission_angle_deg: float
     motion: MotionModel
 
@@ -246,10 +248,10 @@ def _example(look: Look) -> ExampleModel | None:
         offset_mm=1e3 * float(linkage.offset),
         feasible=look.possible.example_feasible,
         clockwise=machine.speed < 0.0,
-        slow_stroke=str(linkage.slow_stroke(direction=machine.speed or 1.0)),
+        slow_stroke=str(slow_stroke(machine, linkage)),
         stroke_mm=1e3 * float(linkage.stroke),
         slider_ends_mm=(1e3 * float(linkage.dead_centres[0]), 1e3 * float(linkage.dead_centres[1])),
-        time_ratio=float(linkage.time_ratio),
+        time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.met(machine) else None,
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
         motion=_motion(linkage),
     )

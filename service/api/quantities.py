@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...objectives.formula.expression import ARGUMENTS
-from ...objectives.kinds import KINDS, LENGTH, SHOWN, TIME, shown_in
+from ...objectives.kinds import KINDS, LENGTH, SHOWN, shown_in
 from ...objectives.quantity import MECHANICS, Group, Quantity
 
 router = APIRouter(tags=["designs"])
@@ -104,13 +104,13 @@ def list_units() -> UnitTable:
             si=kind.usual or kind.metric.symbol,
             inch=(kind.inch or kind.metric).symbol,
         )
-        for kind in (*KINDS, TIME)
+        for kind in KINDS
         if kind.typed
     ]
     return UnitTable(
         kinds=kinds,
         inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told},
-        suffixes={kind.metric.symbol: kind.metric.suffix for kind in (*SHOWN, TIME)},
+        suffixes={kind.metric.symbol: kind.metric.suffix for kind in SHOWN},
         titles={of.field: of.title for of in FACTS.values() if of.title != split_unit(of.field)[0].replace("_", " ")},
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from ...model.cycle.strokes import slow_stroke
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
@@ -78,8 +79,9 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     ends = " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres)))
     computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
     dead = float(np.degrees(inner)), float(np.degrees(outer))
-    slow = str(linkage.slow_stroke(direction=mechanism.speed or 1.0))
-    across = CRANK_ANGLE + (f" (shaded: {slow} stroke, the slow one)" if slow != "equal" else "")
+    slow = str(slow_stroke(mechanism, linkage))
+    has_slow = slow in ("outward", "inward")
+    across = CRANK_ANGLE + (f" (shaded: {slow} stroke, the slow one)" if has_slow else "")
     panels = []
     for name, extreme in extremes.items():
         found = computed[name]
@@ -91,7 +93,9 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
             at = int(np.searchsorted(angles, angle))
             lines.append(Line("", degrees[at : at + 1], values[at : at + 1], points=True))
             note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
-        shaded = () if slow == "equal" else _slow_spans(*sorted(dead))
+        # Counter-clockwise the outward stroke is that from the inner dead centre to the outer one.
+        ahead = (slow == "outward") == (mechanism.direction > 0.0)
+        shaded = _span(*(dead if ahead else dead[::-1])) if has_slow else ()
         panels.append(replace(over_turn(title, *lines, note=note), across=across, shaded=shaded))
     return Curves(degrees, tuple(panels), *dead)
 
@@ -125,6 +129,6 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
         )
 
 
-def _slow_spans(low: float, high: float) -> tuple[tuple[float, float], ...]:
-    """Return the crank angles of the slow stroke: the greater part between the dead centres."""
-    return ((low, high),) if high - low > 180.0 else ((0.0, low), (high, 360.0))
+def _span(start: float, end: float) -> tuple[tuple[float, float], ...]:
+    """Return the crank angles of a turn, deg, that a crank passes counter-clockwise between two of them."""
+    return ((start, end),) if start < end else ((0.0, end), (start, 360.0))

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
 
+from ...model.cycle.strokes import with_times_alone
 from ...model.errors import InputError
-from ...model.machine.mechanism import Mechanism
-from ...objectives.closed_form import ClosedFormQuantity
+from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.registry import QUANTITIES
 from ...optimise.job.crank_speed import STATED, CrankSpeedPart
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
@@ -48,7 +49,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     found = _constraints(tables.get("constraints"), with_machine=with_machine)
     constraints = tuple(c for c in found if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
-        problem = replace(problem, mechanism=Mechanism(speed=machine.speed, branch=machine.branch))
+        problem = replace(problem, mechanism=with_times_alone(machine))
     return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
 
 
@@ -74,18 +75,19 @@ def _with_slow_stroke(problem: Problem, part: object) -> Problem:
 
 def is_closed(name: str) -> bool:
     """Whether a quantity follows from the three dimensions alone."""
-    return isinstance(QUANTITIES.get(name), ClosedFormQuantity)
+    return name in QUANTITIES and QUANTITIES[name].of_dimensions
 
 
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
     given = part if isinstance(part, Mapping) else {}
-    stated = {key: given[key] for key in (*STATED, "direction") if key in given}
-    try:
-        speed = CrankSpeedPart.model_validate(stated).crank_speed(turns=1) or 1.0
-    except ValidationError:
-        speed = 1.0
-    return Mechanism(speed=speed, branch="crossed" if given.get("branch") == "crossed" else "open")
+    branch: Branch = "crossed" if given.get("branch") == "crossed" else "open"
+    for keys in ((*STATED, "direction", "speed_profile"), (*STATED, "direction")):
+        with suppress(InputError, ValidationError):
+            part = CrankSpeedPart.model_validate({key: given[key] for key in keys if key in given})
+            profile = None if part.speed_profile is None else part.speed_profile.build()
+            return Mechanism(speed=part.crank_speed(turns=1) or 1.0, branch=branch, speed_profile=profile)
+    return Mechanism(speed=1.0, branch=branch)
 
 
 def ranges_of(part: object) -> dict[str, Range] | None:

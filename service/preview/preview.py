@@ -12,7 +12,7 @@ from ...objectives.counted import counted
 from ...optimise.feasibility.relaxation import missed
 from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
-from ...optimise.job.box import beyond_both
+from ...optimise.job.box import RATIOS, beyond_both
 from ...optimise.job.file import require_few
 from ...optimise.job.stated_formulas import OwnName, StatedFormula, own_names, stated_formulas
 from ...optimise.problem.problem import Problem
@@ -87,20 +87,21 @@ def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     except InputError:
         stated = None
     whole, wrong, rest = None, list[Wrong](), tables
-    beyond = None if stated is None else beyond_both(stated)
-    if beyond is not None:  # it is said once; the rest of the job is checked without it
-        wrong.append(Wrong("constraints.time_ratio", beyond, infeasible=True))
+    both = [] if stated is None else [(of.name, beyond_both(stated, of)) for of in RATIOS]
+    beyond = {name: said for name, said in both if said is not None}
+    if beyond:  # it is said once; the rest of the job is checked without it
+        wrong += [Wrong(f"constraints.{name}", said, infeasible=True) for name, said in beyond.items()]
         rest = {
             **tables,
-            "constraints": {name: at for name, at in tables["constraints"].items() if name != "time_ratio"},
+            "constraints": {name: at for name, at in tables["constraints"].items() if name not in beyond},
         }
     try:
         whole = read(rest)
-        if beyond is None and stated is not None:
+        if not beyond and stated is not None:
             stated = geometry(tables, whole)
     except InputError as error:
         wrong += _places(error)
-    if beyond is not None:
+    if beyond:
         whole = None
     if stated is None:
         return Look(wrong, whole, None, None, [], [])

@@ -30,6 +30,7 @@ from slidercrank.objectives.needs import (
     CRANK_BAR,
     CYLINDER,
     LOSSES,
+    REPEATS,
     ROD_BAR,
     RUBS,
     WEARS,
@@ -154,9 +155,10 @@ RUBBING_PIVOT = Friction(crank_pivot=Pin(radius=0.01, coefficient=0.1))
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """Return a machine that has what a quantity is of.
 
-    Two cylinders for a rocking couple, a compressor more for the gas of one, bars for their strength; for losses a
-    crank pivot that rubs, which locks no design, and a load that resists more than any other one drives. Quantities of
-    the same needs get the same one: what they have in common is computed once.
+    Two cylinders for a rocking couple, no crank acceleration for times of strokes, a compressor more for the gas of
+    one, bars for their strength; for losses a crank pivot that rubs, which locks no design, and a load that resists
+    more than any other one drives. Quantities of the same needs get the same one: what they have in common is computed
+    once.
     """
     return _kept(_fitted(set(quantity.needs), machine))
 
@@ -167,6 +169,8 @@ def _kept(machine: Mechanism) -> Mechanism:
 
 
 def _fitted(needs: set[Need], machine: Mechanism) -> Mechanism:
+    if REPEATS in needs:
+        return replace(machine, acceleration=0.0)
     if COUPLES in needs:
         return replace(machine, arrangement=Arrangement(phases=(0.0, 2.0), places=(-0.05, 0.06)))
     if {LOSSES, RUBS} & needs:

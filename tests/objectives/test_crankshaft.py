@@ -136,6 +136,7 @@ MANY = (
     *("peak_torque", "rms_torque", "mean_torque", "torque_fluctuation", "peak_power", "mean_power", "efficiency"),
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "peak_rocking_couple", "indicated_work"),
     *("peak_reflected_inertia", "peak_crank_pin_force", "peak_guide_force", "peak_slider_jerk", "friction_loss"),
+    *("time_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time", "crank_angle_ratio"),
 )
 FEW = {"rubbing": ("peak_torque", "rms_torque", "peak_guide_force"), "four-stroke": MANY[:6]}
 
@@ -175,6 +176,9 @@ def test_derivatives_by_numbers_that_vary_count_the_bank_of_gravity() -> None:
     varying = tuple(item for item in BARS.varying if item.name != "acceleration")
     machine = replace(BARS, acceleration=0.0, arrangement=BANKS, speed_profile=UNEVEN, varying=varying)
     designs = varied_designs(machine, 1, seed=4)
+    one = replace(machine, arrangement=Arrangement(phases=(0.7,)))
+    for name in ("time_ratio", "outward_stroke_time", "inward_stroke_time"):
+        checked(QUANTITIES[name], one, designs, unit_steps(one, designs))
     for name in ("peak_torque", "rms_torque", "peak_crank_pin_force", "mean_power"):
         checked(QUANTITIES[name], machine, designs, unit_steps(machine, designs))
 

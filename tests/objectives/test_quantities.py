@@ -28,6 +28,7 @@ UNITS = {
     "m2": ("m^2", 1.0),
     "deg": ("deg", 180.0 / math.pi),
     "Nm": ("N m", 1.0),
+    "s": ("s", 1.0),
     "N": ("N", 1.0),
     "W": ("W", 1.0),
     "kg_m2": ("kg m^2", 1.0),
@@ -200,7 +201,7 @@ def test_mirrored_machine_is_judged_alike(name: str) -> None:
     mirrored = dataclasses.replace(
         machine,
         speed=-SMOOTH.speed,
-        acceleration=-SMOOTH.acceleration,
+        acceleration=-machine.acceleration,
         gravity=(SMOOTH.gravity[0], -SMOOTH.gravity[1]),
         rod=dataclasses.replace(rod, centre_across=0.02) if isinstance(rod, RigidLink) else rod,
         counterweight=dataclasses.replace(SMOOTH.counterweight, angle=-SMOOTH.counterweight.angle),

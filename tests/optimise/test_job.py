@@ -283,7 +283,13 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
-    within = {"time_ratio": 1.1, "transmission_angle": 1.0, "self_locking_margin": 1.0, "force_transmission": 0.5}
+    within = {
+        "time_ratio": 1.1,
+        "crank_angle_ratio": 1.1,
+        "transmission_angle": 1.0,
+        "self_locking_margin": 1.0,
+        "force_transmission": 0.5,
+    }
     within |= {"volumetric_efficiency": 0.5, "efficiency": 0.5}
     value = (within | {"stroke": 0.05}).get(name, 4.0)
     job = small(

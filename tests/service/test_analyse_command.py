@@ -30,6 +30,7 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
     assert row["time_ratio"] == pytest.approx(linkage.time_ratio, rel=1e-14)
     for key, value in row.items():
         unknown = (
+            "stroke_time",
             "torque",
             "force",
             "error",

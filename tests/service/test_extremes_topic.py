@@ -14,9 +14,12 @@ import pytest
 from rich.console import Console
 
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
+from slidercrank.service.figures.curves import cycle_curves as curves_of_figure
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.topics.discovery import TOPICS
@@ -112,7 +115,7 @@ def test_strokes_without_offset_are_equal(speed: float) -> None:
 def test_without_a_speed_strokes_have_no_durations() -> None:
     strokes = extremes.numbers(Mechanism(), LINKAGE)["strokes"]
     assert list(strokes["outward"]) == ["crank_angle_deg"]
-    assert list(strokes) == ["outward", "inward", "duration_ratio"]
+    assert list(strokes) == ["outward", "inward", "angle_ratio", "duration_ratio"]
 
 
 def test_the_command_line_tells_and_sends_extremes(tmp_path: Path, command: Command) -> None:
@@ -162,3 +165,39 @@ def test_panels_mark_the_extremes_on_their_curves(name: str, count: int, tmp_pat
     assert overlaps(draw_sheet(sheet)) == []
     file = TOPICS["extremes"].of(MACHINES[name], LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_durations_of_strokes_are_those_along_the_speed_profile() -> None:
+    """By counting the time of small steps; the crank angles of the strokes stay those of the linkage."""
+    for speed, branch in ((5.0, "open"), (-5.0, "open"), (5.0, "crossed")):
+        plain = Mechanism(speed=speed, branch=branch)  # type: ignore[arg-type]
+        machine = replace(plain, speed_profile=Harmonics(sines=(0.5,)))
+        linkage = Linkage(0.14, 0.31, 0.06, plain.branch)
+        ends = math.copysign(2.0 * math.pi, speed) * np.linspace(0.0, 1.0, 400_001)
+        middle = 0.5 * (ends[1:] + ends[:-1])
+        time = np.abs(np.diff(ends)) / (5.0 * (1.0 + 0.5 * np.sin(middle)))
+        out = np.diff(np.abs(linkage.at(ends).slider_position)) > 0.0
+        strokes, even = (extremes.numbers(each, linkage)["strokes"] for each in (machine, plain))
+        for name, own in (("outward", out), ("inward", ~out)):
+            assert strokes[name]["duration_s"] == pytest.approx(time[own].sum(), rel=1e-4)
+            assert strokes[name]["crank_angle_deg"] == even[name]["crank_angle_deg"]
+        assert strokes["angle_ratio"] == even["angle_ratio"]
+        assert strokes["duration_ratio"] == pytest.approx(time[out].sum() / time[~out].sum(), rel=1e-4)
+        assert even["duration_ratio"] == pytest.approx(even["angle_ratio"], rel=1e-13)
+        # The figure of the design shades the stroke that takes longer, here the one of the smaller crank angle or not.
+        drawn = curves_of_figure(machine, linkage)
+        (span, *rest) = drawn.panels[0].shaded
+        low, high = np.radians(span)
+        inside = (np.mod(middle, 2.0 * math.pi) > low) & (np.mod(middle, 2.0 * math.pi) < high)
+        slow = out if time[out].sum() > time[~out].sum() else ~out
+        assert np.mean(slow[inside]) > 0.999
+        assert len(rest) <= 1
+
+
+def test_several_cylinders_along_a_profile_have_no_one_duration() -> None:
+    both = Mechanism(speed=5.0, speed_profile=Harmonics(sines=(0.5,)), arrangement=Arrangement(phases=(0.0, 2.0)))
+    numbers = extremes.numbers(both, LINKAGE)
+    assert numbers["strokes"]["duration_ratio"] is None
+    assert numbers["strokes"]["outward"]["duration_s"] is None
+    assert "ratio of durations" not in written(numbers)
+    assert json.loads(json_text(numbers)) == numbers

@@ -9,9 +9,11 @@ import numpy as np
 from rich.console import Console
 
 from ....model.cycle.self_locking import locks_because
+from ....model.cycle.strokes import strokes as strokes_of
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
+from ....objectives.needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ...figures.numerals import shown, with_unit
 from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn, turn
@@ -55,26 +57,35 @@ def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
 
 
 def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
-    """Return crank angle, duration and greatest slider speed of both strokes, and how these differ."""
+    """Return crank angle, duration and greatest slider speed of both strokes, and how these differ.
+
+    Durations are None along a speed profile of several cylinders, which have not the same ones.
+    """
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     outward = (mechanism.direction * (outer - inner)) % (2.0 * math.pi)
     angles = {"outward": outward, "inward": 2.0 * math.pi - outward}
     strokes: dict[str, dict[str, Any]] = {name: {"crank_angle_deg": math.degrees(angles[name])} for name in _STROKES}
-    found: dict[str, Any] = {**strokes, "duration_ratio": angles["outward"] / angles["inward"]}
+    times = strokes_of(mechanism, linkage.crank, linkage.rod, linkage.offset) if ONE_TIMING.met(mechanism) else None
+    found: dict[str, Any] = {
+        **strokes,
+        "angle_ratio": angles["outward"] / angles["inward"],
+        "duration_ratio": None if times is None else float(times.ratio),
+    }
     if velocity is None:
         return found
     # Outward is along +x on the open branch, along -x on the crossed one.
     ends = (velocity.greatest, velocity.least) if mechanism.branch == "open" else (velocity.least, velocity.greatest)
-    for name, extreme in zip(_STROKES, ends, strict=True):
+    durations = [None if times is None else float(getattr(times, name)) / abs(mechanism.speed) for name in _STROKES]
+    for name, extreme, duration in zip(_STROKES, ends, durations, strict=True):
         strokes[name] |= {
-            "duration_s": angles[name] / abs(mechanism.speed),
+            "duration_s": duration,
             "greatest_speed_m_s": abs(extreme.value),
             **_place("greatest_speed", extreme),
         }
     fast, back = (strokes[name]["greatest_speed_m_s"] for name in _STROKES)
-    durations = [strokes[name]["duration_s"] for name in _STROKES]
+    outward_s, inward_s = durations
     return found | {
-        "duration_difference_s": durations[0] - durations[1],
+        "duration_difference_s": None if outward_s is None or inward_s is None else outward_s - inward_s,
         "greatest_speed_ratio": fast / back,
         "greatest_speed_difference_m_s": fast - back,
     }
@@ -91,15 +102,17 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         lines.append((f"{name} stroke", stroke["crank_angle_deg"], "deg", ""))
         if "duration_s" in stroke:
             at = f"at {stroke['greatest_speed_at_crank_angle_deg']:.2f} deg"
-            lines.append(("  duration", stroke["duration_s"], "s", ""))
+            if stroke["duration_s"] is not None:
+                lines.append(("  duration", stroke["duration_s"], "s", ""))
             lines.append(("  greatest slider speed", stroke["greatest_speed_m_s"], "m/s", at))
     for title, key, unit in (
+        ("ratio of crank angles", "angle_ratio", ""),
         ("ratio of durations", "duration_ratio", ""),
         ("difference of durations", "duration_difference_s", "s"),
         ("ratio of greatest speeds", "greatest_speed_ratio", ""),
         ("difference of greatest speeds", "greatest_speed_difference_m_s", "m/s"),
     ):
-        if key in strokes:
+        if strokes.get(key) is not None:
             lines.append((title, strokes[key], unit, "outward against inward"))
     text.show_lines(console, "Strokes", lines)
 

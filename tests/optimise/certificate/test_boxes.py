@@ -212,12 +212,13 @@ def test_sums_of_cylinders_and_an_uneven_speed_are_refused_and_rule_nothing_out(
             uneven,
             "force with a speed profile has no bound over a range",
         ),
+        ({"time_ratio": "maximise"}, uneven, "time ratio along a speed profile has no bound over a range"),
     ):
         given = problem(wishes, {"stroke": 0.2}, mechanism=machine)  # type: ignore[arg-type]
         with pytest.raises(InputError, match=reason):
             Boxes(Evaluator(given, sheets(given)[0]), np.ones(1))
-    for machine in (two, uneven):
-        closed: Any = {"time_ratio": "maximise", "position_error": "minimise"}
+    for machine, ratio in ((two, "time_ratio"), (uneven, "crank_angle_ratio")):
+        closed: Any = {ratio: "maximise", "position_error": "minimise"}
         held: dict[str, Bounds] = {"stroke": 0.2, "peak_torque": (None, 1e-3)}
         given = problem(closed, held, mechanism=machine)
         assert (

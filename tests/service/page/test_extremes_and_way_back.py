@@ -75,6 +75,7 @@ def test_extremes_are_those_of_the_command_line_in_either_system(page: Page, sol
         ],
         rel=1e-6,
     )
+    assert strokes["crank angle"][-1] == pytest.approx(expected["angle_ratio"], rel=1e-6)
     assert strokes["greatest slider speed"][2:] == pytest.approx(
         [expected["greatest_speed_difference_m_s"], expected["greatest_speed_ratio"]], rel=1e-6
     )

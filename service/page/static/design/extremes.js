@@ -10,7 +10,7 @@ export const HEADS = ["Curve", ...ENDS.flatMap((end) => [end, "at crank angle", 
 const STROKES = /** @type {const} */ (["outward", "inward"]);
 /** @type {[string, string, string, string][]} */
 const ROWS = [ // of the strokes: title, key of a stroke, of the difference, of the ratio
-  ["crank angle", "crank_angle", "", "duration_ratio"],
+  ["crank angle", "crank_angle", "", "angle_ratio"],
   ["duration", "duration", "duration_difference", "duration_ratio"],
   ["greatest slider speed", "greatest_speed", "greatest_speed_difference", "greatest_speed_ratio"],
   ["– at crank angle", "greatest_speed_at_crank_angle", "", ""],

@@ -1,0 +1,225 @@
+"""Times of the strokes along speed profiles, against an integration of the crank's motion over time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+
+from slidercrank.model.cycle.strokes import slow_stroke, strokes
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
+from slidercrank.model.machine.varying import Varying
+from slidercrank.objectives.own.designs import Designs
+from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.analysis import analyse
+from tests.model.cases import Array, random_designs
+
+TURN = 2.0 * math.pi
+FEEDER = np.array([[0.0376, 0.0998, 0.03119]])
+"""Crank, rod, offset, m."""
+FEEDER_SPEED = -2400.0 * math.pi / 30.0
+TIMES = ("outward_stroke_time", "inward_stroke_time")
+
+
+def random_case(seed: int) -> tuple[Mechanism, Array]:
+    """Return a machine with a random profile, of either sense of rotation and branch, and a design (1, 3)."""
+    random = np.random.default_rng(seed)
+    if seed % 2:
+        cosines, sines = random.uniform(-0.3, 0.3, (2, 1 + seed % 5)) / np.arange(1.0, 2.0 + seed % 5)
+        profile: Harmonics | SpeedTable = Harmonics(cosines=tuple(cosines), sines=tuple(sines))
+    else:
+        angles = np.cumsum(random.uniform(0.3, 1.0, 5 + seed % 3)) - 2.0
+        profile = SpeedTable(angles=tuple(angles), speeds=tuple(random.uniform(0.7, 1.3, len(angles))))
+    speed = float(random.choice([-1.0, 1.0]) * random.uniform(0.5, 200.0))
+    branch: Branch = "open" if random.random() < 0.5 else "crossed"
+    return Mechanism(speed=speed, branch=branch, speed_profile=profile), random_designs(1, seed=seed, least_margin=0.05)
+
+
+def ratio_of(profile: Harmonics | SpeedTable) -> Any:
+    """Return the speed over its mean as a function of the crank angle, by the tests' own formulas."""
+    if isinstance(profile, Harmonics):
+        pairs = list(zip(profile.cosines, profile.sines, strict=True))
+        return lambda at: (
+            1.0 + sum(a * math.cos(k * at) + b * math.sin(k * at) for k, (a, b) in enumerate(pairs, start=1))
+        )
+    angles, speeds = [*profile.angles, profile.angles[0] + TURN], [*profile.speeds, profile.speeds[0]]
+    spline = CubicSpline(angles, speeds, bc_type="periodic")
+    mean = float(spline.integrate(angles[0], angles[-1])) / TURN
+    return lambda at: float(spline(at)) / mean
+
+
+def times_by_integration(machine: Mechanism, design: Array, lead: float = 0.0) -> dict[str, float]:
+    """Return the time from each end of the slider's way to the other, s: the crank is followed over time.
+
+    theta' = speed p(theta). The slider turns round where its velocity changes sign; the farther end is the outer one.
+    lead: of the crank of a cylinder over the shaft's angle, rad.
+    """
+    assert machine.speed_profile is not None
+    (r, l, e), p = design[0], ratio_of(machine.speed_profile)
+    sign = 1.0 if machine.branch == "open" else -1.0
+
+    def position(shaft: float) -> float:
+        theta = shaft + lead
+        return float(abs(r * math.cos(theta) + sign * math.sqrt(l * l - (e - r * math.sin(theta)) ** 2)))
+
+    def velocity(_: float, at: Any) -> float:
+        theta = at[0] + lead
+        across = e - r * math.sin(theta)
+        return float(-r * math.sin(theta) + sign * across * r * math.cos(theta) / math.sqrt(l * l - across * across))
+
+    period = TURN / abs(machine.speed)
+    found = solve_ivp(
+        lambda _, at: [machine.speed * p(at[0])],
+        (0.0, 4.0 * period),  # a turn may take longer than at the mean speed
+        [0.3],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-13,
+        max_step=period / 60.0,
+        events=velocity,
+    )
+    assert found.t_events is not None
+    assert found.y_events is not None
+    (times,), (states,) = found.t_events, found.y_events
+    assert len(times) >= 3
+    ends = [position(float(state[0])) for state in states[:3]]
+    first, second = times[1] - times[0], times[2] - times[1]
+    outward, inward = (first, second) if ends[1] > ends[0] else (second, first)
+    return {"outward_stroke_time": outward, "inward_stroke_time": inward}
+
+
+def value(name: str, machine: Mechanism, design: Array) -> float:
+    return float(QUANTITIES[name].evaluate(machine, design).values[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(100))
+def test_times_of_strokes_along_a_profile_are_those_of_the_crank_followed_over_time(seed: int) -> None:
+    machine, design = random_case(seed)
+    wanted = times_by_integration(machine, design)
+    for name in TIMES:
+        assert value(name, machine, design) == pytest.approx(wanted[name], rel=1e-9)
+    slower, faster = max(wanted.values()), min(wanted.values())
+    assert value("time_ratio", machine, design) == pytest.approx(slower / faster, rel=1e-9)
+    row = analyse(machine, design).iloc[0]
+    assert row["time_ratio"] == pytest.approx(slower / faster, rel=1e-9)
+    assert row["slow_stroke"] == ("outward" if wanted["outward_stroke_time"] == slower else "inward")
+    own = Designs(machine, design).time_ratio
+    assert own[0, 0] == pytest.approx(slower / faster, rel=1e-9)
+
+
+@pytest.mark.parametrize(("cosine", "ratio", "slow"), [(0.5, 1.615, "outward"), (-0.5, 1.0 / 0.947, "inward")])
+def test_the_feeder_turns_its_time_ratio_and_slow_stroke_round_with_the_profile(
+    cosine: float, ratio: float, slow: str
+) -> None:
+    machine = Mechanism(speed=FEEDER_SPEED, speed_profile=Harmonics(cosines=(cosine,), sines=(0.0,)))
+    wanted = times_by_integration(machine, FEEDER)
+    outward, inward = (wanted[name] for name in TIMES)
+    assert max(outward / inward, inward / outward) == pytest.approx(ratio, abs=1e-3)
+    row = analyse(machine, FEEDER).iloc[0]
+    assert row["time_ratio"] == pytest.approx(max(outward / inward, inward / outward), rel=1e-9)
+    assert row["outward_to_inward_time"] == pytest.approx(outward / inward, rel=1e-9)
+    assert row["slow_stroke"] == slow
+    assert row["crank_angle_ratio"] == pytest.approx(1.20825266, abs=1e-8)
+
+
+def test_without_a_profile_times_are_crank_angles_over_the_speed_and_the_time_ratio_is_the_closed_form() -> None:
+    designs = random_designs(50, seed=4)
+    for branch in ("open", "crossed"):
+        for speed in (7.0, -7.0):
+            machine = Mechanism(speed=speed, branch=branch)
+            r, l, e = designs.T
+            excess = np.arcsin(e / (l - r)) - np.arcsin(e / (l + r))
+            side = math.copysign(1.0, speed) * (1.0 if branch == "open" else -1.0)
+            for name, own in zip(TIMES, (math.pi - side * excess, math.pi + side * excess), strict=True):
+                np.testing.assert_allclose(QUANTITIES[name].evaluate(machine, designs).values, own / 7.0, rtol=1e-12)
+            geometric = QUANTITIES["crank_angle_ratio"].evaluate(machine, designs).values
+            np.testing.assert_array_equal(QUANTITIES["time_ratio"].evaluate(machine, designs).values, geometric)
+            linkage = Linkage(r, l, e, machine.branch)
+            np.testing.assert_array_equal(slow_stroke(machine, linkage), linkage.slow_stroke(direction=speed))
+
+
+def test_both_strokes_take_the_time_of_a_turn_over_any_profile() -> None:
+    for seed in range(20):
+        machine, design = random_case(seed)
+        assert machine.speed_profile is not None
+        period = TURN / abs(machine.speed) / machine.speed_profile.over_time
+        assert sum(value(name, machine, design) for name in TIMES) == pytest.approx(period, rel=1e-13)
+
+
+def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
+    """The integral of 1 / (1 + a cos) is 2 atan(sqrt((1 - a) / (1 + a)) tan(theta / 2)) / sqrt(1 - a^2)."""
+    for a in (0.3, -0.9, 0.999, 1.0 - 1e-6):
+        elapsed = Harmonics(cosines=(a,)).elapsed
+        theta = np.linspace(-3.1, 3.1, 200)
+        wanted = 2.0 * np.arctan(math.sqrt((1.0 - a) / (1.0 + a)) * np.tan(0.5 * theta)) / math.sqrt(1.0 - a * a)
+        found = elapsed.at(theta) - elapsed.at(np.zeros(1))
+        # 1 - a is known to rounding alone: the time near it to 1e-16 / (1 - a) of itself.
+        np.testing.assert_allclose(found, wanted, rtol=1e-13 + 4e-16 / (1.0 - abs(a)), atol=1e-13)
+        assert elapsed.turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
+
+
+def test_a_profile_that_moves_with_the_mirror_image_swaps_the_strokes() -> None:
+    """Mirrored about the slider line a machine has offset -e and turns the other way, along p(-theta)."""
+    for seed in range(1, 20, 2):
+        machine, design = random_case(seed)
+        profile = machine.speed_profile
+        assert isinstance(profile, Harmonics)
+        turned = Harmonics(cosines=profile.cosines, sines=tuple(-b for b in profile.sines))
+        mirrored = replace(machine, speed=-machine.speed, speed_profile=turned)
+        for name in TIMES:
+            there = value(name, mirrored, design * [1.0, 1.0, -1.0])
+            assert there == pytest.approx(value(name, machine, design), rel=1e-12)
+
+
+def test_a_speed_that_varies_changes_the_times_and_not_their_ratio() -> None:
+    machine, design = random_case(3)
+    varying = replace(machine, varying=(Varying(name="speed", sets=(("speed", 1.0),), lower=-9.0, upper=-3.0),))
+    slow, fast = np.array([[*design[0], -3.0]]), np.array([[*design[0], -9.0]])
+    for name in TIMES:
+        assert value(name, varying, slow) == pytest.approx(3.0 * value(name, varying, fast), rel=1e-13)
+    assert value("time_ratio", varying, slow) == value("time_ratio", varying, fast)
+
+
+def test_cylinders_along_a_profile_have_times_of_their_own() -> None:
+    """The profile is that of the shaft, which the crank of a cylinder leads by its phase."""
+    machine, _ = random_case(1)
+    arrangement = Arrangement(phases=(0.4, 2.6), banks=(0.0, 0.3))
+    both = replace(machine, arrangement=arrangement)
+    for cylinder, lead in enumerate((0.4, 2.3)):
+        wanted = times_by_integration(machine, FEEDER, lead)
+        found = strokes(both, *FEEDER.T, cylinder=cylinder)
+        assert found.outward[0] / abs(machine.speed) == pytest.approx(wanted["outward_stroke_time"], rel=1e-9)
+    for name in ("time_ratio", *TIMES, "outward_to_inward_time"):
+        said = QUANTITIES[name].undefined_because([both])
+        assert said is not None
+        assert "each cylinder has stroke times of its own" in said
+    assert QUANTITIES["time_ratio"].undefined_because([replace(both, speed_profile=None)]) is None
+    assert np.isnan(analyse(both, FEEDER).iloc[0]["time_ratio"])
+
+
+def test_the_slow_stroke_of_cylinders_is_named_where_it_is_the_same() -> None:
+    opposed = Arrangement(phases=(0.0, math.pi))
+    uneven = Mechanism(speed=5.0, speed_profile=Harmonics(cosines=(0.0,), sines=(0.6,)), arrangement=opposed)
+    linkage = Linkage(0.03, 0.1, 0.0)
+    assert slow_stroke(uneven, linkage) == "differs"
+    alike = replace(uneven, speed_profile=Harmonics(cosines=(0.01,)))
+    assert slow_stroke(alike, Linkage(0.03, 0.1, 0.04)) == "inward"
+
+
+def test_times_need_a_speed_that_repeats() -> None:
+    for machine, said in ((Mechanism(), "turning crank"), (Mechanism(speed=1.0, acceleration=1.0), "crank accel")):
+        for name in TIMES:
+            reason = QUANTITIES[name].undefined_because([machine])
+            assert reason is not None
+            assert said in reason
+            assert np.isnan(value(name, machine, FEEDER))
+        assert value("time_ratio", machine, FEEDER) == pytest.approx(1.20825266, abs=1e-8)
