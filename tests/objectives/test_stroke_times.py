@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from typing import Any
@@ -12,15 +13,18 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from slidercrank.model.cycle.strokes import slow_stroke, strokes
+from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 from slidercrank.model.machine.varying import Varying
 from slidercrank.objectives.own.designs import Designs
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.robust.quantity import Case, RobustQuantity
 from slidercrank.objectives.tables.analysis import analyse
-from tests.model.cases import Array, random_designs
+from tests.model.cases import TOLERANCES, Array, random_designs
 
 TURN = 2.0 * math.pi
 FEEDER = np.array([[0.0376, 0.0998, 0.03119]])
@@ -223,3 +227,43 @@ def test_times_need_a_speed_that_repeats() -> None:
             assert said in reason
             assert np.isnan(value(name, machine, FEEDER))
         assert value("time_ratio", machine, FEEDER) == pytest.approx(1.20825266, abs=1e-8)
+
+
+def test_a_cycle_of_two_turns_has_the_strokes_of_its_turn() -> None:
+    """The profile repeats with every turn, whatever the gas does."""
+    machine, design = random_case(5)
+    gas = FourStroke(
+        bore=0.08, low=9e4, high=5e6, clearance=0.11, compression_exponent=1.3, expansion_exponent=1.25, exhaust=1.1e5
+    )
+    engine = replace(machine, branch="open", loads=(gas,))
+    for name in ("time_ratio", *TIMES):
+        assert value(name, engine, design) == value(name, replace(machine, branch="open"), design)
+
+
+def test_derivatives_of_a_function_of_ones_own_follow_the_times() -> None:
+    for seed in (1, 2):
+        machine, design = random_case(seed)
+        gradients = QUANTITIES["time_ratio"].evaluate(machine, design, gradients=True).gradients
+        assert gradients is not None
+        for column in range(3):
+            stepped = design.astype(np.complex128)
+            stepped[:, column] += 1e-30j
+            own = Designs(machine, stepped).time_ratio.imag[0, 0] / 1e-30
+            assert own == pytest.approx(gradients[0, column], rel=1e-13)
+    both = replace(machine, arrangement=Arrangement(phases=(0.0, 2.0)))
+    with pytest.raises(InputError, match="time_ratio: along a speed profile each cylinder has stroke times of its own"):
+        _ = Designs(both, design).time_ratio
+
+
+@pytest.mark.parametrize("case", ["worst case", "percentile"])
+def test_a_robust_time_ratio_along_a_profile_is_of_time(case: Case) -> None:
+    """Against designs at the corners of the tolerances, which a quotient of times is steepest towards."""
+    machine = Mechanism(speed=5.0, speed_profile=Harmonics(sines=(0.4,)), tolerances=TOLERANCES)
+    design = np.array([[0.04, 0.12, 0.02]])
+    robust = RobustQuantity(inner=QUANTITIES["time_ratio"], side="high", case=case)
+    found = float(robust.evaluate(machine, design).values[0])
+    limits = np.array([TOLERANCES.crank.limit(0.04), TOLERANCES.rod.limit(0.12), TOLERANCES.offset.limit(0.02)])
+    corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) * limits
+    worst = max(value("time_ratio", machine, design + corner) for corner in corners)
+    plain = value("time_ratio", machine, design)
+    assert found == pytest.approx(worst, rel=1e-9) if case == "worst case" else plain < found < worst
