@@ -39,6 +39,11 @@ class Need:
     missing: str
     without: Without = "zero"
 
+    @property
+    def rule(self) -> str:
+        """What the quantity comes from, without value and remedy."""
+        return self.missing.partition(";")[0]
+
 
 def _tolerances(machine: Mechanism) -> bool:
     return machine.fullest.tolerances.given

@@ -64,9 +64,9 @@ def svg(pose: Pose, crank: float, label: str) -> str:
 
 def figure(pose: Pose, crank: float, label: str) -> Figure:
     """Return a linkage as a matplotlib figure, in mm."""
-    from matplotlib.figure import Figure
+    from ..notebook_figure import NotebookFigure
 
-    found = Figure(figsize=(6.4, 3.6), layout="constrained")
+    found = NotebookFigure(figsize=(6.4, 3.6), layout="constrained")
     axes = found.subplots()
     turn = [2.0 * math.pi * share / 180.0 for share in range(181)]
     axes.plot([1e3 * crank * math.cos(t) for t in turn], [1e3 * crank * math.sin(t) for t in turn], "--", color="0.6")

@@ -46,10 +46,10 @@ def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
 
     values: (n, m), as shown.
     """
-    from matplotlib.figure import Figure
+    from ...model.notebook_figure import NotebookFigure
 
     others = max(1, values.shape[1] - 1)
-    found = Figure(figsize=(6.4, 1.2 + 2.4 * others), layout="constrained")
+    found = NotebookFigure(figsize=(6.4, 1.2 + 2.4 * others), layout="constrained")
     for column, axes in enumerate(np.atleast_1d(found.subplots(others, 1, sharex=True)), start=1):
         alone = values.shape[1] == 1
         y = np.arange(len(values), dtype=np.float64) if alone else values[:, column]

@@ -12,6 +12,7 @@ from .values import (
     AngularSpeed,
     Built,
     Checked,
+    DrivingTorque,
     Inertia,
     PositiveAngularSpeed,
     PositiveRatio,
@@ -27,7 +28,7 @@ class ConstantMotor(Built[model.Motor]):
 
     makes = model.ConstantTorque
 
-    torque: PositiveTorque = required("at every speed", "20 N m")
+    torque: DrivingTorque = required("at every speed; zero where a load drives the crank alone", "20 N m")
 
 
 class LineMotor(Built[model.Motor]):

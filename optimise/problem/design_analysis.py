@@ -152,12 +152,12 @@ class Analysis(Mapping[str, float]):
         Raises `InputError` for a design that swings.
         """
         self._require_turning("a figure of the cycle")
-        from matplotlib.figure import Figure
+        from ...model.notebook_figure import NotebookFigure
 
         turns = cycle_turns(self.mechanism)
         whole = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)  # curves close
         curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, whole)}
-        found = Figure(figsize=(6.4, 8.0), layout="constrained")
+        found = NotebookFigure(figsize=(6.4, 8.0), layout="constrained")
         angle = curves["crank_angle"]
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
             curve = curves[name]

@@ -32,6 +32,7 @@ def test_without_a_drive_the_mechanism_has_none() -> None:
     ("motor", "expected"),
     [
         ({"torque": "20 N m"}, ConstantTorque(torque=20.0)),
+        ({"torque": "0 N m"}, ConstantTorque(torque=0.0)),
         (
             {"stall_torque": "0.06 kN m", "no_load_speed": "600 rpm"},
             LinearMotor(stall_torque=60.0, no_load_speed=10.0 * TURN),
@@ -65,7 +66,7 @@ GOOD = {"torque": "20 N m"}
         ({"motor": {"torque": "1 N m", "stall_torque": "1 N m"}}, ["of one kind", "torque and stall_torque"]),
         ({"motor": {"stall_torque": "1 N m"}}, ["drive.motor.no_load_speed: is missing", '"400 rpm"']),
         ({"motor": {"torque": "20 N"}}, ["drive.motor.torque", "is a force", '"25 N m"']),
-        ({"motor": {"torque": "-20 N m"}}, ["drive.motor.torque", "positive", '"-20 N m"']),
+        ({"motor": {"torque": "-20 N m"}}, ["drive.motor.torque", "zero or more", '"-20 N m"']),
         ({"motor": {"torque": math.nan}}, ["drive.motor.torque", "finite"]),
         (
             {"motor": {"rated_torque": "1 N m", "rated_speed": "9 rpm", "no_load_speed": "8 rpm"}},

@@ -83,3 +83,9 @@ def test_picture_of_one_objective_and_of_equal_values_is_drawn(front: sc.ParetoF
     for values in (np.ones((3, 1)), np.ones((3, 2)), np.ones((1, 4))):
         ElementTree.fromstring(svg(values, ["a & b", "c", "d", "e"]))
         assert isinstance(figure(values, ["a", "b", "c", "d"], "title"), Figure)
+
+
+def test_a_notebook_shows_the_figures_without_pyplot(front: sc.ParetoFront) -> None:
+    analysis = front.problem.analyse(front.dimensions[0])
+    for figure in (front.plot(), analysis.plot(), analysis.linkage.plot()):
+        assert figure._repr_png_().startswith(b"\x89PNG\r\n")  # type: ignore[attr-defined] # as a notebook asks for it

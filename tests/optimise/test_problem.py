@@ -204,3 +204,15 @@ def test_objectives_come_in_the_order_of_the_quantities_whatever_that_of_the_tab
 def test_a_part_of_another_kind_is_refused_at_once(wrong: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=re.escape(said)):
         replace(problem({"peak_torque": "minimise"}), **wrong)
+
+
+def test_the_table_of_quantities_has_every_key_that_jobs_may_name_and_what_it_needs() -> None:
+    schema = sc.job_schema()["$defs"]
+    known = sc.quantities()
+    assert list(known.index) == list(schema["Objectives"]["properties"])
+    assert set(schema["Constraints"]["properties"]) - set(known.index) == {"slow_stroke"}  # no quantity
+    assert set(known.index[known["needs"] == ""]) >= {"stroke", "time_ratio", "transmission_angle"}
+    assert known.loc["swing_energy", "needs"] == "it comes from the table [motion]"
+    assert known.loc["motion_deviation", "needs"] == "it comes from the table [target_motion]"
+    assert known.loc["position_error", "needs"] == "a position error comes from tolerances"
+    assert "material and pins" in str(known.loc["rod_stress", "needs"])

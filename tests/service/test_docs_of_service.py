@@ -196,7 +196,7 @@ def test_postgresql_with_two_workers_and_a_dask_cluster(
     assert lines[:4] == [  # of the server's administrator; the tests have their own server and packages
         "sudo -u postgres createuser slidercrank --pwprompt",
         "sudo -u postgres createdb jobs --owner slidercrank",
-        'pip install "slidercrank[service,postgres,dask]"',
+        'pip install ".[service,postgres,dask]"',
         "export SLIDERCRANK_STORE=postgresql://slidercrank@127.0.0.1/jobs",
     ]
     terminal.changed["SLIDERCRANK_STORE"] = address
