@@ -66,8 +66,11 @@ class Domain:
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{within}, ends excluded", remedy=remedy)
 
     def refuses(self, value: float, *, least: bool) -> bool:
-        """Return whether no linkage has a value. least: whether it is asked as a least value."""
-        if least and self.idle:
+        """Return whether no linkage has a value. least: whether it is asked as a least value.
+
+        A least value at the lower end asks nothing; of a quantity with a floor it switches that off.
+        """
+        if least and (self.idle or value == self.lower):
             return False
         return not (self.lower < value < self.upper or (not self.open and value in (self.lower, self.upper)))
 

@@ -103,8 +103,26 @@ class FormulaQuantity(Quantity):
         with np.errstate(all="ignore"):
             return fold(self.expression, Slopes(leaves, n, d, gradients))
 
+    @property
+    def smooth(self) -> bool:
+        """Whether no design has a kink of it: nor do its parts, and only an offset of known sign has its size taken."""
+
+        def kinked(node: Node) -> bool:
+            if not isinstance(node, Call):
+                return False
+            if node.function == "abs" and node.arguments[0] == Name("offset"):
+                return dict(self.signs).get("offset", 0) == 0
+            return node.function in ("abs", "min", "max") or any(map(kinked, node.arguments))
+
+        return not kinked(self.expression) and all(
+            part.smooth if isinstance(part, FormulaQuantity) else type(part).pieces is Quantity.pieces
+            for part in self.parts
+        )
+
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the formula as the greatest of smooth pieces; see `Quantity`."""
+        if self.smooth:
+            return super().pieces(mechanism, dimensions)
         require_width(mechanism, dimensions)
         n, d = dimensions.shape
         leaves: dict[str, Both] = {}
@@ -159,6 +177,14 @@ def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
         if isinstance(part, FormulaQuantity):
             found[part.name] = linear_of(part.expression, _known(part))
     return found
+
+
+def sum_of_quantities(of: FormulaQuantity) -> Linear | None:
+    """Return a formula that is linear in dimensions, numbers and the quantities that it names; None if it is not."""
+    known = _known(of)
+    for part in of.parts:
+        known[part.name] = sum_of_quantities(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
+    return linear_of(of.expression, known)
 
 
 def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:

@@ -24,7 +24,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
-from ..problem.violation import constraints_of
+from ..problem.violation import restated_constraints
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
 from .cycle import Curve, best_angles
@@ -117,9 +117,10 @@ class Boxes:
                     f"no certificate for this job: {reason}; leave this objective out; the residuals of the front tell "
                     "how near its designs are to optimal"
                 )
-        least = next(c.lower for c in constraints_of(problem) if c.quantity == TRANSMISSION_ANGLE.name)
-        self.lean = math.cos((1.0 - _SLACK) * float(least or 0.0))
-        used = [c for c in constraints_of(problem) if usable(problem, c)]
+        asked = restated_constraints(problem)
+        least = max(c.lower or 0.0 for c in asked if c.quantity == TRANSMISSION_ANGLE.name)
+        self.lean = math.cos((1.0 - _SLACK) * least)
+        used = [c for c in asked if usable(problem, c)]
         self.cheap = [c for c in used if isinstance(problem.quantity(c.quantity), ClosedFormQuantity)]
         self.costly = [c for c in used if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]

@@ -12,7 +12,7 @@ import pandas as pd
 from ...model.arrays import Array, Whole
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE, constraints_of, minimised
+from ..problem.violation import FEASIBLE, minimised, restated_constraints
 from ..search.assemble import span_of
 from ..search.candidates import Candidates
 from ..search.elimination import sheets
@@ -217,7 +217,7 @@ class Search:
 
     def _notes(self) -> tuple[str, ...]:
         found = []
-        for constraint in constraints_of(self.problem):
+        for constraint in restated_constraints(self.problem):
             quantity = self.problem.quantity(constraint.quantity)
             if not usable(self.problem, constraint):
                 found.append(f"the bounds do not use the requirement on {quantity.title}")

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 from ...model.arrays import Array
 from ..problem.problem import Problem
-from ..problem.requirements import Constraint, Sense, Word
+from ..problem.requirements import Constraint, Sense, Word, merged
+from ..problem.restated import restated
 from ..problem.violation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe
@@ -123,10 +124,12 @@ def _without(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     """
     lower = constraint.lower if word == "max" else None
     upper = constraint.upper if word == "min" else None
-    floor = problem.quantity(constraint.quantity).floor
-    if lower is None and constraint.lower is not None and floor is not None:
-        lower = _LOWEST * constraint.lower
     kept = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
     if lower is not None or upper is not None:
         kept = (*kept, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
+    known = restated(problem, constraint)
+    left = restated(problem, kept[-1]) if lower is not None or upper is not None else None
+    floor = problem.quantity(known.quantity).floor
+    if floor is not None and known.lower is not None and (left is None or left.lower is None):
+        kept = merged((*kept, Constraint(quantity=known.quantity, lower=_LOWEST * known.lower)))
     return replace(problem, constraints=kept)

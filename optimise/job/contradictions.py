@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.errors import InfeasibleError, JobError
+from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
@@ -22,7 +22,8 @@ from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
 from ..feasibility.swinging import require_swinging
 from ..problem.problem import Problem
-from ..problem.requirements import Range
+from ..problem.requirements import Range, merged
+from ..problem.restated import restated
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
 from .box import Box, require_reachable
@@ -49,6 +50,7 @@ def require_consistent(problem: Problem) -> None:
         return
     _require_delivery(problem)
     require_reachable(problem)
+    _require_reachable_in_other_words(problem)
     require_slow_stroke(problem)
     require_options(problem)
     require_compatible(problem)
@@ -110,6 +112,19 @@ def _undelivered(part: Problem) -> str:
     return ""
 
 
+def _require_reachable_in_other_words(problem: Problem) -> None:
+    """Refuse what formulas ask of a known quantity in other words, and the ranges do not have."""
+    known = {item.quantity: restated(problem, item) for item in problem.constraints}
+    other = [key_of(["constraints", name]) for name, item in known.items() if item.quantity != name]
+    if not other:
+        return
+    words = f"{' and '.join(other)} {'asks' if len(other) == 1 else 'ask'} in other words"
+    try:
+        require_reachable(replace(problem, constraints=merged(known.values())))
+    except InputError as error:
+        raise InfeasibleError(f"{error}; this is what {words}") from None
+
+
 def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
     """Yield key, quantity, word and value of every bound and target."""
     for constraint in problem.constraints:
@@ -142,10 +157,13 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
 
 def _require_free(problem: Problem, name: str) -> None:
     """Refuse an objective that is the same for every design."""
-    if any(c.equality and c.quantity == name for c in problem.constraints):
+    held = next(
+        (c for c in problem.constraints if c.equality and name in (c.quantity, restated(problem, c).quantity)), None
+    )
+    if held is not None:
         raise JobError(
             f"objectives.{name}: a quantity that is held at one value cannot be an objective too; "
-            f"got constraints.{name} with equals; leave out one of the two"
+            f"got {key_of(['constraints', held.quantity])} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:

@@ -17,6 +17,7 @@ from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from .problem import Problem
 from .requirements import Constraint, Objective, merged
+from .restated import restated
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
@@ -33,12 +34,12 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     only one is on its transmission angle: the margin from its dead points.
     """
     if problem.motion is not None:
-        return _with_floor(problem.constraints, SWING_TRANSMISSION_ANGLE)
-    found = _with_floor(problem.constraints, TRANSMISSION_ANGLE)
+        return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
+    found = _with_floor(problem, problem.constraints, TRANSMISSION_ANGLE)
     if problem.mechanism.fullest.friction.acts:
-        found = _with_floor(found, SELF_LOCKING_MARGIN)
+        found = _with_floor(problem, found, SELF_LOCKING_MARGIN)
     if may_deliver_nothing(problem.mechanism):
-        found = _with_floor(found, VOLUMETRIC_EFFICIENCY)
+        found = _with_floor(problem, found, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
         found = _with_slow_stroke(problem, found)
     return found
@@ -46,11 +47,11 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
 
 def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
     """Return constraints with a time ratio above 1, along a speed profile that of the stroke which is to be slow."""
-    found = _with_floor(constraints, TIME_RATIO, above=1.0)
+    found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found
-    least = next(c.lower for c in found if c.quantity == TIME_RATIO.name)
-    assert least is not None
+    asked = (restated(problem, item) for item in found)
+    least = max(c.lower for c in asked if c.quantity == TIME_RATIO.name and c.lower is not None)
     outward = problem.slow_stroke == "outward"
     own = next((c for c in constraints if c.quantity == OUTWARD_TO_INWARD_TIME.name), None)
     if own is not None and outward and own.upper is not None:
@@ -61,15 +62,23 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
     return merged((*constraints, Constraint(quantity=OUTWARD_TO_INWARD_TIME.name, **ends)))
 
 
+def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
+    """Return the constraints with their floors, formulas that are a known quantity in other words as that quantity."""
+    return tuple(restated(problem, item) for item in constraints_of(problem))
+
+
 def _with_floor(
-    constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
+    problem: Problem, constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
 ) -> tuple[Constraint, ...]:
-    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself."""
+    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself.
+
+    A bound on a formula that is the quantity in other words is one on it.
+    """
     assert of.floor is not None
-    own = [c for c in constraints if c.quantity == of.name]
+    own = [c for c in (restated(problem, item) for item in constraints) if c.quantity == of.name]
     if any(c.lower is not None and (above is None or c.lower > above) for c in own):
         return constraints
-    upper, least = next((c.upper for c in own), None), above or 0.0
+    upper, least = min((c.upper for c in own if c.upper is not None), default=None), above or 0.0
     lower = of.floor if upper is None else min(of.floor, least + 0.5 * (upper - least))
     kept = [c for c in constraints if c.quantity != of.name]
     return (*kept, Constraint(quantity=of.name, lower=float(lower), upper=upper))

@@ -26,6 +26,7 @@ from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
+from ..problem.restated import restated
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
 from .rule import Rule
 from .swing_rules import swing_rules
@@ -168,7 +169,7 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
 
 def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
     bounds = problem.ranges | {"offset": offset}
-    wanted = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
+    wanted, meant = _wanted(problem)
     equations: dict[str, Linear] = {}
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
@@ -199,11 +200,29 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
         upper=np.array([bounds[name].upper for name in free]),
         bounds=bounds,
         steps=steps,
-        eliminated=tuple(name for name in wanted if name in used),
-        remaining=tuple(c for c in problem.constraints if c.quantity not in used),
+        eliminated=tuple(name for name, known in meant.items() if known in used),
+        remaining=tuple(c for c in problem.constraints if meant.get(c.quantity) not in used),
         names=tuple(bounds),
         variant=variant,
     )
+
+
+def _wanted(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
+    """Return the values that equalities ask for by quantity, and the quantity of each constraint with one.
+
+    A formula that is a known quantity in other words asks for that quantity, unless another value of it is asked too.
+    """
+    asked = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
+    wanted: dict[str, float] = {}
+    meant: dict[str, str] = {}
+    for constraint in problem.constraints:
+        if constraint.quantity in asked:
+            known = restated(problem, constraint)
+            value = asked[constraint.quantity] if known.lower is None else float(known.lower)
+            same = {**asked, **wanted}.get(known.quantity, value) == value
+            name, value = (known.quantity, value) if same else (constraint.quantity, asked[constraint.quantity])
+            wanted[name], meant[constraint.quantity] = value, name
+    return wanted, meant
 
 
 def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from ...objectives.tables.evaluate import running
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
-from ..problem.requirements import Objective, Range
+from ..problem.requirements import Constraint, Objective, Range
+from ..problem.restated import restated
 from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import Sheet
@@ -21,6 +23,8 @@ from .judging import exactly, joined, quickly
 from .pieces import Rows
 
 _HUGE = 1e100
+_OFF = 1e-9
+"""SI: how far off an excluded end of its domain a quantity stays."""
 
 
 class Evaluator:
@@ -40,15 +44,18 @@ class Evaluator:
         self.engine = engine or Serial()
         problem = problem.part(sheet.variant)
         self.problem = problem
+        self._quantities: dict[str, Quantity] = {}
         self.sheet = sheet
         self.mechanism = problem.mechanism
         self.dimension = len(sheet.free)
-        remaining = [c for c in constraints_of(problem) if c.quantity not in sheet.eliminated]
+        remaining = [
+            self._inside(restated(problem, c)) for c in constraints_of(problem) if c.quantity not in sheet.eliminated
+        ]
+        self.eliminated = tuple(restated(problem, c) for c in problem.constraints if c.quantity in sheet.eliminated)
         self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
-        self._quantities: dict[str, Quantity] = {}
         self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
 
     def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
@@ -60,6 +67,13 @@ class Evaluator:
         if found is None:
             found = self._quantities[name] = self.problem.quantity(name)
         return found
+
+    def _inside(self, constraint: Constraint) -> Constraint:
+        """Return a constraint with a least value at an end that its quantity excludes moved off it: 0 deg is locked."""
+        domain = self.quantity(constraint.quantity).domain
+        if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
+            return constraint
+        return replace(constraint, lower=domain.lower + _OFF)
 
     def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step, see `Checkpoints.step`."""
@@ -121,11 +135,10 @@ class Evaluator:
             for side in _range_sides(self.sheet.bounds[name]):
                 violation = np.fmax(violation, excess(value, *side))
         rows = np.flatnonzero(turns)
-        for constraint in self.problem.constraints:
-            if constraint.quantity in self.sheet.eliminated and len(rows):
-                values = self.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
-                spurious = violated_by(constraint, values) > FEASIBLE
-                violation[rows[spurious]] = np.inf
+        for constraint in self.eliminated if len(rows) else ():
+            values = self.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
+            spurious = violated_by(constraint, values) > FEASIBLE
+            violation[rows[spurious]] = np.inf
         return violation
 
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------

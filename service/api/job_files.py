@@ -80,6 +80,15 @@ class CatalogueModel(BaseModel):
     rows: int = Field(examples=[3])
 
 
+class FloorModel(BaseModel):
+    """A least value that has a default."""
+
+    quantity: str = Field(examples=["self_locking_margin"])
+    least: float = Field(description="in the unit", examples=[5.0])
+    unit: str = Field(examples=["deg"])
+    default: bool = Field(description="whether the default holds, since the job sets none", examples=[True])
+
+
 class Understood(BaseModel):
     """A job in words, as it was understood."""
 
@@ -89,6 +98,7 @@ class Understood(BaseModel):
     costs: list[str] = Field(examples=[[]])
     variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])
     rules: list[str] = Field(examples=[["rod to offset 3.2"]])
+    floors: list[FloorModel] = Field(description="least values that have a default", examples=[[]])
     objectives: list[str] = Field(examples=[["minimise peak torque"]])
     unknowns: int = Field(examples=[3])
     degrees_of_freedom: int = Field(examples=[2])

@@ -22,6 +22,7 @@ from ...optimise.job.options import idle_options
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
+from ...optimise.problem.restated import restated
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
@@ -31,7 +32,7 @@ from ...optimise.search.elimination import sheets
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, warnings, search.
 
-    Each is a list of lines but for name, search, and the numbers of the freedom.
+    Each is a list of lines but for name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
     sheet = sheets(problem)[0]
     free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
@@ -53,6 +54,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
             *(_rule(constraint, problem) for constraint in constraints_of(problem)),
             *_limits(problem),
         ],
+        "floors": _floors(problem),
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
@@ -290,7 +292,22 @@ def _rule(constraint: Constraint, problem: Problem, *, own: bool = False) -> str
         return f"{of.title} = {shown(constraint.lower or 0.0)}"
     ends = (("at least", constraint.lower), ("at most", constraint.upper))
     asked = " and ".join(f"{word} {shown(end)}" for word, end in ends if end is not None)
-    return f"{of.title} {asked}" + ("" if own else " (not in the job: a floor that is always kept)")
+    if own:
+        replaces = of.floor is not None and constraint.lower is not None and constraint.lower < of.floor
+        return f"{of.title} {asked}" + (f" (in place of a default of {shown(of.floor or 0.0)})" if replaces else "")
+    return f"{of.title} {asked} (a default, since the job sets none)"
+
+
+def _floors(problem: Problem) -> list[dict[str, Any]]:
+    """Return each least value that some default holds for: quantity, value, unit, and whether it is the default."""
+    found = []
+    for constraint in constraints_of(problem):
+        known = restated(problem, constraint)
+        of = problem.quantity(known.quantity)
+        if of.floor is not None and known.lower is not None:
+            value, default = known.lower * of.unit.factor, constraint not in problem.constraints
+            found.append({"quantity": of.name, "least": value, "unit": of.unit.symbol, "default": default})
+    return found
 
 
 def _objective(objective: Objective, problem: Problem) -> str:

@@ -24,6 +24,7 @@ from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
+from slidercrank.optimise.solve import solve
 from slidercrank.service.text.summary import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
@@ -97,10 +98,39 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
     low = job(constraints={"self_locking_margin": {"max": "4 deg"}})
     assert floors(low)[0].lower == pytest.approx(math.radians(2.0))
     rules = summarise(job())["rules"]
-    assert any("self-locking margin at least 5 deg (not in the job" in rule for rule in rules)
+    assert "self-locking margin at least 5 deg (a default, since the job sets none)" in rules
     assert any(
         "friction in the crank pin: radius 10 mm, coefficient 0.08" in line for line in summarise(job())["given"]
     )
+
+
+def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_holds() -> None:
+    off = job(constraints={"self_locking_margin": {"min": "0 deg"}})
+    assert [c for c in constraints_of(off) if c.quantity == "self_locking_margin"] == list(off.constraints)
+    assert off.constraints[0].lower == 0.0
+    told = summarise(off)
+    assert "self-locking margin at least 0 deg (in place of a default of 5 deg)" in told["rules"]
+    floors = {item["quantity"]: item for item in told["floors"]}
+    assert floors["self_locking_margin"] == {
+        "quantity": "self_locking_margin",
+        "least": 0.0,
+        "unit": "deg",
+        "default": False,
+    }
+    assert floors["transmission_angle"]["default"]
+    held = {item["quantity"]: item for item in summarise(job())["floors"]}
+    assert (held["self_locking_margin"]["least"], held["self_locking_margin"]["default"]) == (pytest.approx(5.0), True)
+
+
+def test_with_the_floor_off_a_front_has_designs_nearer_to_self_locking_and_none_that_lock() -> None:
+    wanted: dict[str, Any] = {"objectives": {"time_ratio": "maximise"}, "optimiser": {"designs": 4, "samples": 512}}
+    free = {"crank": ["30 mm", "60 mm"], "rod": ["80 mm", "150 mm"], "offset": ["0 mm", "80 mm"]}
+    margins = {}
+    for name, bounds in (("floor", {}), ("off", {"self_locking_margin": {"min": "0 deg"}})):
+        front = solve(job({"guide": 0.47}, variables=free, constraints=bounds, **wanted))
+        margins[name] = float(front.designs["self_locking_margin_deg"][0])
+    assert margins["floor"] == pytest.approx(5.0, abs=1e-6)
+    assert 0.0 < margins["off"] < 1e-6
 
 
 def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:

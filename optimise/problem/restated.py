@@ -1,0 +1,174 @@
+"""Constraints on formulas that are a known quantity in other words, stated on that quantity.
+
+A formula may be a factor times a quantity and a constant, such as `2 * stroke - 10 mm`, or write out the closed form of
+one, such as `rod / crank`. Elimination, bounds and floors know the quantity. What a formula names is told exactly. A
+closed form is recognised by its values: analytic functions that agree at many random designs of the job's ranges, to
+rounding, are one; so formulas that are made of several such functions (min, max, abs) are left as they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.machine.mechanism import Branch, Mechanism
+from ...objectives.formula.expression import Call, Name, Node, Number
+from ...objectives.formula.quantity import FormulaQuantity, sum_of_quantities
+from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
+from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES
+from ...objectives.time_ratio import TIME_RATIO
+from ...objectives.transmission_angle import TRANSMISSION_ANGLE
+from .problem import Problem
+from .requirements import Constraint, Range
+
+_DRAWN, _COMPARED, _FEWEST = 4096, 256, 32
+"""Random designs; of those that turn fully so many are compared; fewer than these tell nothing."""
+_SEED = 14
+_SAME = 1e-11  # of the values' range: agreement to rounding
+_SNAP = 1e-12  # a factor this near to one is one, a constant as near to zero zero
+
+Real = Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class Known:
+    """A formula as factor * form(quantity) + constant, SI. inverse: of the form, which rises or falls everywhere."""
+
+    quantity: str
+    factor: float
+    constant: float
+    rises: bool = True
+    inverse: Real = float
+
+    def value(self, bound: float) -> float:
+        """Return the value of the quantity where the formula has a value; NaN where there is none."""
+        try:
+            return self.inverse((bound - self.constant) / self.factor)
+        except (ValueError, ZeroDivisionError):
+            return math.nan
+
+
+_FORMS: tuple[tuple[Quantity, Callable[[Array], Array], Real, bool], ...] = (
+    (STROKE, np.asarray, float, True),
+    (ROD_TO_CRANK, np.asarray, float, True),
+    (ROD_TO_CRANK, np.reciprocal, lambda x: 1.0 / x, False),
+    (ROD_TO_OFFSET, np.asarray, float, True),
+    (ROD_TO_OFFSET, np.reciprocal, lambda x: 1.0 / x, False),
+    (TIME_RATIO, np.asarray, float, True),
+    # The excess angle: pi (q - 1) / (q + 1).
+    (TIME_RATIO, lambda q: (q - 1.0) / (q + 1.0), lambda x: (1.0 + x) / (1.0 - x), True),
+    (TRANSMISSION_ANGLE, np.asarray, float, True),
+    (TRANSMISSION_ANGLE, np.cos, math.acos, False),
+    (TRANSMISSION_ANGLE, np.sin, math.asin, True),
+    (TRANSMISSION_ANGLE, np.tan, math.atan, True),
+)
+"""Closed forms with functions of them, the inverses of these, and whether they rise."""
+
+
+def restated(problem: Problem, constraint: Constraint) -> Constraint:
+    """Return a constraint of a problem without choices, stated on the quantity that its formula is, itself if none."""
+    if constraint.quantity in QUANTITIES:
+        return constraint
+    of = next((own for own in problem.own if own.name == constraint.quantity), None)
+    if not isinstance(of, FormulaQuantity):
+        return constraint
+    machine = problem.mechanism.fullest
+    steady = machine.speed_profile is None
+    known = _known(of, machine.branch, steady, problem.crank, problem.rod, problem.offset)
+    if known is None or not (known.quantity in QUANTITIES or any(own.name == known.quantity for own in problem.own)):
+        return constraint
+    rises = known.rises == (known.factor > 0.0)
+    ends = (constraint.lower, constraint.upper)[:: 1 if rises else -1]
+    lower, upper = (None if end is None else known.value(end) for end in ends)
+    meant = problem.quantity(known.quantity)
+    for value, least in ((lower, True), (upper, False)):
+        if value is not None and not _possible(meant, value, least=least):
+            return constraint
+    return Constraint(quantity=known.quantity, lower=lower, upper=upper)
+
+
+def _possible(of: Quantity, value: float, *, least: bool) -> bool:
+    """Return whether a bound asks something that rules of the quantity can take."""
+    refused = of.domain is not None and of.domain.refuses(value, least=least)
+    return math.isfinite(value) and not refused and (of.signed or value >= 0.0)
+
+
+@lru_cache(maxsize=256)
+def _known(of: FormulaQuantity, branch: Branch, steady: bool, crank: Range, rod: Range, offset: Range) -> Known | None:
+    linear = sum_of_quantities(of)
+    names = {part.name for part in _parts(of)}
+    if linear is not None and len(linear.factors) == 1 and linear.names[0] in names:
+        return Known(linear.names[0], float(linear.factors[0][1]), float(linear.constant))
+    if not of.of_dimensions or not _analytic(of):
+        return None
+    machine = Mechanism(speed=1.0, branch=branch)
+    designs = _designs(crank, rod, offset)
+    if len(designs) < _FEWEST:
+        return None
+    values = of.evaluate(machine, designs).values
+    for quantity, form, inverse, rises in _FORMS:
+        if quantity is TIME_RATIO and not steady:  # along a speed profile no formula of dimensions
+            continue
+        found = _line(form(quantity.evaluate(machine, designs).values), values)
+        if found is not None:
+            return Known(quantity.name, *found, rises, inverse)
+    return None
+
+
+def _parts(of: FormulaQuantity) -> Iterator[Quantity]:
+    """Yield the quantities that a formula comes down to."""
+    for part in of.parts:
+        yield from _parts(part) if isinstance(part, FormulaQuantity) else (part,)
+
+
+def _analytic(of: FormulaQuantity) -> bool:
+    """Return whether a formula is one analytic function on either side of the offset's zero, as are its parts.
+
+    A ratio that is kept to 1 in an inverse sine or cosine is one: beyond that there is none.
+    """
+
+    def one(node: Node) -> bool:
+        if not isinstance(node, Call):
+            return True
+        if node.function in ("asin", "acos"):
+            inner = node.arguments[0]
+            if isinstance(inner, Call) and inner.function in ("min", "max") and len(inner.arguments) == 2:
+                end = 1.0 if inner.function == "min" else -1.0
+                left = [item for item in inner.arguments if not (isinstance(item, Number) and item.si == end)]
+                return len(left) == 1 and one(left[0])
+        if node.function == "abs":
+            return node.arguments[0] == Name("offset")
+        return node.function not in ("min", "max") and all(map(one, node.arguments))
+
+    return one(of.expression) and all(_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity))
+
+
+def _designs(crank: Range, rod: Range, offset: Range) -> Array:
+    """Return random designs (n, 3) within ranges that turn fully and have an offset."""
+    lower, upper = (np.array([getattr(ends, end) for ends in (crank, rod, offset)]) for end in ("lower", "upper"))
+    drawn = lower + (upper - lower) * np.random.default_rng(_SEED).random((_DRAWN, 3))
+    turning = (drawn[:, 0] > 0.0) & (drawn[:, 2] != 0.0) & (drawn[:, 1] > drawn[:, 0] + np.abs(drawn[:, 2]))
+    return np.asarray(drawn[turning][:_COMPARED])
+
+
+def _line(x: Array, y: Array) -> tuple[float, float] | None:
+    """Return factor and constant of the line through all points (n,), None where they lie on none."""
+    if not (np.isfinite(x).all() and np.isfinite(y).all()):
+        return None
+    low, high = int(np.argmin(x)), int(np.argmax(x))
+    width, height = x[high] - x[low], np.ptp(y)
+    size = max(float(np.abs(y).max()), 1e-300)
+    if width <= 1e-6 * np.abs(x).max() or height <= 1e-6 * size:
+        return None
+    factor = float((y[high] - y[low]) / width)
+    constant = float(y[low] - factor * x[low])
+    if np.abs(factor * x + constant - y).max() > _SAME * size:
+        return None
+    factor = 1.0 if abs(factor - 1.0) < _SNAP else factor
+    return factor, 0.0 if abs(constant) < _SNAP * size else constant
