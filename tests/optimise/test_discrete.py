@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import math
 import re
 from dataclasses import replace
@@ -13,6 +14,7 @@ import pytest
 
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.optimise.adapters.standard_form import standard_form
+from slidercrank.optimise.discrete import combinations
 from slidercrank.optimise.discrete import front as discrete
 from slidercrank.optimise.discrete.combinations import Axes, neighbours
 from slidercrank.optimise.front.progress import Progress
@@ -56,6 +58,25 @@ def with_lists(given: dict[str, Any]) -> dict[str, Any]:
         if isinstance(of, dict):
             found["variables"][name] = {"values": of["choices"]}
     return found | {"optimiser": QUICK}
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 35, 36, 100])
+def test_every_combination_is_judged_once_however_many_at_once(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(combinations, "_AT_ONCE", at_once)
+    values = {"crank": (40, 50, 60), "rod": (80, 90, 120, 150), "offset": (10, 20, 30)}
+    given = {name: {"values": [f"{value} mm" for value in each]} for name, each in values.items()}
+    axes = Axes.of(parse_job(job(given, constraints={"stroke": {"min": "90 mm"}})))
+    asked: list[tuple[int, int]] = []
+    found = combinations.every(axes, lambda begun, of: asked.append((begun, of)))
+    expected = [
+        (crank, rod, offset)
+        for crank, rod, offset in itertools.product(*values.values())
+        if rod > crank + offset
+        and math.sqrt((rod + crank) ** 2 - offset**2) - math.sqrt((rod - crank) ** 2 - offset**2) >= 90.0
+    ]
+    assert found.judged == axes.count == 36
+    np.testing.assert_allclose(found.dimensions, 1e-3 * np.array(expected), rtol=1e-15)
+    assert asked == [(begun, 36) for begun in range(0, 36, at_once)]
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.screening import screen, screens
 from slidercrank.model.signals.signals import Signal
@@ -134,6 +135,34 @@ def test_remainder_holds_for_every_deviation_within_the_limits() -> None:
         assert np.all(np.abs(true - linear) <= bound + 1e-15)
         # A bound that is never within reach would say nothing.
         assert np.any(np.abs(true - linear) > 0.02 * bound)
+
+
+@pytest.mark.parametrize("pair", [*itertools.combinations(range(4), 2)])
+def test_two_sources_at_their_limits_come_near_the_remainder(pair: tuple[int, int]) -> None:
+    """No corner of small limits is beyond the bound, and some corner comes within 1 % of it.
+
+    Where the second derivatives of a pair add up, corners reach the bound but for third orders. The rounding of x is
+    1e-15 m.
+    """
+    nearest = 0.0
+    for _, linkage in CASES:
+        i = linkage.error_influences(TURN)
+        slopes = np.stack([i.crank, i.rod, i.offset, i.crank_angle])
+        size = math.sqrt(linkage.rod**2 - linkage.crank**2)
+        for ratio in 10.0 ** np.linspace(-1.5, 1.5, 7):
+            limit = np.zeros(4)
+            limit[[*pair]] = 1e-4 * np.array([ratio**-0.5, ratio**0.5]) * np.where(np.array(pair) < 3, size, 1.0)
+            crank, rod, offset, angle = (Tolerance(absolute=each) for each in limit.tolist())
+            tolerances = Tolerances(crank=crank, rod=rod, offset=offset, crank_angle=angle)
+            bound = remainder(Mechanism(branch=linkage.branch, tolerances=tolerances), linkage, TURN)
+            for signs in itertools.product((-1.0, 1.0), repeat=2):
+                u = np.zeros(4)
+                u[[*pair]] = limit[[*pair]] * signs
+                other = Linkage(linkage.crank + u[0], linkage.rod + u[1], linkage.offset + u[2], linkage.branch)
+                true = other.at(TURN + u[3]).slider_position - linkage.at(TURN).slider_position
+                away = np.abs(true - u @ slopes)
+                nearest = max(nearest, float(np.max((away - 1e-15) / bound)))
+    assert nearest == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("value", [-1e-6, math.nan, math.inf])
