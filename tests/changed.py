@@ -1,37 +1,78 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
-They are the test files that differ, and those named after a source file that differs or after the folder that it is in,
-wherever they are in the mirror of its folder at the top: `service/topics/clearance/analysis.py` has all
-`test_analysis*.py` and `test_clearance*.py` under `tests/service/`.
+They are the test files that differ and, for each other file, those named after it or after the folder that it is in,
+wherever they are in the mirror of its folder at the top (`service/topics/clearance/analysis.py` has all
+`test_analysis*.py` and `test_clearance*.py` under `tests/service/`), then those that import it. Where these are fewer
+than three, those that import what imports it are added, and so on; the ones that mention most of its names come first.
+A source file with neither is an error.
 """
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
-SOURCES = ("model", "objectives", "optimise", "service", "benchmarks")
+from tests.imports import importers
+
+PRODUCT = ("model", "objectives", "optimise", "service")
+ENOUGH, MOST = 3, 6  # test files for one file: what it takes to see a fault in it, within some ten seconds
+
+_NAMES = re.compile(
+    r"^(?:(?:async )?def |class |export (?:async )?(?:function|class|const) |)([A-Za-z]\w{2,})\b(?=[(:= ])",
+    re.MULTILINE,
+)
 
 
-def belonging(file: Path, root: Path) -> list[Path]:
-    """Return the test files that belong to a file, by paths from the top."""
-    if file.suffix != ".py":
-        return []
-    if file.parts[0] == "tests" and file.name.startswith("test_"):
-        return [file] if (root / file).is_file() else []
-    if file.parts[0] not in SOURCES:
-        return []
-    names = {file.stem, *file.parts[1:-1][-1:]} - {"__init__"}
+def belonging(file: Path, root: Path, graph: dict[Path, set[Path]]) -> list[Path]:
+    """Return the test files that belong to a file, by paths from the top. graph: what imports each file."""
+    if _is_test(file):
+        return [file]
+    named = _named(file, root)
+    found = dict.fromkeys(named)
+    words = _words(root / file)
+    level, seen = {file}, {file}
+    while level and len(found) < ENOUGH:
+        level = {other for one in level for other in graph.get(one, ())} - seen
+        seen |= level
+        tests = [test for test in level if _is_test(test) and _is_quick(root / test)]
+        found |= dict.fromkeys(sorted(tests, key=lambda test: (-_mentions(root / test, words), test)))
+    return list(found)[: max(MOST, len(named))]
+
+
+def _is_test(file: Path) -> bool:
+    return file.suffix == ".py" and file.name.startswith("test_")
+
+
+def _is_quick(test: Path) -> bool:
+    """Return whether a file has tests besides slow ones."""
+    return not re.search(r"^pytestmark = .*mark\.slow\b", test.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def _named(file: Path, root: Path) -> list[Path]:
+    names = {file.stem, *file.parts[1:-1][-1:]} - {"__init__", "static", "lib"}
     tests = (found for name in names for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
-    return sorted({found.relative_to(root) for found in tests})
+    return sorted(found.relative_to(root) for found in tests if _is_quick(found))
+
+
+def _words(file: Path) -> set[str]:
+    """Return the names by which tests speak of a file: its own and those that it defines."""
+    return {file.stem, *_NAMES.findall(file.read_text(encoding="utf-8", errors="replace"))}
+
+
+def _mentions(test: Path, words: set[str]) -> int:
+    return len(words & set(re.findall(r"\w+", test.read_text(encoding="utf-8"))))
 
 
 def changed(branch: str, root: Path) -> list[Path]:
-    """Return the files that differ from where a branch was left, those not yet committed or added among them."""
+    """Return the files that differ from where a branch was left, those not yet committed or added among them.
+
+    Files that are gone are left out: what still imports them does not pass the check of types.
+    """
     base = _git(root, "merge-base", branch, "HEAD")
     names = _git(root, "diff", "--name-only", *base, "--"), _git(root, "ls-files", "--others", "--exclude-standard")
-    return [Path(name) for found in names for name in found]
+    return [Path(name) for found in names for name in found if (root / name).is_file()]
 
 
 def _git(root: Path, *arguments: str) -> list[str]:
@@ -42,10 +83,21 @@ def _git(root: Path, *arguments: str) -> list[str]:
 
 
 def main(branch: str) -> None:
-    """Print them."""
+    """Print them. Raises `SystemExit` where a file of the product has none."""
     root = Path.cwd()
-    for test in sorted({test for file in changed(branch, root) for test in belonging(file, root)}):
+    graph = importers(root)
+    differing = [file for file in changed(branch, root) if file in graph or _is_test(file) or file.parts[0] in PRODUCT]
+    tests = {file: belonging(file, root, graph) for file in differing}
+    for test in sorted({test for found in tests.values() for test in found}):
         print(test)
+    without = [
+        file for file in differing if not tests[file] and file.parts[0] in PRODUCT and (root / file).stat().st_size
+    ]
+    if without:
+        raise SystemExit(
+            f"a source file needs a test that runs it; got none for {', '.join(map(str, without))}; import it in one, "
+            f"or name one test_{without[0].stem}.py"
+        )
 
 
 if __name__ == "__main__":
