@@ -168,7 +168,7 @@ ONE_CYLINDER = _defining(
 ONE_TIMING = _defining(
     _alike_in_time,
     "along a speed profile each cylinder has stroke times of its own; got several on one crankshaft; use "
-    "crank_angle_ratio, which they share, or leave out speed_profile",
+    "crank_angle_ratio, which they share, or outward_to_inward_time or inward_to_outward_time, the least of theirs",
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,

@@ -11,31 +11,32 @@ import numpy as np
 from ..model.cycle.strokes import Strokes, strokes
 from ..model.kernel.arithmetic import STEP
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.members import cylinder_count
 from ..model.machine.numbers import of_numbers, require_width
 from ..model.machine.raw import Raw
 from .kinds import RATIO, TIME
 from .needs import ONE_TIMING, REPEATS, TURNING
-from .quantity import Array, Group, Quantity, Values, undefined
+from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _SECTION = "2. Closed forms"
 _NEEDS = (TURNING, REPEATS, ONE_TIMING)
 
 
 def of_strokes(
-    mechanism: Mechanism, designs: Array, formula: Callable[[Strokes], Any], gradients: bool
+    mechanism: Mechanism, designs: Array, formula: Callable[[Strokes], Any], gradients: bool, *, cylinder: int = 0
 ) -> tuple[Array, Array | None]:
     """Return a smooth formula of the strokes of designs (n, 3 + k), (n,), and its derivatives by complex steps."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
     lengths = designs[:, :3].T
     with np.errstate(invalid="ignore"):  # of a linkage that does not turn fully: no number
-        values = np.asarray(formula(strokes(mechanism, *lengths)))
+        values = np.asarray(formula(strokes(mechanism, *lengths, cylinder=cylinder)))
         if not gradients:
             return values, None
         slopes = np.zeros(designs.shape)
         for place in range(3):
             stepped = [length + 1j * STEP if place == n else length for n, length in enumerate(lengths)]
-            slopes[:, place] = np.imag(formula(strokes(mechanism, *stepped))) / STEP
+            slopes[:, place] = np.imag(formula(strokes(mechanism, *stepped, cylinder=cylinder))) / STEP
     return values, slopes
 
 
@@ -64,8 +65,15 @@ class StrokeTime(Quantity):
         return Values(angles * rates, by_lengths * rates[:, None] + angles[:, None] * by_speed)
 
 
-class OutwardToInwardTime(Quantity):
-    """Time of the outward stroke over that of the inward one: what a slow stroke is a bound on along a profile."""
+@dataclass(frozen=True, kw_only=True)
+class StrokeQuotient(Quantity):
+    """Time of one stroke over that of the other: what a slow stroke is a least value of along a profile.
+
+    Of several cylinders along a profile it is that of the cylinder in which it is least. outward: whether the outward
+    stroke is the one above.
+    """
+
+    outward: bool
 
     @property
     def of_dimensions(self) -> bool:
@@ -74,7 +82,27 @@ class OutwardToInwardTime(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        return Values(*of_strokes(mechanism, dimensions, lambda found: found.ratio, gradients))
+        values, slopes = self._of_cylinders(mechanism, dimensions, gradients)
+        rows, least = np.arange(values.shape[1]), values.argmin(axis=0)
+        return Values(values[least, rows], None if slopes is None else slopes[least, rows])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the quantity as the least of those of its cylinders; see `Quantity`."""
+        values, slopes = self._of_cylinders(mechanism, dimensions, True)
+        assert slopes is not None
+        labels = np.broadcast_to(np.arange(float(len(values))), values.T.shape)
+        return Pieces(values.T, slopes.transpose(1, 0, 2), labels, least=True)
+
+    def _of_cylinders(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+        """Return the quotients (c, n) of cylinders that differ, and their derivatives (c, n, 3 + k)."""
+
+        def quotient(found: Strokes) -> Any:
+            return found.outward / found.inward if self.outward else found.inward / found.outward
+
+        count = 1 if mechanism.speed_profile is None else cylinder_count(mechanism)
+        parts = [of_strokes(mechanism, designs, quotient, gradients, cylinder=k) for k in range(count)]
+        slopes = [by for _, by in parts if by is not None]
+        return np.stack([values for values, _ in parts]), np.stack(slopes) if slopes else None
 
 
 OUTWARD_STROKE_TIME = StrokeTime(
@@ -107,18 +135,35 @@ INWARD_STROKE_TIME = StrokeTime(
     needs=_NEEDS,
     plain=True,
 )
-OUTWARD_TO_INWARD_TIME = OutwardToInwardTime(
+OUTWARD_TO_INWARD_TIME = StrokeQuotient(
     name="outward_to_inward_time",
     kind=RATIO,
+    outward=True,
     place=104,
     group=Group.MOTION,
     sentence="The time of the outward stroke divided by that of the inward one: above 1 where the outward one is slow.",
-    advice="The time ratio is this number or one over it, whichever is greater.",
+    advice="The time ratio is the greater of this and its inverse. Of cylinders that differ it is the least one.",
     formula="t_out / t_in; at constant speed (180 deg - s b) / (180 deg + s b), s the sign of branch and rotation",
     section=_SECTION,
     picture="time ratio",
     example=1.2,
     in_line=1.0,
-    needs=(ONE_TIMING,),
     plain=True,
 )
+INWARD_TO_OUTWARD_TIME = StrokeQuotient(
+    name="inward_to_outward_time",
+    kind=RATIO,
+    outward=False,
+    place=105,
+    group=Group.MOTION,
+    sentence="The time of the inward stroke divided by that of the outward one: above 1 where the inward one is slow.",
+    advice="The time ratio is the greater of this and its inverse. Of cylinders that differ it is the least one.",
+    formula="t_in / t_out; at constant speed (180 deg + s b) / (180 deg - s b), s the sign of branch and rotation",
+    section=_SECTION,
+    picture="time ratio",
+    example=1.2,
+    in_line=1.0,
+    plain=True,
+)
+STROKE_QUOTIENTS: dict[str, StrokeQuotient] = {"outward": OUTWARD_TO_INWARD_TIME, "inward": INWARD_TO_OUTWARD_TIME}
+"""Of each stroke its time over that of the other one."""

@@ -16,7 +16,7 @@ from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
-from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
+from ...objectives.stroke_times import STROKE_QUOTIENTS
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
@@ -186,16 +186,17 @@ def _in_line(part: Problem, name: str) -> str:
 
 
 def _require_times(part: Problem) -> None:
-    """Raise `InfeasibleError` for a bound on the quotient of stroke times that asks for the other stroke to be slow."""
-    name, outward = OUTWARD_TO_INWARD_TIME.name, part.slow_stroke == "outward"
-    for item in part.constraints:
-        for word, bound in item.sides if item.quantity == name else ():
-            if (bound <= 1.0 and word != "min") if outward else (bound >= 1.0 and word != "max"):
-                raise InfeasibleError(
-                    f"constraints.slow_stroke: a slow {part.slow_stroke} stroke is one whose {name} is "
-                    f"{'above' if outward else 'below'} 1; got constraints.{name} with {word} {bound:.6g}; leave out "
-                    "one of the two"
-                )
+    """Raise `InfeasibleError` for a bound on a quotient of stroke times that asks for the other stroke to be slow."""
+    for stroke, of in STROKE_QUOTIENTS.items():
+        own = stroke == part.slow_stroke
+        for item in part.constraints:
+            for word, bound in item.sides if item.quantity == of.name else ():
+                if (bound <= 1.0 and word != "min") if own else (bound >= 1.0 and word != "max"):
+                    raise InfeasibleError(
+                        f"constraints.slow_stroke: where the {part.slow_stroke} stroke is slow, {of.name} is "
+                        f"{'above' if own else 'below'} 1; got constraints.{of.name} with {word} {bound:.6g}; leave "
+                        "out one of the two"
+                    )
 
 
 def require_slow_stroke(problem: Problem) -> None:

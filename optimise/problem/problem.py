@@ -22,7 +22,6 @@ from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
 from ...objectives.reach import Reach
 from ...objectives.registry import QUANTITIES, listed
-from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
 from ...objectives.tables.evaluate import evaluate
 from ...objectives.tables.swinging import (
     require_in_motion,
@@ -143,10 +142,6 @@ class Problem:
         self._take_formulas()
         require_own_columns(self.own, self.mechanism.varying, self.choices)
         _require_stroke(self.slow_stroke)
-        for variant in self.variants or (self,):
-            reason = OUTWARD_TO_INWARD_TIME.undefined_because([variant.mechanism])
-            if reason and (self.slow_stroke or variant.slow_stroke):
-                raise InputError(f"constraints.slow_stroke: {reason}")
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
                 raise InputError(

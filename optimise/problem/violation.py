@@ -11,7 +11,7 @@ from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.quantity import Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
-from ...objectives.stroke_times import OUTWARD_TO_INWARD_TIME
+from ...objectives.stroke_times import STROKE_QUOTIENTS
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
@@ -30,8 +30,8 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
 
     They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
     deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio, along a speed
-    profile on that of the stroke asked for. Of a swing the
-    only one is on its transmission angle: the margin from its dead points.
+    profile on that of the stroke asked for. Of a swing the only one is on its transmission angle: the margin from its
+    dead points.
     """
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
@@ -52,14 +52,12 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
         return found
     asked = (restated(problem, item) for item in found)
     least = max(c.lower for c in asked if c.quantity == TIME_RATIO.name and c.lower is not None)
-    outward = problem.slow_stroke == "outward"
-    own = next((c for c in constraints if c.quantity == OUTWARD_TO_INWARD_TIME.name), None)
-    if own is not None and outward and own.upper is not None:
-        least = min(least, 1.0 + 0.5 * (own.upper - 1.0))
-    if own is not None and not outward and own.lower is not None:
-        least = min(least, 1.0 + 0.5 * (1.0 / own.lower - 1.0))
-    ends = {"lower": least} if outward else {"upper": 1.0 / least}
-    return merged((*constraints, Constraint(quantity=OUTWARD_TO_INWARD_TIME.name, **ends)))
+    assert problem.slow_stroke is not None
+    name = STROKE_QUOTIENTS[problem.slow_stroke].name
+    upper = next((c.upper for c in constraints if c.quantity == name and c.upper is not None), None)
+    if upper is not None:
+        least = min(least, 1.0 + 0.5 * (upper - 1.0))
+    return merged((*constraints, Constraint(quantity=name, lower=least)))
 
 
 def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:

@@ -137,6 +137,7 @@ MANY = (
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "peak_rocking_couple", "indicated_work"),
     *("peak_reflected_inertia", "peak_crank_pin_force", "peak_guide_force", "peak_slider_jerk", "friction_loss"),
     *("time_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time", "crank_angle_ratio"),
+    "inward_to_outward_time",
 )
 FEW = {"rubbing": ("peak_torque", "rms_torque", "peak_guide_force"), "four-stroke": MANY[:6]}
 
@@ -144,7 +145,7 @@ FEW = {"rubbing": ("peak_torque", "rms_torque", "peak_guide_force"), "four-strok
 def checked(quantity: Quantity, machine: Mechanism, designs: Array, first: Array) -> None:
     """Compare derivatives with extrapolated differences of the piece that is the greatest."""
     pieces = quantity.pieces(machine, designs)
-    place = pieces.values.argmax(axis=1)
+    place = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
     label = pieces.labels[np.arange(len(designs)), place]
 
     def followed(displaced: Array, index: NDArray[np.int64]) -> Array:

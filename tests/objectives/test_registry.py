@@ -23,6 +23,7 @@ NAMES = {
     "peak_rocking_couple",
     *("efficiency", "energy_per_cycle", "friction_loss", "envelope_length", "envelope_height"),
     *("crank_angle_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time"),
+    "inward_to_outward_time",
     *("pv_pivot", "pv_crank_pin", "pv_slider_pin", "wear_pivot", "wear_crank_pin", "wear_slider_pin"),
 }
 

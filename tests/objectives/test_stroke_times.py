@@ -131,6 +131,7 @@ def test_the_feeder_turns_its_time_ratio_and_slow_stroke_round_with_the_profile(
     row = analyse(machine, FEEDER).iloc[0]
     assert row["time_ratio"] == pytest.approx(max(outward / inward, inward / outward), rel=1e-9)
     assert row["outward_to_inward_time"] == pytest.approx(outward / inward, rel=1e-9)
+    assert row["inward_to_outward_time"] == pytest.approx(inward / outward, rel=1e-9)
     assert row["slow_stroke"] == slow
     assert row["crank_angle_ratio"] == pytest.approx(1.20825266, abs=1e-8)
 
@@ -202,7 +203,11 @@ def test_cylinders_along_a_profile_have_times_of_their_own() -> None:
         wanted = times_by_integration(machine, FEEDER, lead)
         found = strokes(both, *FEEDER.T, cylinder=cylinder)
         assert found.outward[0] / abs(machine.speed) == pytest.approx(wanted["outward_stroke_time"], rel=1e-9)
-    for name in ("time_ratio", *TIMES, "outward_to_inward_time"):
+    for name, over in (("outward_to_inward_time", 1.0), ("inward_to_outward_time", -1.0)):
+        each = [strokes(both, *FEEDER.T, cylinder=k).ratio[0] ** over for k in range(2)]
+        assert abs(each[0] - each[1]) > 0.01
+        assert value(name, both, FEEDER) == pytest.approx(min(each), rel=1e-14)
+    for name in ("time_ratio", *TIMES):
         said = QUANTITIES[name].undefined_because([both])
         assert said is not None
         assert "each cylinder has stroke times of its own" in said
