@@ -1,4 +1,4 @@
-"""Energy of a cycle: what the drive gives, what friction takes, and the share of it that reaches the loads."""
+"""Energy of a cycle, one turn or two: work of the drive, friction heat, and the share that comes out as work."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from .needs import DRIVEN, LOAD_WORK, LOSSES, RUBS, WORK
 from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
+_ROUNDING = 1e-12  # share of the friction heat below which the work on the loads is what rounding leaves of none
 
 
 def _circle(slot: int) -> Formula:
@@ -60,18 +61,32 @@ def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array
     return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
 
 
+def _of_drive(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+    """Return the work of the drive torque over a cycle, J (n,), and its derivatives; NaN where friction locks."""
+    found = average_torque(mechanism, designs, gradients=gradients)
+    factor = _TURN * cycle_turns(mechanism) * mechanism.direction
+    return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
+
+
 class EnergyPerCycle(Quantity):
     """Work of the drive torque over a cycle in the sense of rotation; infinite where friction locks."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = average_torque(mechanism, dimensions, gradients=gradients)
-        factor = _TURN * cycle_turns(mechanism) * mechanism.direction
-        locks = np.isinf(found.rms)
-        slopes = None
-        if found.mean_gradients is not None:
-            slopes = np.where(locks[:, None], 0.0, factor * found.mean_gradients)
-        return Values(np.where(locks, np.inf, factor * found.mean + 0.0), slopes)  # no negative zero
+        work, slopes = _of_drive(mechanism, dimensions, gradients)
+        locks = np.isnan(work)
+        if slopes is not None:
+            slopes = np.where(locks[:, None], 0.0, slopes)
+        return Values(np.where(locks, np.inf, work + 0.0), slopes)  # no negative zero
+
+
+class DeliveredWork(Quantity):
+    """Minus the work of the drive torque over a cycle in the sense of rotation."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        work, slopes = _of_drive(mechanism, dimensions, gradients)
+        return Values(-work + 0.0, None if slopes is None else -slopes)  # no negative zero
 
 
 class FrictionLoss(Quantity):
@@ -86,9 +101,11 @@ class FrictionLoss(Quantity):
 
 
 class Efficiency(Quantity):
-    """U / (U + H), of the work U done against the loads and the friction heat H.
+    """Work that comes out over work that is put in, of the work U on the loads and the friction heat H.
 
-    Loads on the crank count. NaN for a design whose loads take no net work, which has none; -inf where friction locks.
+    U / (U + H) where the loads take work; 1 - H / -U where they give it and the crank delivers the rest, 0 where
+    friction takes all of it. Loads on the crank count. NaN for a design whose loads neither take nor give net work;
+    -inf where friction locks.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -99,14 +116,20 @@ class Efficiency(Quantity):
         heat, by_heat = _heat(mechanism, dimensions, work)
         locks = np.isinf(heat)
         useful, by_useful = _useful(mechanism, dimensions, work)
-        there = (useful > 0.0) & ~locks
-        useful, heat = np.where(there, useful, 1.0), np.where(there, heat, 0.0)
+        heat = np.where(locks, 0.0, heat)
+        there = (np.abs(useful) > _ROUNDING * heat) & ~locks
+        useful = np.where(there, useful, 1.0)
+        driven, drives = there & (useful > 0.0), there & (useful < 0.0) & (useful + heat < 0.0)
         given = useful + heat
-        values = np.where(locks, -np.inf, np.where(there, useful / given, np.nan))
+        given = np.where(given != 0.0, given, 1.0)
+        values = np.where(driven, useful / given, np.where(drives, given / useful, 0.0))
+        values = np.where(locks, -np.inf, np.where(there, values, np.nan))
         if by_useful is None or by_heat is None:
             return Values(values, None)
         slopes = ((heat / given)[:, None] * by_useful - (useful / given)[:, None] * by_heat) / given[:, None]
-        return Values(values, np.where(there[:, None], slopes, np.where(locks, 0.0, np.nan)[:, None]))
+        driving = (by_heat - (heat / useful)[:, None] * by_useful) / useful[:, None]
+        slopes = np.where(driven[:, None], slopes, np.where(drives[:, None], driving, 0.0))
+        return Values(values, np.where((there | locks)[:, None], slopes, np.nan))
 
 
 _SECTION = "23. Energy of a cycle"
@@ -115,9 +138,18 @@ EFFICIENCY = Efficiency(
     kind=RATIO,
     place=436,
     group=Group.DRIVE,
-    sentence="The share of the energy of a cycle that reaches the loads: the rest is heat of guide and pins.",
-    advice="Undefined for a design whose loads take no net work over a cycle, such as masses alone.",
-    formula="U / (U + H): U = -(integral of F dx + M d theta), M: torques on the crank, H: friction loss, over a cycle",
+    sentence=(
+        "The share of the work put in over a cycle that comes out: on the loads if the crank is driven, at the crank "
+        "if the loads drive it, as in an engine. The rest is heat of guide and pins."
+    ),
+    advice=(
+        "0 where friction takes all that the loads give. Undefined for a design whose loads take and give no net work, "
+        "such as masses alone."
+    ),
+    formula=(
+        "U / (U + H) for U > 0, max(0, 1 + H / U) for U < 0: U = -(integral of F dx + M d theta), M: torques on the "
+        "crank, H: friction loss, over a cycle"
+    ),
     section=_SECTION,
     picture="torque",
     example=0.9,
@@ -131,24 +163,50 @@ ENERGY_PER_CYCLE = EnergyPerCycle(
     place=437,
     group=Group.DRIVE,
     sentence=(
-        "The net work of the drive over a cycle: what the load takes, and friction; negative where the load drives "
-        "the machine."
+        "The net work of the drive over a cycle, a turn or two: what the load takes, and friction; negative where the "
+        "load drives the machine."
     ),
     advice="What the drive gives and takes back within the cycle, such as kinetic energy, cancels.",
     formula="(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
     section=_SECTION,
     picture="torque",
     signed=True,
+    quotient=EFFICIENCY.name,
+    needs=(DRIVEN, WORK),
+    instead=MEAN_TORQUE.instead,
+    plain=True,
+)
+DELIVERED_WORK = DeliveredWork(
+    name="delivered_work",
+    title="delivered work per cycle",
+    short="delivered work",
+    kind=ENERGY,
+    place=435,
+    group=Group.DRIVE,
+    sentence=(
+        "The work that the crank gives over a cycle, a turn or two, to whatever it drives; negative for a machine that "
+        "must be driven."
+    ),
+    advice="It tells a driving machine from a driven one: maximise it in either case.",
+    formula="-(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
+    section="10. Motor and balance",
+    picture="torque",
+    example="-60 J",
+    better="high",
+    signed=True,
+    quotient=EFFICIENCY.name,
     needs=(DRIVEN, WORK),
     instead=MEAN_TORQUE.instead,
     plain=True,
 )
 FRICTION_LOSS = FrictionLoss(
     name="friction_loss",
+    title="friction loss per cycle",
+    short="friction loss",
     kind=ENERGY,
     place=438,
     group=Group.DRIVE,
-    sentence="The heat of guide and pins over a cycle.",
+    sentence="The heat of guide and pins over a cycle: a turn, two with a cycle of 720 deg.",
     advice="It is the same at every speed where the load alone makes the forces.",
     formula="integral of mu |N| |x'| + rho_O |P| + rho_A |A| (1 - phi') + rho_B |B| |phi'| over the crank angle",
     section=_SECTION,

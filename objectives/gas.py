@@ -52,18 +52,21 @@ CLEARANCE_RATIO = _gas(
 )
 INDICATED_WORK = _gas(
     name="indicated_work",
+    title="indicated work per cycle",
+    short="indicated work",
     kind=ENERGY,
     of=lambda gas: gas.work,
     place=430,
     sentence=(
-        "The work that the gas does on the pistons over a turn: positive for an engine, negative for a compressor or "
-        "pump, which takes it."
+        "The work that the gas does on the pistons over a cycle, a turn or two: positive for an engine, negative for a "
+        "compressor or pump, which takes it."
     ),
     advice="Maximise it in either case. Friction and other loads are not in it; with them it is the delivered work.",
-    formula="sum of the areas of p over V: closed integral of p dV",
+    formula="sum of the areas of p over V: integral of p dV over a cycle, one turn or two",
     example="-60 J",
     better="high",
     signed=True,
+    quotient="efficiency",
 )
 MEAN_EFFECTIVE_PRESSURE = _gas(
     name="mean_effective_pressure",

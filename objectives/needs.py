@@ -128,8 +128,8 @@ WORK = Need(
 )
 LOAD_WORK = _defining(
     load_works_over_a_turn,
-    "an efficiency is the share of the energy that reaches the load; got no load that takes net work over a turn; add "
-    'for example [[load]] force = "200 N", opposes = "motion"',
+    "an efficiency is the share of the work put in that comes out; got no load that takes or gives net work over a "
+    'cycle; add for example [[load]] force = "200 N", opposes = "motion"',
 )
 _RUBS = "add for example [friction] guide = 0.1"
 RUBS = _defining(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")

@@ -139,13 +139,13 @@ class Quantity(ABC):
     source: of the equations. picture: what a picture of the linkage points out.
 
     example: a usual value as job files have it, that of the kind if left out. better: the usual direction. signed:
-    whether it may be negative. domain: values that some linkage has. floor: least value that holds where a job sets
-    none, SI. in_line: its value for every design without offset. endless: why it may be infinite for every design, as
-    a sentence. needs: of the machine. instead: quantities that serve
-    where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances: whether it includes
-    tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a design has it.
-    plain: whether it follows from others at a glance, so that a short table leaves it out. turning: whether it is of a
-    crank that turns through, so that a swing has none.
+    whether it may be negative. quotient: the quantity that serves where a formula would divide by it. domain: values
+    that some linkage has. floor: least value that holds where a job sets none, SI. in_line: its value for every design
+    without offset. endless: why it may be infinite for every design, as a sentence. needs: of the machine. instead:
+    quantities that serve where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances:
+    whether it includes tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a
+    design has it. plain: whether it follows from others at a glance, so that a short table leaves it out. turning:
+    whether it is of a crank that turns through, so that a swing has none.
     """
 
     name: str
@@ -164,6 +164,7 @@ class Quantity(ABC):
     example: str | float | None = fact(None)
     better: Better = fact("low")
     signed: bool = fact(False)
+    quotient: str = fact("")
     domain: Domain | None = fact(None)
     floor: float | None = fact(None)
     in_line: float | None = fact(None)

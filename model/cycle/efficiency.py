@@ -1,14 +1,16 @@
 """Work balance of a cycle: load, friction of each joint, kinetic energy.
 
-Per turn, with dt = dtheta / w at constant speed:
+Per cycle, one turn or two, with dt = dtheta / w at constant speed:
 
-- input: integral of T over the turn, in the direction of turning;
+- input: integral of T over the cycle, in the direction of turning;
 - useful: work done against the loads, minus the integral of F dx (F, x positive outward) and, of torques M on the
   crank, of M dtheta;
 - friction heat: mu |N| |dx| in the guide, rho |F| times the relative turning in the pins: |phi'| in the slider pin,
   1 - phi' in the crank pin, 1 in the crank pivot;
 - stored: what the crank's acceleration, if there is one, puts into kinetic energy. Springs and gravity give back in a
   turn what they take.
+
+Loads that do net work on the machine drive it: what friction leaves of that comes out at the crank.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Energies:
-    """Energies of one turn, J. useful: work done against the load, negative if the load drives.
+    """Energies of one cycle, a turn or two, J. useful: work done against the load, negative if the load drives.
 
     throughput: integral of |F dx|, by which it can be told whether the useful work is more than rounding.
     """
@@ -57,14 +59,19 @@ class Energies:
 
     @property
     def efficiency(self) -> float | None:
-        """Useful work over useful work and friction heat; None if the load takes no net work."""
-        if self.useful <= _ROUNDING * self.throughput:
+        """Work that comes out over work that is put in; None if the load neither takes nor gives net work.
+
+        Put in are useful work and friction heat by the crank or, where the load drives, its work; out at the crank
+        comes then what friction leaves, if anything.
+        """
+        if abs(self.useful) <= _ROUNDING * self.throughput:
             return None
-        return self.useful / (self.useful + self.heat)
+        net = self.useful + self.heat
+        return self.useful / net if self.useful > 0.0 else max(0.0, net / self.useful)
 
 
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
-    """Return the energies of one turn of one linkage, of a cycle of two turns their mean.
+    """Return the energies of one cycle of one linkage.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
     """
@@ -101,8 +108,7 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
     ends = np.concatenate([edges[:1], *(np.linspace(a, b, 1 + _PIECES)[1:] for a, b in pairwise(edges))])
     sizes = np.abs(rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
     panels = panels_of(rates, ends, np.where(sizes > 0.0, sizes, 1.0))
-    whole = map(panels.integral, range(len(sizes)))
-    given, useful, guide, pivot, crank_pin, slider_pin, throughput = (energy / turns for energy in whole)
+    given, useful, guide, pivot, crank_pin, slider_pin, throughput = map(panels.integral, range(len(sizes)))
     inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
-    stored = turn * 2.0 * np.pi * mechanism.acceleration * float(inertia)
+    stored = turn * turns * TURN * mechanism.acceleration * float(inertia)
     return Energies(given, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)

@@ -1,4 +1,4 @@
-"""Work and volumes of the gas in a machine's cylinders over a turn, in closed form.
+"""Work and volumes of the gas in a machine's cylinders over a cycle, in closed form.
 
 With L the logarithm of the ratio of volumes that the gas expands by, p V^n = const does the work
 
@@ -38,9 +38,9 @@ _SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below round
 class GasCycle(NamedTuple):
     """Sums over the cylinders of n designs, each (n,), real or complex.
 
-    swept, clearance: volumes, m^3. work: of the gas on the pistons over a turn, J. cycle_work: over the cycle of each,
-    of two turns for four strokes, J. delivers: of compressors alone, the volume taken in over the swept one; zero or
-    less where nothing is delivered.
+    swept, clearance: volumes, m^3. work: of the gas on the pistons over a cycle of the machine, one turn or two, J.
+    cycle_work: over one cycle of each cylinder, of two turns for four strokes, J. delivers: of compressors alone, the
+    volume taken in over the swept one; zero or less where nothing is delivered.
     """
 
     swept: Any
@@ -114,9 +114,8 @@ def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> t
 
 
 def _joined(first: GasCycle, second: GasCycle) -> GasCycle:
-    """Return the sums of both turns: work is the mean, that of the cycles the sum."""
-    work = 0.5 * (first.work + second.work)
-    return first._replace(work=work, cycle_work=first.cycle_work + second.cycle_work)
+    """Return the sums of both turns."""
+    return first._replace(work=first.work + second.work, cycle_work=first.cycle_work + second.cycle_work)
 
 
 def _differentiated(of: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:

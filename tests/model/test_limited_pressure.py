@@ -91,7 +91,7 @@ def test_the_work_is_that_of_the_closed_expression(seed: int) -> None:
     whole = peak * (burnt - clearance) + (peak * burnt - last * ratio * clearance) / (down - 1.0)
     whole -= (compressed * clearance - given["intake"] * ratio * clearance) / (up - 1.0)
     four = isinstance(load, FourStroke)
-    wanted = 0.5 * (whole + (load.low - 1.1e5) * volume) if four else whole
+    wanted = whole + (load.low - 1.1e5) * volume if four else whole
     size = peak * volume
     for name in ("indicated_work", "delivered_work"):
         found = QUANTITIES[name].evaluate(machine, design).values[0]

@@ -147,9 +147,9 @@ def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Co
         assert titles[key] not in shown
     for key, value in row.items():
         assert (value is None) == (key in row["undefined"])
-    assert "efficiency, friction loss: " not in shown  # of one rule each
+    assert "efficiency, friction loss per cycle: " not in shown  # of one rule each
     assert "efficiency: without friction nothing is lost, and the efficiency of every design is 1\n" in shown
-    assert "friction loss: it comes from friction in loaded joints\n" in shown
+    assert "friction loss per cycle: it comes from friction in loaded joints\n" in shown
     assert titles["peak_torque_Nm"] in shown
     assert "--show: static_forces, friction, motor" in shown
 

@@ -1,4 +1,4 @@
-"""Friction of one design: self-locking, what friction adds to torque and forces, where the work of a turn goes."""
+"""Friction of one design: self-locking, what friction adds to torque and forces, where the work of a cycle goes."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
-    """Return verdict, torque with and without friction, energies of a turn and efficiency of one linkage.
+    """Return verdict, torque with and without friction, energies of a cycle and efficiency of one linkage.
 
-    What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes no net
-    work.
+    What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes
+    and gives no net work.
     """
     whole, mechanism = is_shaft(mechanism), alone(mechanism)
     friction, found = mechanism.friction, verdict(mechanism, linkage)
@@ -100,12 +100,15 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         without = f"over the crank angle, {without}" if name == "mean torque" else without
         lines.append((name, numbers[f"{stem}_{suffix}"], unit, without))
     efficiency = numbers["efficiency"]
-    why = "the load takes no net work" if heat is not None else "nothing is determined"
+    drives = (numbers["useful_work_J"] or 0.0) < 0.0
+    side = "negative: the load drives the machine" if drives else "against the load"
+    share_of = "of the load's work, what the crank delivers" if drives else ""
+    why = "the load takes and gives no net work" if heat is not None else "nothing is determined"
     lines += [
-        ("input work a turn", numbers["input_work_J"], "J", ""),
-        ("useful work a turn", numbers["useful_work_J"], "J", "against the load"),
-        ("friction heat a turn", heat, "J", share),
-        ("efficiency", *((None, "%", why) if efficiency is None else (100.0 * efficiency, "%", ""))),
+        ("input work per cycle", numbers["input_work_J"], "J", ""),
+        ("useful work per cycle", numbers["useful_work_J"], "J", side),
+        ("friction heat per cycle", heat, "J", share),
+        ("efficiency", *((None, "%", why) if efficiency is None else (100.0 * efficiency, "%", share_of))),
     ]
     of = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""
     text.show_lines(console, f"Friction{of}: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", lines)
