@@ -28,7 +28,9 @@ class CyclePeak(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
-        return Values(found.values[:, 0], None if found.gradients is None else found.gradients[:, 0])
+        return Values(
+            found.values[:, 0] + 0.0, None if found.gradients is None else found.gradients[:, 0]
+        )  # no negative zero
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""

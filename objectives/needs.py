@@ -10,6 +10,7 @@ from typing import Literal
 from ..model.cycle.gas_cycle import compressors, cylinders
 from ..model.machine.dissipation import (
     crank_weighs,
+    drive_loaded,
     linkage_loaded,
     load_works_over_a_turn,
     moves,
@@ -70,9 +71,7 @@ def _swinging(machine: Mechanism) -> bool:
 
 
 def _driven(machine: Mechanism) -> bool:
-    # At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
-    m = machine.fullest
-    return linkage_loaded(m) or (crank_weighs(m) and (any(m.gravity) or m.acceleration != 0.0))
+    return drive_loaded(machine.fullest)
 
 
 def _loaded(machine: Mechanism) -> bool:
@@ -93,6 +92,7 @@ _LOADS = (
     "it comes from masses that move or weigh, and from loads; got none; add for example "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
+_ON_LINKAGE = _LOADS.replace("from loads;", "from loads on the slider;")
 _SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
@@ -117,9 +117,9 @@ MASSES = Need(_masses, _MASSES)
 SWINGING_MASSES = Need(_swinging, _MASSES)
 """Masses whose angular momentum changes: a crank at constant speed shakes by a force through its pivot."""
 DRIVEN = Need(_driven, _LOADS)
-LOADED = Need(_loaded, _LOADS)
+LOADED = Need(_loaded, _ON_LINKAGE)
 """Masses or loads beyond the crank."""
-PIVOT_LOADED = Need(_pivot_loaded, _LOADS)
+PIVOT_LOADED = Need(_pivot_loaded, _ON_LINKAGE)
 WORK = Need(
     works_over_a_turn,
     "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no load that "

@@ -10,6 +10,8 @@ from .kinds import TORQUE
 from .needs import DRIVEN
 from .quantity import Array, Group, Quantity, Values
 
+_ROUNDING = 4e-15
+
 
 class TorqueFluctuation(Quantity):
     """sqrt(rms^2 - mean^2) of the drive torque, both over the crank angle; infinite where friction locks."""
@@ -19,7 +21,9 @@ class TorqueFluctuation(Quantity):
         found = average_torque(mechanism, dimensions, gradients=gradients)
         locks = np.isinf(found.rms_over_angle)
         mean, rms = np.where(locks, 0.0, found.mean), np.where(locks, 1.0, found.rms_over_angle)
-        values = np.sqrt(np.maximum(rms - np.abs(mean), 0.0) * (rms + np.abs(mean)))
+        apart = rms - np.abs(mean)
+        apart = np.where(apart > _ROUNDING * rms, apart, 0.0)  # of a torque that is the same at every crank angle
+        values = np.sqrt(apart * (rms + np.abs(mean)))
         slopes = None
         if found.mean_gradients is not None and found.rms_over_angle_gradients is not None:
             per = np.where(values > 0.0, 1.0 / np.where(values > 0.0, values, 1.0), 0.0)

@@ -12,6 +12,7 @@ from collections.abc import Hashable
 from dataclasses import replace
 
 from .links import Bar, Link, RigidLink
+from .loads.load import Load
 from .mechanism import Mechanism
 from .remembered import remembered
 from .varying import Varying
@@ -70,8 +71,22 @@ def linkage_loaded(machine: Mechanism) -> bool:
 
 def pushed(machine: Mechanism) -> bool:
     """Return whether loads act on the slider: some that need no speed, or any while it moves."""
-    moving = machine.speed != 0.0
-    return any((moving or not load.speed_power) and not load.on_crank for load in machine.loads)
+    return any(not load.on_crank for load in _acting(machine))
+
+
+def drive_loaded(machine: Mechanism) -> bool:
+    """Return whether the drive needs a torque: for the linkage, for loads on the crank, or for the crank itself.
+
+    At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
+    """
+    turned = any(load.on_crank for load in _acting(machine))
+    lifted = crank_weighs(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
+    return linkage_loaded(machine) or turned or lifted
+
+
+def _acting(machine: Mechanism) -> list[Load]:
+    """Return the loads that act: those that need no speed, and all while the crank turns."""
+    return [load for load in machine.loads if machine.speed != 0.0 or not load.speed_power]
 
 
 def pivot_loaded(machine: Mechanism) -> bool:

@@ -83,6 +83,11 @@ def design_flywheel(
     estimate = runner.energy_change(speed) / (fluctuation * speed**2) if speed else 0.0
     inertia = 0.0
     if not surplus(0.0) >= 0.0:
+        if speed and not estimate:
+            raise InputError(
+                "a flywheel evens out a torque that varies over the cycle; got one that does not, and no inertia at "
+                "some crank angle: any flywheel keeps the speed; add masses, or loads that vary"
+            )
         enough = 1.1 * estimate
         for _ in range(_WIDEST):
             if surplus(enough) >= 0.0:

@@ -19,6 +19,8 @@ from .forward import drive_of
 from .shaft import equation_of
 from .turn import Guess, PeriodicTurn, Profile, Torque
 
+_ROUNDING = 1e-13  # share of the greatest torque over the cycle: a change of energy below is none
+
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyRunning:
@@ -149,7 +151,9 @@ class Runner:
         turn, pace = self.turn.rubbing_at(speed), np.array(self.turn.way * speed)
         torque = turn.terms.torque(pace, 0.0) + turn.friction(pace, 0.0)
         starts, nodes = turn.integral(turn.mean(torque) - torque)
-        return float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))
+        change = float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))
+        rounding = _ROUNDING * turn.equation.period * float(np.abs(torque).max())
+        return change if change > rounding else 0.0
 
     def _motor(self, drive: Drive) -> Torque:
         """Return the drive's torque; beyond a table it goes on as at the end, so that an iteration may stray."""
