@@ -6,8 +6,8 @@ Smooth curves are integrated by the trapezoidal rule in the crowded angle, which
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
 the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
 grow in number with 1 / kappa. The rod's direction would lose digits likewise; `quadrature.square_along` keeps them.
-Without friction the torque is continuous (loads that jump at a dead centre do so where the slider stands still), so
-moving breakpoints add nothing to the derivatives.
+Loads that jump at a dead centre do so where the slider stands still, so that without friction only steps of tables make
+the torque jump. A breakpoint that moves adds the jump times its own motion to the derivatives.
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
 to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
@@ -140,6 +140,7 @@ def _average(
     mean_slope: Table,
     rms_slope: Table,
     rubbing: bool,
+    jumps: bool,
 ) -> None:
     nodes, weights, tail = rule
     room = room_for(loads)
@@ -230,8 +231,8 @@ def _average(
                         for v in range(nv):
                             mean_slope[n, v] += weight[i] * slope[v, i]
                             rms_slope[n, v] += weight[i] * value[i] * slope[v, i]
-            if rubbing:
-                # With friction the torque may jump at a cut, which then adds the jump times the cut's own motion.
+            if jumps:
+                # The torque may jump at a cut, which then adds the jump times the cut's own motion.
                 for end in range(2):
                     i, theta = (s + 1) % count if end else s, b if end else a
                     square = square_along(theta, d, gaps[n])
@@ -283,6 +284,7 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
     slopes = np.empty((2, n if gradients else 0, len(columns)))
     watch = watch_of(mechanism, kind)
     rubbing = kind.needs_forces and rubs(mechanism)
+    jumps = rubbing or (kind.needs_forces and any(load.steps for load in mechanism.fullest.loads))
     rule, gaps = panel_rule(), gaps_of(*designs.T[:3])
 
     def work(begin: int, end: int) -> None:
@@ -302,6 +304,7 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
             slopes[0, part],
             slopes[1, part],
             rubbing,
+            jumps,
         )
 
     in_chunks(n, work)

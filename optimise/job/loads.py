@@ -37,6 +37,15 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     return points
 
 
+def stepping(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+    """Return the points of a load's table in SI, refusing any below the one before, and a third one at one place."""
+    at: tuple[float, ...] = handler(given)
+    n = model.out_of_order(at)
+    if n is not None:
+        raise InputError(model.order_rule(n, at, shown(given[n]), shown(given[n - 1])))
+    return at
+
+
 class LoadPart(Checked[model.Load]):
     """A load."""
 
@@ -65,7 +74,7 @@ def _part(table: model.Table) -> type[LoadPart]:
 def _type(entry: model.Entry) -> Any:
     one: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
     several: Any = tuple.__class_getitem__((one, ...)) if entry.several else one
-    return Annotated[several, WrapValidator(increasing)] if entry.increasing else several
+    return Annotated[several, WrapValidator(stepping)] if entry.increasing else several
 
 
 def _field(entry: model.Entry) -> Any:

@@ -145,12 +145,12 @@ def test_loads_add_up() -> None:
             "positions of a table must increase; got 1 after 2; sort the table",
         ),
         (
-            lambda: AngleTable(angles=(0.0, 1.0, 1.0), forces=(1.0, 2.0, 3.0)),
-            "angles of a table must increase; got 1 after 1; sort the table",
+            lambda: AngleTable(angles=(0.0, 1.0, 0.5), forces=(1.0, 2.0, 3.0)),
+            "angles of a table must increase; got 0.5 after 1; sort the table",
         ),
         (
-            lambda: AngleTable(angles=(0.0, 2.0 * math.pi), forces=(1.0, 1.0)),
-            "must span less than 360 deg; got 360 deg; leave out the last point",
+            lambda: AngleTable(angles=(0.0, 2.5 * math.pi), forces=(1.0, 1.0)),
+            "must span 360 deg at most; got 450 deg; for a cycle of two turns",
         ),
     ],
 )

@@ -138,14 +138,14 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
         ),
         ({"back_pressure": "-1 bar"}, 'back_pressure.*at or above vacuum, 0; got "-1 bar"'),
         (
-            {"pressure_angles": ["0 deg", "40 deg", "360 deg"]},
-            "must come back to the first one after 360 deg; got 2 bar at the end and 8 bar at the start",
+            {"pressure_angles": ["40 deg", "40 deg", "40 deg"]},
+            'must increase, but for two at a step; got "40 deg" three times',
         ),
         ({"bore": "0 mm"}, "bore: must be positive"),
         ({"piston_rod": "100 mm"}, "thinner than the bore; got 100 mm"),
         (
             {"pressure_angles": ["0 deg", "40 deg", "720 deg"]},
-            "less than 360 deg; got 720 deg; for a cycle of two turns",
+            "360 deg at most; got 720 deg; for a cycle of two turns",
         ),
         ({"pressure_angles": ["0 deg", "40 deg", "30 deg"]}, "must increase; got"),
         ({"pressures": ["1 bar", "2 bar"]}, "got 2 pressures at 3 points"),
@@ -156,16 +156,7 @@ def test_a_wrong_table_of_pressures_is_refused_at_its_key(wrong: dict[str, Any],
         built({**OVER_ANGLE, **wrong})
 
 
-@pytest.mark.parametrize(
-    ("degrees", "forces", "words"),
-    [
-        ((0.0, 180.0, 360.0), (5.0, 1.0, 5.0), "leave out the last point, which repeats the first"),
-        ((0.0, 180.0, 360.0), (5.0, 1.0, 1.0), "does not close"),
-        ((0.0, 180.0, 720.0), (5.0, 1.0, 5.0), "for a cycle of two turns give cycle"),
-    ],
-)
-def test_tables_of_a_turn_and_more_are_refused_with_what_they_need(
-    degrees: tuple[float, ...], forces: tuple[float, ...], words: str
-) -> None:
-    with pytest.raises(InputError, match=words):
+def test_tables_of_more_than_a_turn_are_refused_with_what_they_need() -> None:
+    degrees, forces = (0.0, 180.0, 720.0), (5.0, 1.0, 5.0)
+    with pytest.raises(InputError, match="for a cycle of two turns give cycle"):
         AngleTable(angles=tuple(np.radians(degrees).tolist()), forces=forces)

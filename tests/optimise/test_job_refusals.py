@@ -77,6 +77,11 @@ BAD: list[tuple[str, str, list[str]]] = [
         'positions = ["2 mm", "1 mm"]\nforces = ["1 N", "2 N"]',
         ["load #2.positions", "must increase", '"1 mm" after "2 mm"', "sort the table"],
     ),
+    (
+        LOAD,
+        'positions = ["1 mm", "2 mm", "2 mm", "2 mm"]\nforces = ["1 N", "2 N", "3 N", "4 N"]',
+        ["load #2.positions", "but for two at a step", 'got "2 mm" three times', "keep the values before and after"],
+    ),
     (LOAD, 'positions = ["1 mm", "2 mm"]\nforces = ["1 N"]', ["load #2.forces", "at least 2", "got 1"]),
     (
         LOAD,
@@ -90,8 +95,8 @@ BAD: list[tuple[str, str, list[str]]] = [
     ),
     (
         LOAD,
-        'crank_angles = ["0 deg", "360 deg"]\nforces = ["1 N", "1 N"]',
-        ["load #2", "less than 360 deg", "leave out the last point"],
+        'crank_angles = ["0 deg", "400 deg"]\nforces = ["1 N", "1 N"]',
+        ["load #2", "360 deg at most", "got 400 deg", 'give cycle = "720 deg"'],
     ),
     # Tolerances
     ('crank = "0.05 mm"', 'crank = "0,05 mm"', ["tolerances.crank", '"0,05 mm"', "point"]),

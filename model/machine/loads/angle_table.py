@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ...arrays import Array
 from ...checks import keep_tuples
 from ...errors import InputError
 from .cylinder import PRESSURES, Head, piston_forces
@@ -25,6 +26,7 @@ from .load import (
     Passage,
     Table,
     built,
+    has_step,
     points,
     require_table,
     require_word,
@@ -38,10 +40,11 @@ _TURN = 2.0 * math.pi
 class AngleTable(Load):
     """A force tabulated over crank angle, interpolated linearly and periodically.
 
-    angles: increasing, rad, spanning less than the cycle (the first point follows the last one a cycle later).
-    forces: N, positive outward. during: the force acts in these strokes. datum: what the angles are counted from: zero,
-    counter-clockwise, or a dead centre, in the sense in which the crank turns. cycle: one turn or two. turn: 0, or the
-    one of the two turns that the load is of (`two_turns`).
+    angles: increasing, two equal ones where the force steps, rad. The first point follows the last one a cycle later; a
+    last one that is there itself has the force before the first, from which that steps. forces: N, positive outward.
+    during: the force acts in these strokes. datum: what the angles are counted from: zero, counter-clockwise, or a dead
+    centre, in the sense in which the crank turns. cycle: one turn or two. turn: 0, or the one of the two turns that the
+    load is of (`two_turns`).
     """
 
     angles: tuple[float, ...]
@@ -61,25 +64,23 @@ class AngleTable(Load):
         require_word("datum", self.datum, AngleDatum)
         require_word("cycle", self.cycle, CycleAngle)
         span = self.angles[-1] - self.angles[0]
-        if span >= self._period:
-            raise InputError(
-                f"angles of a periodic table must span less than {self.cycle}; got {math.degrees(span):.6g} deg; "
-                + self._instead(span)
-            )
-
-    def _instead(self, span: float) -> str:
-        """Return the remedy for a table of a cycle or more."""
         if span > self._period + _ROUNDING:
             more = self.cycle == "720 deg" or span > 2.0 * _TURN + _ROUNDING
-            return "give two turns at most" if more else 'for a cycle of two turns give cycle = "720 deg"'
-        if self.forces[0] == self.forces[-1]:
-            return "leave out the last point, which repeats the first"
-        unit = self.tabulated[1]
-        return (
-            f"its last point is the first one {self.cycle} later, with another value, {self.forces[-1]:.6g} {unit} "
-            f"after {self.forces[0]:.6g} {unit}, so that the table does not close; correct one of the two and leave "
-            "out the last"
-        )
+            raise InputError(
+                f"angles of a periodic table must span {self.cycle} at most; got {math.degrees(span):.6g} deg; "
+                + ("give two turns at most" if more else 'for a cycle of two turns give cycle = "720 deg"')
+            )
+        if self._closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
+            raise InputError(
+                f"the first angle of a periodic table comes again {self.cycle} later; got three points there, from "
+                f"{math.degrees(self.angles[0]):.6g} deg to {math.degrees(self.angles[-1]):.6g} deg; keep the forces "
+                "before and after the step"
+            )
+
+    @property
+    def _closed(self) -> bool:
+        """Whether the last point is the first one a cycle later."""
+        return self.angles[-1] - self.angles[0] >= self._period - _ROUNDING
 
     @property
     def _period(self) -> float:
@@ -100,16 +101,35 @@ class AngleTable(Load):
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
         """Return angles and forces, closed: the first knot comes again a cycle later. Of one turn both its ends."""
-        if self.turn:
-            begin = _TURN * (self.turn - 1)
-            inside = np.mod(np.subtract(self.angles, begin), self._period)
-            kept = np.sort(inside[(inside > _ROUNDING) & (inside < _TURN - _ROUNDING)])
-            at = np.concatenate([[0.0], kept, [_TURN]])
-            return at.tolist(), self._force(at + begin).tolist()
-        return (*self.angles, self.angles[0] + self._period), (*self.forces, self.forces[0])
+        inner = len(self.angles) - self._closed
+        at = (*self.angles[:inner], self.angles[0] + self._period)
+        forces = (*self.forces[:inner], self.forces[-1 if self._closed else 0])
+        return self._of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
+
+    def _of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
+        """Return the knots of one turn of two, from 0 to a turn: its ends have the forces within."""
+        begin = _TURN * (self.turn - 1)
+        shift = self._period * math.floor((begin - at[0]) / self._period) - begin
+        if forces[-1] == forces[0]:
+            at, forces = at[:-1], forces[:-1]
+        else:  # both sides of the step at the seam, exactly at one angle
+            at, forces = np.r_[at[0], at[:-1]], np.r_[forces[-1], forces[:-1]]
+        at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1)])
+        forces = np.tile(forces, 3)
+        inside = (at > _ROUNDING) & (at < _TURN - _ROUNDING)
+        low, high = (int(np.searchsorted(at, end)) for end in (_ROUNDING, _TURN - _ROUNDING))
+        first = forces[low - 1] if at[low - 1] >= -_ROUNDING else np.interp(0.0, at, forces)
+        last = forces[high] if at[high] <= _TURN + _ROUNDING else np.interp(_TURN, at, forces)
+        return [0.0, *at[inside].tolist(), _TURN], [float(first), *forces[inside].tolist(), float(last)]
 
     def _force(self, angle: Any) -> Any:
-        return np.interp(angle, self.angles, self.forces, period=self._period)
+        at, forces = replace(self, turn=0).knots()
+        return np.interp(at[0] + np.mod(angle - at[0], self._period), at, forces)
+
+    @property
+    def steps(self) -> bool:
+        """Whether the force steps at an angle."""
+        return has_step(self.angles) or (self._closed and self.forces[-1] != self.forces[0])
 
     @property
     def turns(self) -> bool:
@@ -146,13 +166,7 @@ class AngleTable(Load):
 def _of_pressures(
     pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
 ) -> AngleTable:
-    forces, given = piston_forces(pressure_angles, head=head, **pressures), pressures["pressures"]
-    period = 2.0 * _TURN if cycle == "720 deg" else _TURN
-    if abs(pressure_angles[-1] - pressure_angles[0] - period) <= _ROUNDING and given[0] != given[-1]:
-        raise InputError(
-            f"pressures must come back to the first one after {cycle}; got {1e-5 * given[-1]:.6g} bar at the end and "
-            f"{1e-5 * given[0]:.6g} bar at the start; correct one of the two and leave out the last point"
-        )
+    forces = piston_forces(pressure_angles, head=head, **pressures)
     return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during)
 
 
@@ -161,11 +175,10 @@ AngleTable.tables = (
         "crank_angles",
         "AngleLoad",
         "table of forces over the crank angle",
-        "A force tabulated over the crank angle: linear between the points, periodic.",
+        "A force tabulated over the crank angle: linear between the points, periodic; two points at one angle "
+        "are a step.",
         (
-            points(
-                "crank_angles", "Angle", "crank angles, increasing, spanning less than the cycle", "0 deg", "90 deg"
-            ),
+            points("crank_angles", "Angle", "crank angles, increasing, within one cycle", "0 deg", "90 deg"),
             FORCES,
             ANGLE_DATUM,
             CYCLE,
@@ -178,13 +191,13 @@ AngleTable.tables = (
         "pressure_angles",
         "PressureAngleLoad",
         "table of pressures over the crank angle",
-        "Pressure in a cylinder over the crank angle: linear between the points, periodic; pressures are absolute.",
+        "Pressure in a cylinder over the crank angle: linear between the points, periodic; two points at one angle "
+        "are a step; pressures are absolute.",
         (
             points(
                 "pressure_angles",
                 "Angle",
-                "crank angles from the dead centre at the head, in the sense of rotation, increasing, spanning less "
-                "than the cycle",
+                "crank angles from the dead centre at the head, in the sense of rotation, increasing, within one cycle",
                 "0 deg",
                 "90 deg",
             ),

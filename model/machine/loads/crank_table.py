@@ -49,11 +49,10 @@ CrankTable.tables = (
         "torque_angles",
         "CrankTorqueTableLoad",
         "table of torques on the crank over the crank angle",
-        "A torque on the crank tabulated over the crank angle: linear between the points, periodic.",
+        "A torque on the crank tabulated over the crank angle: linear between the points, periodic; two points at "
+        "one angle are a step.",
         (
-            points(
-                "torque_angles", "Angle", "crank angles, increasing, spanning less than the cycle", "0 deg", "90 deg"
-            ),
+            points("torque_angles", "Angle", "crank angles, increasing, within one cycle", "0 deg", "90 deg"),
             Entry(
                 "torques",
                 "Torque",

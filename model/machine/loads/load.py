@@ -135,8 +135,16 @@ class Load:
         raise NotImplementedError
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return where the load's table has knots, and the forces there; none if it has no table."""
+        """Return where the load's table has knots, and the forces there; none if it has no table.
+
+        Two knots at one place are a step: the first has the force before it, the second the force after it.
+        """
         return (), ()
+
+    @property
+    def steps(self) -> bool:
+        """Whether the table steps: a force that jumps while the slider moves."""
+        return False
 
     @property
     def turns(self) -> bool:
@@ -215,7 +223,7 @@ def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
 
 
 def points(name: str, kind: str, description: str, *example: str) -> Entry:
-    """Return the key of where the points of a table are, in increasing order."""
+    """Return the key of where the points of a table are, in increasing order; two equal ones are a step."""
     return Entry(name, kind, description, list(example), several=True, increasing=True)
 
 
@@ -226,17 +234,35 @@ def require_word(name: str, value: object, words: object) -> None:
 
 
 def require_table(what: str, at: Sequence[float], forces: Sequence[float], *, of: str = "forces") -> None:
-    """Refuse a table that does not increase, is not finite or has fewer than two points."""
+    """Refuse a table that decreases or has three points at one place, is not finite or has fewer than two points."""
     if len(at) != len(forces) or len(at) < 2:
         raise InputError(
             f"a table needs as many {of} as {what}, two at least; got {len(at)} {what} and {len(forces)} {of}"
         )
     require_all_finite(f"a table of {what} and {of}", (*at, *forces), "throughout")
-    for before, after in itertools.pairwise(at):
-        if after <= before:
-            raise InputError(
-                f"{what} of a table must increase; got {after:g} after {before:g}; sort the table and drop what repeats"
-            )
+    n = out_of_order(at)
+    if n is not None:
+        raise InputError(f"{what} of a table {order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
+
+
+def out_of_order(at: Sequence[float]) -> int | None:
+    """Return the place of the first point of a table that is below the one before it, or the third at one place."""
+    for n in range(1, len(at)):
+        if at[n] < at[n - 1] or (n > 1 and at[n] == at[n - 2]):
+            return n
+    return None
+
+
+def order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
+    """Return what the points of a table must do, and how point n, out of order, does not; both points as typed."""
+    if at[n] < at[n - 1]:
+        return f"must increase; got {point} after {before}; sort the table"
+    return f"must increase, but for two at a step; got {point} three times; keep the values before and after the step"
+
+
+def has_step(at: Sequence[float]) -> bool:
+    """Whether two points of a table are at one place."""
+    return any(after == before for before, after in itertools.pairwise(at))
 
 
 DURING = Entry("during", get_args(During), "when the load acts", "outward stroke", default="cycle")

@@ -22,6 +22,7 @@ from .load import (
     Passage,
     Table,
     built,
+    has_step,
     points,
     require_table,
     require_word,
@@ -32,7 +33,8 @@ from .load import (
 class PositionTable(Load):
     """A force tabulated over slider position, interpolated linearly, constant beyond the ends of the table.
 
-    positions: increasing, m, from the datum: of a dead centre distances, zero or more. forces: N, positive outward.
+    positions: increasing, two equal ones where the force steps, m, from the datum: of a dead centre distances, zero or
+    more. forces: N, positive outward.
     during: the force acts in these strokes.
     """
 
@@ -62,6 +64,11 @@ class PositionTable(Load):
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
         """Return positions and forces."""
         return self.positions, self.forces
+
+    @property
+    def steps(self) -> bool:
+        """Whether the force steps at a position."""
+        return has_step(self.positions)
 
     @property
     def by_position(self) -> bool:
@@ -101,7 +108,8 @@ PositionTable.tables = (
         "positions",
         "PositionLoad",
         "table of forces over the slider position",
-        "A force tabulated over the slider position: linear between the points, constant beyond them.",
+        "A force tabulated over the slider position: linear between the points, constant beyond them; two points at "
+        "one position are a step.",
         (
             points("positions", "Length", "slider positions, increasing", "0 mm", "20 mm"),
             FORCES,
@@ -115,7 +123,8 @@ PositionTable.tables = (
         "pressure_positions",
         "PressurePositionLoad",
         "table of pressures over the slider position",
-        "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant beyond.",
+        "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant beyond; "
+        "two points at one distance are a step.",
         (
             points(
                 "pressure_positions",

@@ -17,12 +17,13 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDow
 
 /**
  * Return {node, draw()} of the curve. read(): its points; none while they cannot be read. write(points): they have been changed here.
- * titles(): of both axes, with units. centres(): the dead centres, in the unit of the first column.
- * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[] }} given
+ * titles(): of both axes, with units. centres(): the dead centres, in the unit of the first column. steps: whether two points may be at
+ * one place.
+ * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[], steps: boolean }} given
  */
-export function curve({ read, write, titles, centres }) {
+export function curve({ read, write, titles, centres, steps }) {
   const picture = svg("svg", { class: "curve-drawn", viewBox: `0 0 ${WIDTH} ${HEIGHT}` });
-  const node = h("figure", { class: "drawn-points" }, picture, h("figcaption", { class: "quiet" }, "Drag a point, or move it by the arrow keys. A double click on the curve adds one, Delete takes one away."));
+  const node = h("figure", { class: "drawn-points" }, picture, h("figcaption", { class: "quiet" }, "Drag a point, or move it by the arrow keys. A double click on the curve adds one, Delete takes one away." + (steps ? " Two points at one place are a step." : "")));
   /** @type {{ x: Page.Scale, y: Page.Scale } | null} */
   let scales = null; // kept while a point is dragged
   let dragged = -1;
@@ -49,13 +50,14 @@ export function curve({ read, write, titles, centres }) {
     if (held instanceof SVGElement) held.focus();
   }
 
-  /** Put a point elsewhere, between its neighbours. @param {number} n @param {Page.Point} to */
+  /** Put a point elsewhere, between its neighbours, or at one of them where the curve may step. @param {number} n @param {Page.Point} to */
   function move(n, to) {
     const points = read();
     if (!points || !scales) return;
     const [x, y] = [rounded(to[0], scales.x), rounded(to[1], scales.y)];
     const [before, after] = [points[n - 1]?.[0] ?? -Infinity, points[n + 1]?.[0] ?? Infinity];
-    points[n] = [x > before && x < after ? x : points[n][0], y];
+    const equal = points.filter(([other], k) => k !== n && other === x).length;
+    points[n] = [x >= before && x <= after && equal <= (steps ? 1 : 0) ? x : points[n][0], y];
     write(points);
     draw(n);
   }

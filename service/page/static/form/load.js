@@ -42,7 +42,7 @@ function one(form, load, place, all) {
   const { properties, required } = kind.table;
   const columns = Object.entries(properties ?? {}).filter(([, node]) => node.type === "array").map(([key, node]) => ({ key, label: words(key), kind: describe(form.schema.resolve(node.items ?? {})).kind ?? null }));
   const [first, second] = columns;
-  const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "") : null;
+  const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "", { steps: true }) : null;
   const rest = Object.keys(properties ?? {}).filter((key) => !table || !columns.some((one) => one.key === key));
   const fields = [table, rest.map((key) => byschema(form, [...path, key], { required: required?.includes(key) }))];
   return h(

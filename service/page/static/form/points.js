@@ -11,9 +11,10 @@ import { convert, factorsOf, join, split } from "../lib/units.js";
 
 /**
  * Return the field of the points that two lists of a table say, one a line. optional: whether there may be none, without the lists.
- * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string }} options
+ * steps: whether two points may be at one place.
+ * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string, steps?: boolean }} options
  */
-export function points(form, path, columns, why, { optional = false, title = "points, one a line" } = {}) {
+export function points(form, path, columns, why, { optional = false, title = "points, one a line", steps = false } = {}) {
   const given = columns.map(({ key }) => form.at([...path, key]));
   const lists = given.map((one) => (Array.isArray(one) ? one : []));
   const units = columns.map(({ label, kind }, n) => (kind ? unitSelect(label, kind, split(lists[n][0], kind).unit, false, idOf([...path, columns[n].key], "u")) : null));
@@ -39,6 +40,7 @@ export function points(form, path, columns, why, { optional = false, title = "po
     columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : none ? undefined : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));
   };
   const picture = curve({
+    steps,
     read: () => {
       const { rows: cells, wrong } = pointsOf(text.value, []);
       const numbers = cells.map(([x, y]) => /** @type {Page.Point} */ ([Number(x), Number(y)]));
