@@ -137,8 +137,9 @@ class Curve:
             counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0]
             turns = counted - _TURN * np.floor((counted.centre - at[0]) / _TURN)
             # A turn before and one after: a box may reach beyond the ends of the table.
-            at = np.concatenate([at[:-1] - _TURN, at[:-1], at + _TURN])
-            return factor * interpolated(turns, at, np.concatenate([force[:-1], force[:-1], force]))
+            # Where the table steps at its seam, the end of one turn and the start of the next are both sides of that.
+            at = np.concatenate([at - _TURN, at, at + _TURN])
+            return factor * interpolated(turns, at, np.tile(force, 3))
         at_x = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
         return factor * interpolated(at_x, at, force)
 

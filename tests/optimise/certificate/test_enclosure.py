@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.arrays import Array
+from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.kernel.arithmetic import magnitude, root
 from slidercrank.model.kinematics import geometry
-from slidercrank.optimise.certificate.cycle import interpolated
+from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.peak_torque import PEAK_TORQUE
+from slidercrank.optimise.certificate.cycle import Curve, interpolated
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
@@ -96,9 +101,29 @@ def test_a_division_by_what_may_be_zero_says_nothing() -> None:
 
 @pytest.mark.parametrize("width", [1e-3, 0.1, 1.0])
 def test_a_table_over_an_enclosed_position_holds_every_sample(width: float) -> None:
-    at, force = np.array([0.8, 1.0, 1.3, 1.31, 2.0]), np.array([2.0, -1.0, 4.0, 0.0, 0.5])
+    at, force = np.array([0.8, 1.0, 1.3, 1.3, 1.31, 2.0]), np.array([2.0, -1.0, 4.0, 6.0, 0.0, 0.5])
     low, high = boxes(width)
     least, most = interpolated(coordinate(low[:, 0], high[:, 0], 0, 3), at, force).ends()
     for part in np.linspace(0.0, 1.0, 200):
         value = np.interp(low[:, :1] + (high[:, :1] - low[:, :1]) * part, at, force)
         assert not ((value < least) | (value > most)).any()
+
+
+@pytest.mark.parametrize("datum", ["zero crank angle", "outer dead centre"])
+def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_design_of_a_box(datum: Any) -> None:
+    """At the angle of the box, a little before and after the seam, where the force jumps from -200 N to 500 N."""
+    table = AngleTable(angles=(0.4, 2.0, 0.4 + 2.0 * np.pi), forces=(500.0, -300.0, -200.0), datum=datum)
+    machine = Mechanism(speed=20.0, slider_mass=0.5, loads=(table,))
+    curve = Curve(machine, PEAK_TORQUE)
+    random = np.random.default_rng(5)
+    low = np.array([0.04, 0.15, 0.01]) * random.uniform(0.9, 1.1, (40, 3))
+    high = low * 1.02
+    angles = 0.4 + random.uniform(-0.4, 0.4, 40)
+    sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
+    found = curve.over(sides, angles, 0.5 * (low + high))
+    least, most = (end.reshape(40, -1) for end in found.ends())
+    for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
+        for share in random.random((20, 3)):
+            r, l, e = design * (1.0 + 0.02 * share)
+            torque = abs(float(cycle(machine, Linkage(r, l, e), [angle]).torque[0]))
+            assert lower.min() <= torque <= upper.max()
