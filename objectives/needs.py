@@ -167,8 +167,9 @@ ONE_CYLINDER = _defining(
 )
 ONE_TIMING = _defining(
     _alike_in_time,
-    "along a speed profile each cylinder has stroke times of its own; got several on one crankshaft; use "
-    "crank_angle_ratio, which they share, or outward_to_inward_time or inward_to_outward_time, the least of theirs",
+    "along a speed profile each cylinder has its own stroke times; got several cylinders on one crankshaft; use "
+    "crank_angle_ratio, which is the same for all, or the least value over the cylinders: outward_to_inward_time_ratio "
+    "or inward_to_outward_time_ratio",
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,

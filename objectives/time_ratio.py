@@ -1,4 +1,4 @@
-"""Time ratio, how much longer the slower stroke takes than the faster one, and crank angle ratio, that of angles."""
+"""Time ratio and crank angle ratio: slower stroke to faster stroke, by time and by crank angle."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .kinds import RATIO
 from .needs import ONE_TIMING
 from .quantity import Array, Domain, Group, Pieces, Values
 from .reach import Ranges, Reach
-from .stroke_times import of_strokes
+from .stroke_times import evaluate_stroke_times
 
 
 def ratio_of(excess: float) -> float:
-    """Return the crank angle ratio of an excess angle, rad: the time ratio at constant speed."""
+    """Return the crank angle ratio for an excess angle, rad: the time ratio at constant speed."""
     return (math.pi + excess) / (math.pi - excess)
 
 
@@ -35,7 +35,7 @@ def _within(box: Ranges) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeRatio(ClosedFormQuantity):
-    """The time ratio: a closed form at constant speed, along a profile the greater of two quotients of stroke times."""
+    """The time ratio: a closed form at constant speed; along a profile, the greater ratio of the stroke times."""
 
     def is_closed(self, mechanism: Mechanism) -> bool:
         """Return whether the machine turns at constant speed."""
@@ -45,27 +45,27 @@ class TimeRatio(ClosedFormQuantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.is_closed(mechanism):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
-        found, slopes = of_strokes(mechanism, dimensions, lambda of: of.ratio, gradients)
-        return Values(np.maximum(found, 1.0 / found), None if slopes is None else _greater(found, slopes))
+        found, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
+        return Values(np.maximum(found, 1.0 / found), None if slopes is None else _greater_slopes(found, slopes))
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greater of its quotients; see `Quantity`."""
+        """Return the quantity as the greater of its two ratios; see `Quantity`."""
         if self.is_closed(mechanism):
             return super().pieces(mechanism, dimensions)
-        found, slopes = of_strokes(mechanism, dimensions, lambda of: of.ratio, True)
+        found, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
         assert slopes is not None
         values = np.stack([found, 1.0 / found], axis=1)
         labels = np.broadcast_to(np.arange(2.0), values.shape)
-        return Pieces(values, np.stack([slopes, _turned(found, slopes)], axis=1), labels)
+        return Pieces(values, np.stack([slopes, _inverse_slopes(found, slopes)], axis=1), labels)
 
 
-def _turned(ratio: Array, slopes: Array) -> Array:
-    """Return the derivatives of one over a ratio."""
+def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
+    """Return the derivatives of the inverse of a ratio."""
     return -slopes / np.square(ratio)[:, None]
 
 
-def _greater(ratio: Array, slopes: Array) -> Array:
-    return np.where((ratio >= 1.0 / ratio)[:, None], slopes, _turned(ratio, slopes))
+def _greater_slopes(ratio: Array, slopes: Array) -> Array:
+    return np.where((ratio >= 1.0 / ratio)[:, None], slopes, _inverse_slopes(ratio, slopes))
 
 
 _REACH = Reach(
@@ -85,12 +85,12 @@ TIME_RATIO = TimeRatio(
         "is 1 without offset, and more for a quick return."
     ),
     advice=(
-        "At constant speed the sign of the offset and the direction of rotation say which stroke is the slow one; a "
-        "speed profile changes both."
+        "At constant speed the sign of the offset and the direction of rotation decide which stroke is slow; a speed "
+        "profile can change that and the ratio."
     ),
     formula=(
         "Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r)); along a "
-        "speed profile the times of the strokes instead of their crank angles"
+        "speed profile, stroke times in place of crank angles"
     ),
     picture="time ratio",
     example=1.2,
@@ -116,7 +116,7 @@ CRANK_ANGLE_RATIO = ClosedFormQuantity(
     place=101,
     group=Group.MOTION,
     sentence="The crank angle of the longer stroke divided by that of the shorter one.",
-    advice="At constant speed it is the time ratio. It follows from the linkage alone, whatever the speed does.",
+    advice="At constant speed it equals the time ratio. It depends on the linkage alone, not on the speed.",
     formula="(180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r))",
     picture="time ratio",
     example=1.2,
@@ -124,7 +124,7 @@ CRANK_ANGLE_RATIO = ClosedFormQuantity(
     domain=Domain(
         lower=1.0,
         open=False,
-        rule="the crank angle ratio is the longer stroke over the shorter, so 1 or more",
+        rule="the crank angle ratio divides the longer stroke by the shorter, so it is 1 or more",
         remedy="give the inverse",
     ),
     in_line=1.0,

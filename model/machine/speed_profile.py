@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite
 from ..errors import InputError
-from .elapsed import Elapsed
+from .elapsed_time import ElapsedTime
 
 _RPM = 30.0 / math.pi
 _TURN = 2.0 * math.pi
@@ -75,14 +75,16 @@ class Harmonics:
         return np.asarray(found)
 
     @cached_property
-    def elapsed(self) -> Elapsed:
-        """Time over the crank angle."""
-        return Elapsed.of(self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines))))
+    def elapsed_time(self) -> ElapsedTime:
+        """Elapsed time as a function of the crank angle."""
+        return ElapsedTime.integrate(
+            self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines)))
+        )
 
     @property
     def over_time(self) -> float:
         """Mean speed over time, as a share of that over the crank angle."""
-        return _TURN / self.elapsed.turn
+        return _TURN / self.elapsed_time.whole_turn
 
     @property
     def pairs(self) -> list[tuple[float, float]]:
@@ -180,14 +182,14 @@ class SpeedTable:
         return np.asarray(self._spline(theta, 2) / self.mean)
 
     @cached_property
-    def elapsed(self) -> Elapsed:
-        """Time over the crank angle."""
-        return Elapsed.of(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
+    def elapsed_time(self) -> ElapsedTime:
+        """Elapsed time as a function of the crank angle."""
+        return ElapsedTime.integrate(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
 
     @property
     def over_time(self) -> float:
         """Mean speed over time, as a share of that over the crank angle."""
-        return _TURN / self.elapsed.turn
+        return _TURN / self.elapsed_time.whole_turn
 
     @property
     def pieces(self) -> tuple[Array, Array]:
@@ -204,9 +206,9 @@ Profile = Harmonics | SpeedTable
 
 
 def time_per_angle(profile: Profile, theta: Array) -> Array:
-    """Return the time that the crank takes per crank angle, as a share of its mean over the turn: the mean of 1/p is 1.
+    """Return the time per crank angle divided by its mean over the turn.
 
-    It weighs what is averaged over time: dt = d(theta) / (speed p).
+    It is the weight in averages over time: dt = d(theta) / (speed p).
     """
     return np.asarray(profile.over_time / profile.ratio(theta))
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array
-from ...model.cycle.strokes import strokes
+from ...model.cycle.stroke_times import scaled_stroke_times
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
@@ -105,7 +105,7 @@ class Designs:
             return self.crank_angle_ratio
         if not ONE_TIMING.met(self.mechanism):
             raise InputError(f"time_ratio: {ONE_TIMING.missing}")
-        found = strokes(self.mechanism, self.crank, self.rod, self.offset).ratio
+        found = scaled_stroke_times(self.mechanism, self.crank, self.rod, self.offset).ratio
         return cast(Numbers, np.where(np.real(found) >= 1.0, found, 1.0 / found))
 
     @property

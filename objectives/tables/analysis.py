@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.cycle.strokes import slow_stroke, time_ratio
+from ...model.cycle.stroke_times import slow_stroke, time_ratio
 from ...model.kinematics.in_line import without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
@@ -36,9 +36,9 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
 
     own: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
-    carry their unit. Dead centres are crank angles, deg; the slow stroke is that of `strokes.slow_stroke`, the loaded
-    stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors
-    without tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
+    carry their unit. Dead centres are crank angles, deg; the slow stroke is that of `stroke_times.slow_stroke`, the
+    loaded stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors without
+    tolerances. Raises `AssemblyError` for a linkage that does not turn fully.
     """
     import pandas as pd
 

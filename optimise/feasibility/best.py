@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ...model.arrays import Array
-from ...model.cycle.strokes import with_times_alone
+from ...model.cycle.stroke_times import massless_machine
 from ..engine.engine import Engine
 from ..methods.auto.auto import AUTO, searched_by
 from ..problem.problem import Problem, Settings, Variant
@@ -117,6 +117,6 @@ def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _weightless(part: Problem) -> Problem:
-    machine = with_times_alone(part.mechanism)
+    machine = massless_machine(part.mechanism)
     own = tuple(of for of in part.own if of.of_dimensions)
     return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=own, costs=None)

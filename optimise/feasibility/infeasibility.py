@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.stroke_times import STROKE_QUOTIENTS
+from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ..engine.engine import Engine
 from ..problem.problem import Problem, Settings
 from ..problem.violation import FEASIBLE, constraints_of
@@ -62,7 +62,7 @@ def diagnose(
         message = nearest or (_UNMOVED if problem.motion is None else unswung(problem))
         return Diagnosis(feasible, (), message)
     found = []
-    stroke = {of.name for of in STROKE_QUOTIENTS.values()} - {item.quantity for item in problem.constraints}
+    stroke = {of.name for of in STROKE_TIME_RATIOS.values()} - {item.quantity for item in problem.constraints}
     for constraint in constraints_of(problem):
         if constraint.quantity in stroke:  # the slow stroke along a speed profile, whose sentence is below
             continue

@@ -16,7 +16,7 @@ from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
-from ...objectives.stroke_times import STROKE_QUOTIENTS
+from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
@@ -187,7 +187,7 @@ def _in_line(part: Problem, name: str) -> str:
 
 def _require_times(part: Problem) -> None:
     """Raise `InfeasibleError` for a bound on a quotient of stroke times that asks for the other stroke to be slow."""
-    for stroke, of in STROKE_QUOTIENTS.items():
+    for stroke, of in STROKE_TIME_RATIOS.items():
         own = stroke == part.slow_stroke
         for item in part.constraints:
             for word, bound in item.sides if item.quantity == of.name else ():

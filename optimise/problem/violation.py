@@ -11,7 +11,7 @@ from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.quantity import Quantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
-from ...objectives.stroke_times import STROKE_QUOTIENTS
+from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
@@ -53,7 +53,7 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
     asked = (restated(problem, item) for item in found)
     least = max(c.lower for c in asked if c.quantity == TIME_RATIO.name and c.lower is not None)
     assert problem.slow_stroke is not None
-    name = STROKE_QUOTIENTS[problem.slow_stroke].name
+    name = STROKE_TIME_RATIOS[problem.slow_stroke].name
     upper = next((c.upper for c in constraints if c.quantity == name and c.upper is not None), None)
     if upper is not None:
         least = min(least, 1.0 + 0.5 * (upper - 1.0))

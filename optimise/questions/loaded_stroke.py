@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Mask
-from ...model.cycle.strokes import slow_stroke
+from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem

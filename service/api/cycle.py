@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
-from ...model.cycle.strokes import slow_stroke
+from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing

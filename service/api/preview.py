@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field, ValidationError
 
-from ...model.cycle.strokes import slow_stroke, time_ratio
+from ...model.cycle.stroke_times import slow_stroke, time_ratio
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import Kind
 from ...objectives.needs import ONE_TIMING

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ...model.cycle.strokes import slow_stroke
+from ...model.cycle.stroke_times import slow_stroke
 from ...model.dynamics.segments import crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism

@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.cycle.strokes import with_times_alone
+from ...model.cycle.stroke_times import massless_machine
 from ...model.linkage.values import DIMENSIONS
 from ...model.swing.ends import start_column
 from ...objectives.registry import QUANTITIES
@@ -100,7 +100,7 @@ def possible(problem: Problem) -> Possible:
 
 def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with the requirements on the dimensions alone, and the names of the others."""
-    machine = with_times_alone(problem.mechanism)
+    machine = massless_machine(problem.mechanism)
     closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
     costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
     return replace(problem, mechanism=machine, constraints=closed), costly

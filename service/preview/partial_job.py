@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ...model.cycle.strokes import with_times_alone
+from ...model.cycle.stroke_times import massless_machine
 from ...model.errors import InputError
 from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.registry import QUANTITIES
@@ -49,7 +49,7 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
     found = _constraints(tables.get("constraints"), with_machine=with_machine)
     constraints = tuple(c for c in found if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
-        problem = replace(problem, mechanism=with_times_alone(machine))
+        problem = replace(problem, mechanism=massless_machine(machine))
     return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
 
 

@@ -136,8 +136,8 @@ MANY = (
     *("peak_torque", "rms_torque", "mean_torque", "torque_fluctuation", "peak_power", "mean_power", "efficiency"),
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "peak_rocking_couple", "indicated_work"),
     *("peak_reflected_inertia", "peak_crank_pin_force", "peak_guide_force", "peak_slider_jerk", "friction_loss"),
-    *("time_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time", "crank_angle_ratio"),
-    "inward_to_outward_time",
+    *("time_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time_ratio", "crank_angle_ratio"),
+    "inward_to_outward_time_ratio",
 )
 FEW = {"rubbing": ("peak_torque", "rms_torque", "peak_guide_force"), "four-stroke": MANY[:6]}
 

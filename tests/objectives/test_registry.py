@@ -22,8 +22,8 @@ NAMES = {
     *("peak_shaking_force", "rms_shaking_force", "peak_shaking_moment", "rms_shaking_moment"),
     "peak_rocking_couple",
     *("efficiency", "energy_per_cycle", "friction_loss", "envelope_length", "envelope_height"),
-    *("crank_angle_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time"),
-    "inward_to_outward_time",
+    *("crank_angle_ratio", "outward_stroke_time", "inward_stroke_time", "outward_to_inward_time_ratio"),
+    "inward_to_outward_time_ratio",
     *("pv_pivot", "pv_crank_pin", "pv_slider_pin", "wear_pivot", "wear_crank_pin", "wear_slider_pin"),
 }
 

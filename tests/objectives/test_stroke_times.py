@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from slidercrank.model.cycle.strokes import slow_stroke, strokes
+from slidercrank.model.cycle.stroke_times import scaled_stroke_times, slow_stroke
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -130,8 +130,8 @@ def test_the_feeder_turns_its_time_ratio_and_slow_stroke_round_with_the_profile(
     assert max(outward / inward, inward / outward) == pytest.approx(ratio, abs=1e-3)
     row = analyse(machine, FEEDER).iloc[0]
     assert row["time_ratio"] == pytest.approx(max(outward / inward, inward / outward), rel=1e-9)
-    assert row["outward_to_inward_time"] == pytest.approx(outward / inward, rel=1e-9)
-    assert row["inward_to_outward_time"] == pytest.approx(inward / outward, rel=1e-9)
+    assert row["outward_to_inward_time_ratio"] == pytest.approx(outward / inward, rel=1e-9)
+    assert row["inward_to_outward_time_ratio"] == pytest.approx(inward / outward, rel=1e-9)
     assert row["slow_stroke"] == slow
     assert row["crank_angle_ratio"] == pytest.approx(1.20825266, abs=1e-8)
 
@@ -163,13 +163,13 @@ def test_both_strokes_take_the_time_of_a_turn_over_any_profile() -> None:
 def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
     """The integral of 1 / (1 + a cos) is 2 atan(sqrt((1 - a) / (1 + a)) tan(theta / 2)) / sqrt(1 - a^2)."""
     for a in (0.3, -0.9, 0.999, 1.0 - 1e-6):
-        elapsed = Harmonics(cosines=(a,)).elapsed
+        elapsed = Harmonics(cosines=(a,)).elapsed_time
         theta = np.linspace(-3.1, 3.1, 200)
         wanted = 2.0 * np.arctan(math.sqrt((1.0 - a) / (1.0 + a)) * np.tan(0.5 * theta)) / math.sqrt(1.0 - a * a)
-        found = elapsed.at(theta) - elapsed.at(np.zeros(1))
+        found = elapsed.up_to(theta) - elapsed.up_to(np.zeros(1))
         # 1 - a is known to rounding alone: the time near it to 1e-16 / (1 - a) of itself.
         np.testing.assert_allclose(found, wanted, rtol=1e-13 + 4e-16 / (1.0 - abs(a)), atol=1e-13)
-        assert elapsed.turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
+        assert elapsed.whole_turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
 
 
 def test_a_profile_that_moves_with_the_mirror_image_swaps_the_strokes() -> None:
@@ -201,16 +201,16 @@ def test_cylinders_along_a_profile_have_times_of_their_own() -> None:
     both = replace(machine, arrangement=arrangement)
     for cylinder, lead in enumerate((0.4, 2.3)):
         wanted = times_by_integration(machine, FEEDER, lead)
-        found = strokes(both, *FEEDER.T, cylinder=cylinder)
+        found = scaled_stroke_times(both, *FEEDER.T, cylinder=cylinder)
         assert found.outward[0] / abs(machine.speed) == pytest.approx(wanted["outward_stroke_time"], rel=1e-9)
-    for name, over in (("outward_to_inward_time", 1.0), ("inward_to_outward_time", -1.0)):
-        each = [strokes(both, *FEEDER.T, cylinder=k).ratio[0] ** over for k in range(2)]
+    for name, over in (("outward_to_inward_time_ratio", 1.0), ("inward_to_outward_time_ratio", -1.0)):
+        each = [scaled_stroke_times(both, *FEEDER.T, cylinder=k).ratio[0] ** over for k in range(2)]
         assert abs(each[0] - each[1]) > 0.01
         assert value(name, both, FEEDER) == pytest.approx(min(each), rel=1e-14)
     for name in ("time_ratio", *TIMES):
         said = QUANTITIES[name].undefined_because([both])
         assert said is not None
-        assert "each cylinder has stroke times of its own" in said
+        assert "each cylinder has its own stroke times" in said
     assert QUANTITIES["time_ratio"].undefined_because([replace(both, speed_profile=None)]) is None
     assert np.isnan(analyse(both, FEEDER).iloc[0]["time_ratio"])
 
@@ -256,7 +256,7 @@ def test_derivatives_of_a_function_of_ones_own_follow_the_times() -> None:
             own = Designs(machine, stepped).time_ratio.imag[0, 0] / 1e-30
             assert own == pytest.approx(gradients[0, column], rel=1e-13)
     both = replace(machine, arrangement=Arrangement(phases=(0.0, 2.0)))
-    with pytest.raises(InputError, match="time_ratio: along a speed profile each cylinder has stroke times of its own"):
+    with pytest.raises(InputError, match="time_ratio: along a speed profile each cylinder has its own stroke times"):
         _ = Designs(both, design).time_ratio
 
 

@@ -157,22 +157,28 @@ def test_the_floor_of_a_slow_stroke_is_that_of_its_time_ratio() -> None:
     def bounds(**changes: Any) -> dict[str, Any]:
         return {item.quantity: item for item in constraints_of(parse_job(job(constraints=changes)))}
 
-    assert bounds(slow_stroke="outward")["outward_to_inward_time"].lower == pytest.approx(1.01, rel=1e-15)
-    assert bounds(slow_stroke="inward")["inward_to_outward_time"].lower == pytest.approx(1.01, rel=1e-15)
+    assert bounds(slow_stroke="outward")["outward_to_inward_time_ratio"].lower == pytest.approx(1.01, rel=1e-15)
+    assert bounds(slow_stroke="inward")["inward_to_outward_time_ratio"].lower == pytest.approx(1.01, rel=1e-15)
     more = bounds(slow_stroke="outward", time_ratio={"min": 1.2})
-    assert more["outward_to_inward_time"].lower == pytest.approx(1.2, rel=1e-15)
-    less = bounds(slow_stroke="outward", outward_to_inward_time={"max": 1.005})["outward_to_inward_time"]
+    assert more["outward_to_inward_time_ratio"].lower == pytest.approx(1.2, rel=1e-15)
+    less = bounds(slow_stroke="outward", outward_to_inward_time_ratio={"max": 1.005})["outward_to_inward_time_ratio"]
     assert (less.lower, less.upper) == (pytest.approx(1.0025), pytest.approx(1.005))
-    assert "outward_to_inward_time" not in bounds()
+    assert "outward_to_inward_time_ratio" not in bounds()
 
 
 @pytest.mark.parametrize(
     ("constraints", "said"),
     [
         ({"time_ratio": {"max": 1.0}}, "a time ratio above 1; got constraints.time_ratio with max 1"),
-        ({"outward_to_inward_time": {"max": 0.9}}, "is above 1; got constraints.outward_to_inward_time with max 0.9"),
-        ({"outward_to_inward_time": {"equals": 0.9}}, "with equals 0.9; leave out one of the two"),
-        ({"inward_to_outward_time": {"min": 1.2}}, "is below 1; got constraints.inward_to_outward_time with min 1.2"),
+        (
+            {"outward_to_inward_time_ratio": {"max": 0.9}},
+            "is above 1; got constraints.outward_to_inward_time_ratio with max 0.9",
+        ),
+        ({"outward_to_inward_time_ratio": {"equals": 0.9}}, "with equals 0.9; leave out one of the two"),
+        (
+            {"inward_to_outward_time_ratio": {"min": 1.2}},
+            "is below 1; got constraints.inward_to_outward_time_ratio with min 1.2",
+        ),
     ],
 )
 def test_contradictions_with_a_slow_stroke_are_refused(constraints: dict[str, Any], said: str) -> None:
@@ -200,7 +206,7 @@ def test_every_one_of_several_cylinders_has_the_slow_stroke_that_is_asked(wanted
 
 def test_several_cylinders_along_a_profile_have_no_one_time_ratio() -> None:
     several = {"cylinders": {"phases": ["0 deg", "120 deg"]}}
-    with pytest.raises(JobError, match="each cylinder has stroke times of its own"):
+    with pytest.raises(JobError, match="each cylinder has its own stroke times"):
         parse_job(job(mechanism=several))
 
 
@@ -210,7 +216,7 @@ def test_an_infeasible_job_says_that_the_slow_stroke_stands_in_the_way() -> None
     front = solve(parse_job(job(mechanism=strong, constraints={"slow_stroke": "inward"})))
     assert front.status == "infeasible"
     assert "slow stroke inward is asked, with the outward one slow or neither all else can be kept" in front.message
-    assert "outward to inward time" not in front.message
+    assert "outward-to-inward time ratio" not in front.message
 
 
 def test_a_fast_stroke_that_is_loaded_is_warned_of_by_the_times() -> None:

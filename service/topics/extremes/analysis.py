@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Console
 
 from ....model.cycle.self_locking import locks_because
-from ....model.cycle.strokes import strokes as strokes_of
+from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
@@ -65,7 +65,11 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
     outward = (mechanism.direction * (outer - inner)) % (2.0 * math.pi)
     angles = {"outward": outward, "inward": 2.0 * math.pi - outward}
     strokes: dict[str, dict[str, Any]] = {name: {"crank_angle_deg": math.degrees(angles[name])} for name in _STROKES}
-    times = strokes_of(mechanism, linkage.crank, linkage.rod, linkage.offset) if ONE_TIMING.met(mechanism) else None
+    times = (
+        scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset)
+        if ONE_TIMING.met(mechanism)
+        else None
+    )
     found: dict[str, Any] = {
         **strokes,
         "angle_ratio": angles["outward"] / angles["inward"],

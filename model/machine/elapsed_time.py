@@ -1,4 +1,4 @@
-"""Time over the crank angle of a crank whose speed repeats with every turn."""
+"""Elapsed time as a function of the crank angle, for a speed that repeats every turn."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from numpy.polynomial import legendre
 from ..arrays import Array
 
 _TURN = 2.0 * math.pi
-_NODES = 20  # of a panel
-_TAIL = 2  # last coefficients of a series, which say whether it has settled
-_SETTLED = 1e-14  # of a series, relative
-_NOISE = 32.0 * np.finfo(np.float64).eps  # of p, through which 1 / p is known to p^-2 times that only
+_NODES = 20  # in each panel
+_TAIL = 2  # last coefficients of a series, which show whether it has converged
+_SETTLED = 1e-14  # relative size of the last coefficients of a converged series
+_NOISE = 32.0 * np.finfo(np.float64).eps  # error of p, so that 1 / p has p^-2 times this error
 _PANELS = 200_000
 
 
 @dataclass(frozen=True, eq=False)
-class Elapsed:
-    """Integral of 1 / p over the crank angle, rad: the time in units of one over the mean speed.
+class ElapsedTime:
+    """Integral of 1 / p over the crank angle, rad: the time multiplied by the mean speed.
 
-    Panels of a turn have a Legendre series each, refined until it settles to rounding. ends: of the panels
-    (k + 1,), rad. series: coefficients (m, k) of the integrals over each. before: integral (k + 1,) up to each end.
+    Each panel of a turn has a Legendre series, refined until it converges to rounding. ends: panel ends (k + 1,), rad.
+    series: coefficients (m, k) of the integral over each panel. up_to_ends: integral (k + 1,) up to each end.
     """
 
     ends: Array
     series: Array
-    before: Array
+    up_to_ends: Array
 
     @classmethod
-    def of(cls, ratio: Callable[[Array], Array], ends: Array) -> Elapsed:
-        """Return it for a ratio p > 0. ends: increasing crank angles, rad, of a turn; p is analytic in between."""
+    def integrate(cls, ratio: Callable[[Array], Array], ends: Array) -> ElapsedTime:
+        """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles of a turn, rad; p is analytic in between."""
         nodes, weights = legendre.leggauss(_NODES)
         basis = weights[:, None] * legendre.legvander(nodes, _NODES - 1) * (np.arange(_NODES) + 0.5)
         begin, end = ends[:-1], ends[1:]
@@ -58,16 +58,16 @@ class Elapsed:
         return cls(np.asarray(panels, dtype=np.float64), series, np.concatenate([[0.0], np.cumsum(whole)]))
 
     @property
-    def turn(self) -> float:
-        """The integral over a turn."""
-        return float(self.before[-1])
+    def whole_turn(self) -> float:
+        """Integral over a turn."""
+        return float(self.up_to_ends[-1])
 
-    def at(self, crank_angle: Array) -> Array:
-        """Return the integral up to crank angles of any number of turns, rad, from the first panel on."""
+    def up_to(self, crank_angle: Array) -> Array:
+        """Return the integral from the start of the first panel up to crank angles, rad, of any number of turns."""
         turns = np.floor((crank_angle - self.ends[0]) / _TURN)
         within = crank_angle - turns * _TURN
         panel = np.clip(np.searchsorted(self.ends, within, side="right") - 1, 0, len(self.ends) - 2)
         low, high = self.ends[panel], self.ends[panel + 1]
         x = np.clip(2.0 * (within - low) / (high - low) - 1.0, -1.0, 1.0)
         found = legendre.legval(x, self.series[:, panel], tensor=False)
-        return np.asarray(turns * self.turn + self.before[panel] + found)
+        return np.asarray(turns * self.whole_turn + self.up_to_ends[panel] + found)

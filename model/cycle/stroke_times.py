@@ -1,0 +1,101 @@
+"""Times of the outward and the inward stroke, at constant speed or along a speed profile.
+
+The time of a stroke is the integral of d(theta) / |omega| between its dead centres. At constant speed that is its
+crank angle divided by the speed; with omega = speed p(theta) it is the integral of 1 / p divided by |speed|. At
+constant speed all cylinders have the same stroke times; along a profile each has its own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..kinematics import geometry
+from ..linkage.linkage import Linkage
+from ..machine.mechanism import Mechanism
+from ..machine.members import cylinders_of
+from ..machine.speed_profile import Profile
+
+_EQUAL = 1e-12  # share of their sum: a smaller difference between stroke times is rounding
+DIFFERS = "differs"
+"""Reported as slow stroke where not all cylinders have the same one."""
+
+
+class ScaledStrokeTimes(NamedTuple):
+    """Stroke times multiplied by the magnitude of the mean speed, rad; at constant speed, their crank angles."""
+
+    outward: Any
+    inward: Any
+
+    @property
+    def ratio(self) -> Any:
+        """Time of the outward stroke divided by that of the inward stroke."""
+        return self.outward / self.inward
+
+
+def scaled_stroke_times(
+    mechanism: Mechanism, crank: Any, rod: Any, offset: Any, *, cylinder: int = 0
+) -> ScaledStrokeTimes:
+    """Return the scaled stroke times of linkages that rotate fully, lengths in m; complex lengths carry a derivative.
+
+    On the open branch the crank turns counter-clockwise through pi + b from the outer to the inner dead centre, where b
+    is the excess angle; on the crossed branch, through pi - b. That is the inward stroke if the crank rotates
+    counter-clockwise, the outward stroke if it rotates clockwise.
+    """
+    profile = mechanism.speed_profile
+    if profile is None:
+        between: Any = math.pi + mechanism.sign * geometry.excess_angle(crank, rod, offset)
+        turn = 2.0 * math.pi
+    else:
+        outer, inner = geometry.outer_crank_angle(crank, rod, offset), geometry.inner_crank_angle(crank, rod, offset)
+        if mechanism.branch == "crossed":
+            outer, inner = math.pi - outer, 3.0 * math.pi - inner
+        lead = cylinders_of(mechanism)[cylinder].lead
+        between = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
+        turn = profile.elapsed_time.whole_turn
+    outward, inward = (turn - between, between) if mechanism.direction > 0.0 else (between, turn - between)
+    return ScaledStrokeTimes(outward, inward)
+
+
+def massless_machine(mechanism: Mechanism) -> Mechanism:
+    """Return a machine without masses and loads that has the same stroke times."""
+    given = mechanism.nominal
+    if given.speed_profile is None:
+        return Mechanism(speed=given.speed, branch=given.branch)
+    own = given.arrangement
+    return Mechanism(speed=given.speed, branch=given.branch, speed_profile=given.speed_profile, arrangement=own)
+
+
+def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
+    angle = np.asarray(np.real(crank_angle), dtype=np.float64)
+    found = profile.elapsed_time.up_to(angle)
+    if np.iscomplexobj(crank_angle):
+        return found + 1j * np.imag(crank_angle) / profile.ratio(angle)
+    return found
+
+
+def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the time of the slower stroke divided by that of the faster one, for the first cylinder; 1 or more."""
+    if mechanism.speed_profile is None:
+        return linkage.time_ratio
+    linkage.require_full_rotation()
+    found = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset).ratio
+    return np.asarray(np.maximum(found, 1.0 / found))[()]
+
+
+def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
+    """Return which stroke takes longer: "outward", "inward", "equal", or "differs" if cylinders differ."""
+    if mechanism.speed_profile is None:
+        return linkage.slow_stroke(direction=mechanism.direction)
+    linkage.require_full_rotation()
+    found = []
+    for cylinder in range(len(cylinders_of(mechanism))):
+        own = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset, cylinder=cylinder)
+        more = np.asarray((own.outward - own.inward) / (own.outward + own.inward))
+        found.append(np.where(more > _EQUAL, "outward", np.where(more < -_EQUAL, "inward", "equal")))
+    same = np.all([one == found[0] for one in found], axis=0)
+    return np.asarray(np.where(same, found[0], DIFFERS))[()]
