@@ -33,6 +33,7 @@ from .gas import gas_force
 
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
+_BESIDE, _FARTHEST = 1e-9, 0.5  # rad from a step
 _AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
 _derive = cast(Any, derive)
 
@@ -56,14 +57,29 @@ class Curve:
         self.direction = 1.0 if mechanism.speed >= 0.0 else -1.0
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
         self.jumps = self.watch.split and peak.signal not in (Signal.TORQUE, Signal.POWER)
+        self.steps = peak.signal.needs_forces and any(load.steps for load in mechanism.fullest.loads)
         self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
     def over(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
         """Return the signal (n, p) at crank angles (n,) for dimensions (n, 1) and middle designs (n, 3).
 
-        It has two parts where it may jump at the angle. The rest is not a number where the angle does not count in all
-        of the box.
+        It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
+        the angle does not count in all of the box.
         """
+        found = self._at(dimensions, angles, middle)
+        if self.steps:
+            # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
+            r, l, e = middle.T
+            pace = np.abs(motion(np.sin(angles), np.cos(angles), r, l, e, self.mechanism.sign).x_1)
+            ends = [dimension.ends() for dimension in dimensions]
+            width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
+            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _BESIDE, _FARTHEST)
+            for side in (-away, away):
+                found = beside(found, self._at(dimensions, angles + side, middle))
+        return found
+
+    def _at(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
+        """Return the signal as `over` does, at these angles alone."""
         raw = self.raw.astype(object)[:, None]
         raw[:3, 0] = dimensions
         block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)

@@ -14,7 +14,10 @@ from slidercrank.model.kernel.arithmetic import magnitude, root
 from slidercrank.model.kinematics import geometry
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.angle_table import AngleTable
+from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.peaks import find_peaks
+from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.peak_torque import PEAK_TORQUE
 from slidercrank.optimise.certificate.cycle import Curve, interpolated
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
@@ -127,3 +130,19 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
             r, l, e = design * (1.0 + 0.02 * share)
             torque = abs(float(cycle(machine, Linkage(r, l, e), [angle]).torque[0]))
             assert lower.min() <= torque <= upper.max()
+
+
+def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
+    """A shear load of 1 kN that falls to nothing: its peak is at the step, whose crank angle moves with the design."""
+    table = PositionTable(
+        positions=(0.0, 0.02, 0.02), forces=(0.0, -1000.0, 0.0), datum="outer dead centre", during="outward stroke"
+    )
+    machine = Mechanism(speed=20.0, loads=(table,))
+    middle = np.array([[0.05, 0.2, 0.01]])
+    peak = find_peaks(machine, Signal.TORQUE, middle, kept=1)
+    for width in (1e-3, 1e-4, 1e-5):
+        low, high = middle * (1.0 - width), middle * (1.0 + width)
+        sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
+        least = Curve(machine, PEAK_TORQUE).over(sides, peak.angles[:, 0], middle).ends()[0]
+        assert least.max() <= peak.values[0, 0]
+        assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)
