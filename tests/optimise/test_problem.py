@@ -211,7 +211,7 @@ def test_the_table_of_quantities_has_every_key_that_jobs_may_name_and_what_it_ne
     known = sc.quantities()
     assert list(known.index) == list(schema["Objectives"]["properties"])
     assert set(schema["Constraints"]["properties"]) - set(known.index) == {"slow_stroke"}  # no quantity
-    assert set(known.index[known["needs"] == ""]) >= {"stroke", "time_ratio", "transmission_angle"}
+    assert set(known.index[known["needs"] == ""]) >= {"stroke", "rod_to_offset", "transmission_angle"}
     assert known.loc["swing_energy", "needs"] == "it comes from the table [motion]"
     assert known.loc["motion_deviation", "needs"] == "it comes from the table [target_motion]"
     assert known.loc["position_error", "needs"] == "a position error comes from tolerances"
