@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, Mask, Whole
+from ..front.dominance import nondominated
 from ..front.hypervolume import Stand, unheard
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Range
@@ -23,6 +25,9 @@ from ..problem.violation import (
 )
 
 _AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two questions whether to end
+
+
+_EXPANDED = 256  # designs whose neighbours are looked up together: with eight numbers each has 6,561
 
 
 @dataclass(frozen=True)
@@ -63,13 +68,40 @@ class Axes:
 
     def designs(self, begin: int, end: int) -> Array:
         """Return some of all combinations (n, 3 + v), the last number changing first; NaN where one is free."""
-        sizes = [1 if values is None else len(values) for values in self.values]
-        places = np.unravel_index(np.arange(begin, min(end, math.prod(sizes))), sizes)
+        return self.numbered(np.arange(begin, min(end, math.prod(self._sizes))))
+
+    def numbered(self, numbers: Whole) -> Array:
+        """Return combinations (n, 3 + v) by their numbers."""
+        places = np.unravel_index(numbers, self._sizes)
         columns = [
             np.full(len(at), np.nan) if values is None else values[at]
             for values, at in zip(self.values, places, strict=True)
         ]
         return np.stack(columns, axis=1)
+
+    def next_to(self, designs: Array) -> Whole:
+        """Return the numbers (n, s) of combinations whose values are those of a design (n, 3 + v) or next to them.
+
+        A design itself is among them, and in place of what its range does not have.
+        """
+        places = np.stack(self._places(designs), axis=1)
+        ways = np.array(list(itertools.product(*((-1, 0, 1) if size > 1 else (0,) for size in self._sizes))))
+        around = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
+        return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(around, 2, 0)), self._sizes), np.int64)
+
+    def numbers(self, designs: Array) -> Whole:
+        """Return the number of each combination (n, 3 + v), as `designs` counts them."""
+        return np.asarray(np.ravel_multi_index(tuple(self._places(designs)), self._sizes), np.int64)
+
+    @property
+    def _sizes(self) -> tuple[int, ...]:
+        return tuple(1 if values is None else len(values) for values in self.values)
+
+    def _places(self, designs: Array) -> list[Whole]:
+        return [
+            np.zeros(len(designs), np.int64) if values is None else np.searchsorted(values, column)
+            for values, column in zip(self.values, designs.T, strict=True)
+        ]
 
 
 @dataclass(frozen=True)
@@ -105,17 +137,23 @@ class Judged:
             nearer.missed,
         )
 
+    def best(self) -> Judged:
+        """Return the same with those combinations alone that no other dominates: all of millions take gigabytes."""
+        rows = nondominated(self.values)
+        return replace(self, dimensions=self.dimensions[rows], values=self.values[rows])
+
 
 def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) -> Judged:
-    """Return all combinations of a whole variant, judged. stand: asked after some thousands.
+    """Return all combinations of a whole variant, judged, the best of them. stand: asked after some thousands.
 
-    dimensions_only: judge by what needs no cycle, and compute no objectives.
+    dimensions_only: judge by what needs no cycle, and compute no objectives: one that keeps it all stands for the rest.
     """
     found = Judged.none(axes.part)
     step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
     for begin in range(0, axes.count, step):
         stand(begin, axes.count)
-        found = found.with_(judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only))
+        some = judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
+        found = found.with_(some.best()).best()
     return found
 
 
@@ -160,6 +198,34 @@ def neighbours(axes: Axes, designs: Array, most: int) -> Array:
     stacked = np.concatenate(found)[np.argsort(ranks, kind="stable")]
     _, first = np.unique(np.nan_to_num(stacked, nan=0.0), axis=0, return_index=True)
     return np.asarray(stacked[np.sort(first)][:most])
+
+
+def near(axes: Axes, designs: Array, window: int, most: int, stand: Stand = unheard) -> tuple[Judged, Whole]:
+    """Return the best combinations of a whole variant around designs, judged, and the numbers of all that were.
+
+    First those of a window around each design, `window` at most. Then those next to the best so far, until these have
+    none left that was not judged, or `most` were.
+    """
+    found, seen = Judged.none(axes.part), np.zeros(0, np.int64)
+    fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
+    while len(fresh):
+        for begin in range(0, len(fresh), _AT_ONCE):
+            stand(len(seen) + begin, most)
+            some = judged(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
+            found = found.with_(some.best()).best()
+        seen = np.union1d(seen, fresh)
+        fresh = np.zeros(0, np.int64)
+        for begin in range(0, len(found.dimensions), _EXPANDED):
+            stand(len(seen), most)
+            around = axes.next_to(found.dimensions[begin : begin + _EXPANDED])
+            fresh = np.union1d(fresh, np.setdiff1d(around, seen))
+        fresh = fresh[: max(0, most - len(seen))]
+    return found, seen
+
+
+def surrounded(axes: Axes, designs: Array, seen: Whole) -> Mask:
+    """Return which combinations (n, 3 + v) have all those next to them among the numbers seen."""
+    return np.array([bool(np.isin(axes.next_to(row[None]), seen).all()) for row in designs], np.bool_)
 
 
 def _around(axes: Sequence[Array | None], design: Array, width: int) -> Array:

@@ -2,7 +2,7 @@
 
 The front without them comes first: it says what they cost. Where combinations are few enough, every one is judged: the
 answer is exact. With nothing else free a combination is a design; else what is free is searched and polished for each.
-Where they are too many, those next to the designs of the continuous front are.
+Where they are too many, those around the designs of the continuous front are, and around the best of these.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, Whole
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.answer import Answer
 from ..front.dominance import nondominated
@@ -21,11 +21,14 @@ from ..front.hypervolume import Stand, choose
 from ..front.rounded import written
 from ..problem.problem import Problem
 from ..problem.robust import asks_robust
-from .combinations import Axes, Judged, every, judged, neighbours, with_values
+from ..problem.table_columns import STATUS
+from .combinations import Axes, Judged, every, near, neighbours, surrounded, with_values
 from .words import found_in_words, missed_in_words
 
-MOST, _MOST_ROBUST = 1_000_000, 1 << 13
+MOST, _MOST_ROBUST = 5_000_000, 1 << 13
 """Combinations that are designs, all judged; robust quantities take a hundred times as long."""
+_WINDOW = 1_000_000
+"""Combinations around the continuous front that are judged first where they are more."""
 SOLVED = 64
 """Combinations that leave something free, each searched: of few all, of more those next to the continuous front."""
 _SAME = 1e-9  # of the objectives' range: designs nearer than this are one
@@ -46,6 +49,7 @@ def discrete_front(
     exact = count <= most
     found: Judged | None = None
     chosen: Chosen = []
+    seen: list[Whole] = []
     if exact and whole:
         chosen, found = _best(problem, axes, [every(each, stand) for each in axes])
         if not chosen:
@@ -58,12 +62,12 @@ def discrete_front(
     if not whole:
         chosen = [(index, row) for index, each in enumerate(axes) for row in _rows(each, continuous, index, exact)]
         chosen = _fewest(chosen)
+        seen = [_numbers(each, [row for of, row in chosen if of == index]) for index, each in enumerate(axes)]
     elif not exact:
-        parts = [
-            judged(each.part, neighbours(each, _own(continuous, index), MOST // len(axes)))
-            for index, each in enumerate(axes)
-        ]
-        chosen, found = _best(problem, axes, parts)
+        share, window = most // len(axes), min(most, _WINDOW) // len(axes)
+        both = [near(each, _own(continuous, index), window, share, stand) for index, each in enumerate(axes)]
+        seen = [numbers for _, numbers in both]
+        chosen, found = _best(problem, axes, [part for part, _ in both])
     if not chosen:
         return nothing("infeasible", missed_in_words(problem, found or Judged.none(axes[0].part)))
     answer = Answer(
@@ -73,7 +77,22 @@ def discrete_front(
         rules={item.name: item.rule for item in problem.discrete},
         continuous=tuple(continuous.values.min(axis=0).tolist()) if len(continuous) else (),
     )
-    return _told(problem, search(with_values(problem, chosen)), continuous, chosen, answer)
+    front = search(with_values(problem, chosen))
+    if not exact and len(front):
+        front = _without_proof(front, axes, chosen, seen)
+    return _told(problem, front, continuous, chosen, answer)
+
+
+def _numbers(axes: Axes, designs: list[Array]) -> Whole:
+    return axes.numbers(np.array(designs)) if designs else np.zeros(0, np.int64)
+
+
+def _without_proof(front: ParetoFront, axes: list[Axes], chosen: Chosen, seen: list[Whole]) -> ParetoFront:
+    """Return a front of combinations that are called stationary only where all those next to them were judged."""
+    own = [chosen[row] for row in front.variants]
+    around = np.array([surrounded(axes[of], design[None], seen[of])[0] for of, design in own], np.bool_)
+    status = np.where(around, front.columns[STATUS], "best found")
+    return replace(front, columns={**front.columns, STATUS: status})
 
 
 def _best(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:

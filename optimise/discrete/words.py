@@ -32,7 +32,8 @@ def found_in_words(front: ParetoFront) -> str:
         )
     else:
         some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
-        text = f"{count}, {answer.how}: {some} judged"
+        left = answer.combinations - answer.judged
+        text = f"{count}, {answer.how}: {some} judged, the other {left} not looked at"
     told = []
     for place, wanted in enumerate(front.objectives if answer.continuous else ()):
         of = problem.quantity(wanted.quantity)

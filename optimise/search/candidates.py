@@ -183,9 +183,10 @@ class Finished(Candidates):
         doubtful = self.residual > STATIONARY
         worth = ~doubtful
         proven = np.ascontiguousarray(values[~doubtful].T)
+        least = proven.min(axis=1, initial=np.inf) - same  # what is best in an objective is an end, proven or not
         for row in np.flatnonzero(doubtful).tolist():
             stand(0, len(values))
-            worth[row] = not _as_good(proven, values[row], covered).any()
+            worth[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
         rows = np.flatnonzero(worth)
         rows = rows[nondominated(values[rows])]
         kept: list[int] = []

@@ -24,7 +24,7 @@ from ...model.arrays import Array, Mask, Whole, row_lengths
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
-from .programme import LOSS, ROUNDING, VIOLATION, Step, roots, solve_step
+from .programme import FIRM, LOSS, ROUNDING, VIOLATION, Step, roots, solve_step
 
 ITERATIONS = 100
 CONVERGED = 1e-9
@@ -61,14 +61,18 @@ def polish(
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
     hold: bool = True,
+    best_in: Whole | None = None,
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
     scale: range of each objective over the front. chosen: improve these objectives only (all by default). iterations:
     None only moves designs that violate constraints onto them, the shortest way. hold: False lets an objective become
-    worse where the sum gains. A design that was feasible once is feasible in the end.
+    worse where the sum gains. best_in: (n,), the objective that each design is the best in, and stays the best in.
+    A design that was feasible once is feasible in the end.
     """
     batch = _Batch(evaluator, start, scale, chosen, hold)
+    if best_in is not None:
+        batch.loss[np.arange(len(start)), best_in] = FIRM
     if iterations != 0:
         batch.restore()
     for _ in range(iterations or 0):
@@ -90,6 +94,7 @@ class _Batch:
         self.goals, self.limits = self._evaluate(self.u)
         n, k = start.shape
         self.weight = np.full(n, VIOLATION)
+        self.loss = np.full((n, len(scale)), LOSS)
         self.roots = np.tile(np.eye(k), (n, 1, 1))
         """Of the Hessians, see `programme.roots`."""
         self._begin()
@@ -198,6 +203,7 @@ class _Batch:
             chosen=chosen,
             tops=self.held[row],
             violation=self.weight[row],
+            loss=self.loss[row],
             hold=self.hold,
         )
 
@@ -212,7 +218,7 @@ class _Batch:
         goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
             here, edge, at = alone(self.goals, row), alone(self.limits, row), slice(i, None, n)
-            change = difference(here, alone(goals, at), np.minimum(draft.goals, LOSS))
+            change = difference(here, alone(goals, at), np.minimum(draft.goals, self.loss[row, here.owner]))
             change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
             hessians[i] = change / steps[i, :, None]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
@@ -240,7 +246,8 @@ class _Batch:
             with np.errstate(invalid="ignore"):  # infinite before and after (rod / offset at 0): no merit, not accepted
                 loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
                 worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
-                merit = (after - before[at] + (LOSS * loss if self.hold else 0.0)).sum(axis=1) + self.weight[at] * worse
+                penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
+                merit = (after - before[at] + penalty).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
             # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
             accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))

@@ -26,6 +26,8 @@ from .pieces import Rows
 
 LOSS = 1e3
 """K: what an objective's loss weighs against another's gain, ranges scaled to one."""
+FIRM = 1e6
+"""K of an objective that a design is the best in: where its slope vanishes, no weight holds it to more than 1 / K^2."""
 VIOLATION = 1e2
 """C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
 ROUNDING = 1e-12
@@ -56,12 +58,14 @@ def solve_step(
     chosen: tuple[int, ...],
     tops: Array,
     violation: float,
+    loss: Array,
     hold: bool = True,
 ) -> Step:
     """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
 
     root: transposed inverse of L with B = L L', see `roots`. chosen: objectives to improve. tops: (m,), F of every
-    objective. violation: C. hold: whether the loss of each objective is penalised, besides the sum.
+    objective. violation: C. loss: (m,), K of every objective. hold: whether the loss of each objective is penalised,
+    besides the sum.
 
     With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
     its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
@@ -92,7 +96,7 @@ def solve_step(
     bounds[above], bounds[below] = high, -low
     rows[above, :k], rows[below, :k] = edge, -edge
     weights = np.empty(count + holding + 1)
-    weights[:count], weights[count:-1], weights[-1] = 1.0, LOSS, violation
+    weights[:count], weights[count:-1], weights[-1] = 1.0, loss[list(chosen)] if hold else (), violation
     move, dual = _least_distance(rows, bounds, root, weights)
     held = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))

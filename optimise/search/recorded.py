@@ -15,8 +15,8 @@ from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 
 Lengths = Whole
-_Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None]
-"""Scale, chosen objectives and iterations of a polish."""
+_Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bool]
+"""Scale, chosen objectives and iterations of a polish, and whether the last column of its starts is `best_in`."""
 
 
 def polished(
@@ -26,10 +26,16 @@ def polished(
     *,
     chosen: tuple[int, ...] | None = None,
     shown: Evaluates | None = None,
+    best_in: Whole | None = None,
 ) -> Polished:
     """Return the result of `polish`. shown: the evaluator in another light, which it is to see instead."""
-    given = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
-    return _step(evaluator, "polish", given, lambda: polish(shown or evaluator, start, scale, chosen=chosen))
+    given: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
+    given = given if best_in is None else (*given, best_in)
+
+    def compute() -> Polished:
+        return polish(shown or evaluator, start, scale, chosen=chosen, best_in=best_in)
+
+    return _step(evaluator, "polish", given, compute)
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
@@ -44,16 +50,18 @@ def polish(
     *,
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
+    best_in: Whole | None = None,
 ) -> Polished:
     """Return the result of `polish.polish`, on the engine where that pays; no record is kept.
 
     Every design is polished by itself, so that many are shared out among workers.
     """
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
-        return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations)
+        return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations, best_in=best_in)
     before = evaluator.evaluations
-    asked = (tuple(scale.tolist()), chosen, iterations)
-    parts = evaluator.chunked(_polish, asked, start, kind="polish", together=True)
+    asked = (tuple(scale.tolist()), chosen, iterations, best_in is not None)
+    rows = start if best_in is None else np.column_stack([start, best_in])
+    parts = evaluator.chunked(_polish, asked, rows, kind="polish", together=True)
     evaluator.evaluations = before + sum(count for _, count in parts)
     (first, _), *others = parts
     return first.join(*(part for part, _ in others))
@@ -61,8 +69,10 @@ def polish(
 
 def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
     """Return polished designs and how many were evaluated for them."""
-    before, (scale, chosen, iterations) = evaluator.evaluations, asked
-    found = polish_here(evaluator, start, np.array(scale), chosen=chosen, iterations=iterations)
+    before, (scale, chosen, iterations, ends) = evaluator.evaluations, asked
+    best_in = start[:, -1].astype(np.int64) if ends else None
+    start = start[:, :-1] if ends else start
+    found = polish_here(evaluator, start, np.array(scale), chosen=chosen, iterations=iterations, best_in=best_in)
     return found, evaluator.evaluations - before
 
 

@@ -16,7 +16,7 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.optimise.adapters.standard_form import standard_form
 from slidercrank.optimise.discrete import combinations
 from slidercrank.optimise.discrete import front as discrete
-from slidercrank.optimise.discrete.combinations import Axes, neighbours
+from slidercrank.optimise.discrete.combinations import Axes, every, judged, near, neighbours, surrounded
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.grids import SERIES
@@ -145,10 +145,58 @@ def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
     near = solve(given)
     assert near.discrete is not None
     assert (near.discrete.exact, near.discrete.how) == (False, "neighbours of the continuous front")
-    assert re.search(r"neighbours of the continuous front: \d+ of 1230 combinations", near.message)
+    assert re.search(
+        r"neighbours of the continuous front: \d+ of 1230 combinations .* judged, the other \d+ not", near.message
+    )
     for values in near.values:
         assert not ((values <= exact.values) & (values < exact.values - 1e-9)).all(axis=1).any()
     assert distance(near.values[:1], exact.values[:1]) < 0.02
+
+
+def test_designs_whose_neighbours_were_not_judged_are_not_called_stationary(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search that ends early proves nothing of the designs at its edge, one that ends by itself all of them."""
+    given = parse_job(job(optimiser={"designs": 20, "samples": 512}))
+    monkeypatch.setattr(discrete, "MOST", 40)
+    monkeypatch.setattr(discrete, "_WINDOW", 20)
+    few = solve(given)
+    assert few.discrete is not None
+    assert few.discrete.judged <= 40
+    assert "best found" in few.columns["status"]
+    monkeypatch.setattr(discrete, "MOST", 1200)
+    many = solve(given)
+    assert many.discrete is not None
+    assert not many.discrete.exact
+    assert set(many.columns["status"]) == {"stationary"}
+
+
+def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_better() -> None:
+    part = parse_job(job())
+    axes = Axes.of(part)
+    exact = every(axes)
+    found, seen = near(axes, exact.dimensions[:1], 30, 10_000)
+    assert len(seen) == found.judged < axes.count
+    assert surrounded(axes, found.dimensions, seen).all()
+    around = judged(part, axes.numbered(np.unique(axes.next_to(found.dimensions))))
+    for values in around.values:
+        assert not ((values <= found.values).all(axis=1) & (values < found.values).any(axis=1)).any()
+
+
+def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts of any size give what one part gives, and no more is held than the best."""
+    axes = Axes.of(parse_job(job()))
+    whole = judged(axes.part, axes.designs(0, axes.count)).best()
+    sizes: list[int] = []
+    monkeypatch.setattr(combinations, "_AT_ONCE", 100)
+    found = every(axes, lambda done, of: sizes.append(done))
+    assert sizes == list(range(0, axes.count, 100))
+    assert found.judged == axes.count
+    assert found.values.tolist() == whole.values.tolist()
+    assert found.dimensions.tolist() == whole.dimensions.tolist()
+    assert axes.numbers(axes.designs(0, axes.count)).tolist() == list(range(axes.count))
+
+
+def test_five_million_combinations_are_judged_one_by_one() -> None:
+    assert discrete.MOST == 5_000_000
 
 
 def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:

@@ -235,3 +235,18 @@ def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
         mended = convex(hessian + held, normals)
         assert np.linalg.eigvalsh(mended)[0] > 0.0
         np.testing.assert_allclose(along @ mended @ along.T, along @ hessian @ along.T, rtol=1e-3, atol=1e-3)
+
+
+def test_a_design_that_is_best_in_an_objective_stays_so_where_its_slope_vanishes() -> None:
+    """From the least c x**2 nothing but its curvature holds it: a weight K lets it lose up to 1 / (4 K**2 c)."""
+    goals = Analytic([[lambda x, y: 0.1 * (x - 0.5) ** 2], [lambda x, y: -x]])
+    given = (goals, np.array([[0.5, 0.0]]), np.ones(2))
+    loose, firm = polish(*given), polish(*given, best_in=np.array([0]))
+    assert 1e-7 < loose.values[0, 0] < 3e-6
+    assert firm.values[0, 0] < 1e-11
+
+
+def test_a_design_that_is_best_in_an_objective_gains_in_others_where_that_costs_nothing() -> None:
+    goals = Analytic([[lambda x, y: (x - 0.5) ** 2], [lambda x, y: (y - 0.8) ** 2 - 0.1 * x]])
+    found = polish(goals, np.array([[0.5, 0.1]]), np.ones(2), best_in=np.array([0]))
+    np.testing.assert_allclose(found.u, [[0.5, 0.8]], atol=1e-5)

@@ -16,8 +16,9 @@ from ...front.front import ParetoFront
 from ...front.hypervolume import Stand, choose
 from ...front.neighbours import neighbours
 from ...problem.problem import Problem
+from ...problem.violation import FEASIBLE
 from ...search.assemble import SELECTING, assemble, span_of
-from ...search.candidates import Candidates, Finished, stacked
+from ...search.candidates import SAME, Candidates, Finished, Polished, stacked
 from ...search.evaluation import Evaluator
 from ...search.recorded import polished, projected
 from ...search.sampling import around, first_samples, generator
@@ -32,6 +33,7 @@ _POOL = 2000  # greedy choice among more would take longer than it gains
 _FEWEST = 16  # designs polished, however few are asked for: more of them reach the best
 _STARTS = 24  # for the best value of a single objective
 _EXTREMES = 6  # for the best value of one objective among several
+_ONE = 1e-6  # of the unit box: optima nearer than this are one
 _WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
 _FILLING = 2000  # designs of the archive that gaps are filled from
 _CLEAR = 1e-6  # of the objectives' range: a domination that is more than rounding
@@ -59,7 +61,10 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
         some = _choice(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
         starts += group[some].by_sheet(evaluators)
         if several:
-            starts += _extremes(evaluators, group, finished.span)
+            for index, ends in _ends(evaluators, group, finished.span):
+                if ends is not None:
+                    finished.add(index, ends)
+                run.tell("polishing", free, archive)
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
@@ -121,13 +126,31 @@ def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) ->
     return rows[evaluator.step("choice", (values,), compute)[0]]
 
 
-def _extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> list[tuple[int, Array]]:
-    """Return, for each objective, the designs that are best in it, improved in it alone."""
-    return [
-        (index, polished(evaluators[index], u, span, chosen=(column,)).u)
-        for column in range(group.values.shape[1])
-        for index, u in group[group.leading(column, _EXTREMES)].by_sheet(evaluators)
-    ]
+def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
+    """Yield the ends of the front by sheet: designs best in one objective, and in the others as far as that allows.
+
+    Each begins from several designs that lead in the objective, and is improved in it alone, then in all with that one
+    held firmly. Where even so it loses what shows, the best in the objective alone is an end too. None: on the way.
+    """
+    parts: dict[int, list[tuple[int, Polished]]] = {}
+    for column in range(len(span)):
+        for index, u in group[group.leading(column, _EXTREMES)].by_sheet(evaluators):
+            found = polished(evaluators[index], u, span, chosen=(column,))
+            parts.setdefault(index, []).append((column, found[_differing(found.u)]))
+            yield index, None
+    for index, each in parts.items():
+        first, *others = (found for _, found in each)
+        alone = first.join(*others)
+        best_in = np.concatenate([np.full(len(found), column) for column, found in each])
+        held = polished(evaluators[index], alone.u, span, best_in=best_in)
+        lost = (held.values - alone.values)[np.arange(len(alone)), best_in] > SAME
+        yield index, held.join(alone[lost | (held.violation > FEASIBLE)])
+
+
+def _differing(u: Array) -> Whole:
+    """Return the rows of points (n, k) that differ from those before."""
+    apart = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
+    return np.flatnonzero((apart | np.triu(np.ones_like(apart))).all(axis=1))
 
 
 def challengers(
