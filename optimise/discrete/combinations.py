@@ -27,6 +27,7 @@ from ..problem.violation import (
 _AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two questions whether to end
 
 
+_HELD = 1 << 17  # combinations that keep every requirement, of which the best alone are kept once there are more
 _EXPANDED = 256  # designs whose neighbours are looked up together: with eight numbers each has 6,561
 
 
@@ -144,16 +145,17 @@ class Judged:
 
 
 def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) -> Judged:
-    """Return all combinations of a whole variant, judged, the best of them. stand: asked after some thousands.
+    """Return all combinations of a whole variant, judged; of very many the best. stand: asked after some thousands.
 
-    dimensions_only: judge by what needs no cycle, and compute no objectives: one that keeps it all stands for the rest.
+    dimensions_only: judge by what needs no cycle, and compute no objectives: of very many one stands for the rest.
     """
     found = Judged.none(axes.part)
     step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
     for begin in range(0, axes.count, step):
         stand(begin, axes.count)
         some = judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
-        found = found.with_(some.best()).best()
+        found = found.with_(some)
+        found = found.best() if len(found.values) > _HELD else found
     return found
 
 

@@ -187,9 +187,12 @@ def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeyp
     whole = judged(axes.part, axes.designs(0, axes.count)).best()
     sizes: list[int] = []
     monkeypatch.setattr(combinations, "_AT_ONCE", 100)
+    monkeypatch.setattr(combinations, "_HELD", 20)
     found = every(axes, lambda done, of: sizes.append(done))
     assert sizes == list(range(0, axes.count, 100))
     assert found.judged == axes.count
+    assert len(found.values) <= 120
+    found = found.best()
     assert found.values.tolist() == whole.values.tolist()
     assert found.dimensions.tolist() == whole.dimensions.tolist()
     assert axes.numbers(axes.designs(0, axes.count)).tolist() == list(range(axes.count))
