@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -44,6 +45,22 @@ def test_listed_packages_are_the_folders_on_disk(root: Path) -> None:
         "slidercrank": ".package/slidercrank",
         **{f"slidercrank.{top}": top for top in ORDER},
     }
+
+
+def test_the_distribution_says_who_made_it_and_under_which_licence(root: Path) -> None:
+    """As the citation does; no file of a typeface is installed, so that its licence is that of its own package."""
+    with (root / "pyproject.toml").open("rb") as file:
+        project = tomllib.load(file)["project"]
+    citation = (root / "CITATION.cff").read_text(encoding="utf-8")
+    assert project["authors"] == [{"name": name} for name in re.findall(r"^  - name: (.+)$", citation, re.MULTILINE)]
+    for key in ("version", "license"):
+        assert re.findall(rf"^{key}: (.+)$", citation, re.MULTILINE) == [project[key]]
+    texts = [(root / name).read_text(encoding="utf-8") for name in project["license-files"]]
+    assert ["Apache License" in text for text in texts] == [True]
+    fonts = [
+        file for top in ORDER for file in (root / top).rglob("*") if file.suffix in (".ttf", ".otf", ".woff", ".woff2")
+    ]
+    assert fonts == []
 
 
 def test_links_for_type_checkers_lead_to_the_same_files(root: Path, tmp_path: Path) -> None:

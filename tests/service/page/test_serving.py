@@ -57,6 +57,11 @@ def test_the_typeface_has_the_letters_of_the_page_in_all_weights_under_its_open_
     with TTFont(io.BytesIO(typeface())) as font:
         assert set("äéßµθωφΔ·°²₁−×→≤≥√∞") <= {chr(code) for code in font.getBestCmap()}
         assert {axis.axisTag: (axis.minValue, axis.maxValue) for axis in font["fvar"].axes}["wght"] == (100, 900)
+        said = " ".join(str(name) for name in font["name"].names)
+    # A copy needs its copyright and licence with it; the metadata of the font may hold them (OFL 1.1, condition 2).
+    assert "The Inter Project Authors" in said
+    assert "SIL Open Font License, Version 1.1" in said
+    assert "https://openfontlicense.org" in said
     licence = importlib.metadata.files("fontpkg-inter") or []
     texts = [file.read_text() for file in licence if file.name == "LICENSE"]
     assert all("SIL OPEN FONT LICENSE Version 1.1" in text for text in texts)
