@@ -1,7 +1,7 @@
-"""Names of files as text, and back: UTF-8 whatever the locale, as job files, databases and pages have it.
+"""File names as text and back: UTF-8 in every locale, as in job files, databases and pages.
 
-Python takes each byte of a path that the locale's encoding cannot read for half a surrogate pair, which UTF-8 cannot
-write, and in a locale of ASCII it finds no file of a name with an umlaut.
+Python turns each byte of a path that the locale's encoding cannot decode into a lone surrogate, which UTF-8 cannot
+encode, and in an ASCII locale it finds no file with an umlaut in its name.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from pathlib import Path
 
 
 def path_text(path: str | PathLike[str]) -> str:
-    """Path as text that can be written anywhere; bytes that are no UTF-8 become replacement characters."""
+    """Path as text that can be written anywhere; bytes that are not UTF-8 become replacement characters."""
     return os.fspath(path).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
-def path_named(name: str | PathLike[str]) -> Path:
-    """Path of a file that a text names: in the encoding of the locale if it has the characters, else in UTF-8."""
+def path_from_text(name: str | PathLike[str]) -> Path:
+    """Path of the file with a name: in the encoding of the locale if it has the characters, else in UTF-8."""
     text = os.fspath(name)
     try:
         os.fsencode(text)

@@ -1,4 +1,4 @@
-"""A matplotlib figure that a notebook shows by itself, also where nothing has imported pyplot."""
+"""A matplotlib figure that a notebook displays even if pyplot was never imported."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 
 
 class NotebookFigure(Figure):
-    """A figure with a PNG of its own for notebooks."""
+    """A figure that renders itself as PNG for notebooks."""
 
     def _repr_png_(self) -> bytes:
-        """The figure as PNG, at the figure's resolution."""
+        """Return the figure as PNG, at its own resolution."""
         out = io.BytesIO()
         self.savefig(out, format="png")
         return out.getvalue()

@@ -61,7 +61,7 @@ def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array
     return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
 
 
-def _of_drive(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+def _drive_work(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
     """Return the work of the drive torque over a cycle, J (n,), and its derivatives; NaN where friction locks."""
     found = average_torque(mechanism, designs, gradients=gradients)
     factor = _TURN * cycle_turns(mechanism) * mechanism.direction
@@ -73,7 +73,7 @@ class EnergyPerCycle(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        work, slopes = _of_drive(mechanism, dimensions, gradients)
+        work, slopes = _drive_work(mechanism, dimensions, gradients)
         locks = np.isnan(work)
         if slopes is not None:
             slopes = np.where(locks[:, None], 0.0, slopes)
@@ -85,7 +85,7 @@ class DeliveredWork(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        work, slopes = _of_drive(mechanism, dimensions, gradients)
+        work, slopes = _drive_work(mechanism, dimensions, gradients)
         return Values(-work + 0.0, None if slopes is None else -slopes)  # no negative zero
 
 
@@ -171,7 +171,7 @@ ENERGY_PER_CYCLE = EnergyPerCycle(
     section=_SECTION,
     picture="torque",
     signed=True,
-    quotient=EFFICIENCY.name,
+    instead_of_quotient=EFFICIENCY.name,
     needs=(DRIVEN, WORK),
     instead=MEAN_TORQUE.instead,
     plain=True,
@@ -194,7 +194,7 @@ DELIVERED_WORK = DeliveredWork(
     example="-60 J",
     better="high",
     signed=True,
-    quotient=EFFICIENCY.name,
+    instead_of_quotient=EFFICIENCY.name,
     needs=(DRIVEN, WORK),
     instead=MEAN_TORQUE.instead,
     plain=True,

@@ -66,7 +66,7 @@ INDICATED_WORK = _gas(
     example="-60 J",
     better="high",
     signed=True,
-    quotient="efficiency",
+    instead_of_quotient="efficiency",
 )
 MEAN_EFFECTIVE_PRESSURE = _gas(
     name="mean_effective_pressure",

@@ -92,7 +92,7 @@ _LOADS = (
     "it comes from masses that move or weigh, and from loads; got none; add for example "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
-_ON_LINKAGE = _LOADS.replace("from loads;", "from loads on the slider;")
+_SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;")
 _SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
@@ -117,9 +117,9 @@ MASSES = Need(_masses, _MASSES)
 SWINGING_MASSES = Need(_swinging, _MASSES)
 """Masses whose angular momentum changes: a crank at constant speed shakes by a force through its pivot."""
 DRIVEN = Need(_driven, _LOADS)
-LOADED = Need(_loaded, _ON_LINKAGE)
+LOADED = Need(_loaded, _SLIDER_LOADS)
 """Masses or loads beyond the crank."""
-PIVOT_LOADED = Need(_pivot_loaded, _ON_LINKAGE)
+PIVOT_LOADED = Need(_pivot_loaded, _SLIDER_LOADS)
 WORK = Need(
     works_over_a_turn,
     "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no load that "

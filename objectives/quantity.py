@@ -68,7 +68,7 @@ class Domain:
     def refuses(self, value: float, *, least: bool) -> bool:
         """Return whether no linkage has a value. least: whether it is asked as a least value.
 
-        A least value at the lower end asks nothing; of a quantity with a floor it switches that off.
+        A least value at the lower end has no effect, except that it switches off the floor of a quantity with one.
         """
         if least and (self.idle or value == self.lower):
             return False
@@ -139,13 +139,13 @@ class Quantity(ABC):
     source: of the equations. picture: what a picture of the linkage points out.
 
     example: a usual value as job files have it, that of the kind if left out. better: the usual direction. signed:
-    whether it may be negative. quotient: the quantity that serves where a formula would divide by it. domain: values
-    that some linkage has. floor: least value that holds where a job sets none, SI. in_line: its value for every design
-    without offset. endless: why it may be infinite for every design, as a sentence. needs: of the machine. instead:
-    quantities that serve where a need is not met. reach: bounds within ranges of the dimensions. about_tolerances:
-    whether it includes tolerances already. offered: parts of a form that ask for it. on_sheet: whether the sheet of a
-    design has it. plain: whether it follows from others at a glance, so that a short table leaves it out. turning:
-    whether it is of a crank that turns through, so that a swing has none.
+    whether it may be negative. instead_of_quotient: the quantity to use where a formula would divide by it. domain:
+    values that some linkage has. floor: least value that holds where a job sets none, SI. in_line: its value for every
+    design without offset. endless: why it may be infinite for every design, as a sentence. needs: of the machine.
+    instead: quantities that serve where a need is not met. reach: bounds within ranges of the dimensions.
+    about_tolerances: whether it includes tolerances already. offered: parts of a form that ask for it. on_sheet:
+    whether the sheet of a design has it. plain: whether it follows from others at a glance, so that a short table
+    leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
     """
 
     name: str
@@ -164,7 +164,7 @@ class Quantity(ABC):
     example: str | float | None = fact(None)
     better: Better = fact("low")
     signed: bool = fact(False)
-    quotient: str = fact("")
+    instead_of_quotient: str = fact("")
     domain: Domain | None = fact(None)
     floor: float | None = fact(None)
     in_line: float | None = fact(None)
@@ -221,7 +221,7 @@ class Quantity(ABC):
         return False
 
     def reach_for(self, mechanism: Mechanism) -> Reach | None:
-        """Return its reach if that holds for a machine."""
+        """Return its reach if it holds for the machine."""
         return self.reach
 
     @property

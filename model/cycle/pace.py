@@ -20,7 +20,7 @@ def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
 
 
 def turn_time(mechanism: Mechanism) -> float:
-    """Return the time of one turn, s, along the profile; infinite at rest. An acceleration has no such time."""
+    """Return the time of one turn, s, along the profile; infinite at rest. An accelerating crank has no such time."""
     profile = mechanism.speed_profile
     over_time = mechanism.speed * (1.0 if profile is None else profile.over_time)
     return 2.0 * math.pi / abs(over_time) if over_time else math.inf

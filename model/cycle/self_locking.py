@@ -46,8 +46,8 @@ def locking_margin(friction: Friction, designs: Array, *, gradients: bool = Fals
     return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
 
 
-def locks_because(friction: Friction, linkage: Linkage) -> str:
-    """Return why friction locks one linkage, or may jam it, at some crank angle; empty where it does neither."""
+def locking_reason(friction: Friction, linkage: Linkage) -> str:
+    """Return why friction locks a linkage, or may jam it, at some crank angle; empty if it does neither."""
     margin = float(locking_margin(friction, np.array([[linkage.crank, linkage.rod, linkage.offset]], float))[0][0])
     if margin > 0.0:
         return ""
@@ -59,7 +59,7 @@ def locks_because(friction: Friction, linkage: Linkage) -> str:
 
 def require_driving(friction: Friction, linkage: Linkage) -> None:
     """Raise `InputError` where friction locks one linkage, or may jam it, at some crank angle."""
-    reason = locks_because(friction, linkage)
+    reason = locking_reason(friction, linkage)
     if reason:
         raise InputError(reason)
 

@@ -22,7 +22,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import members
 from ..machine.speed_profile import time_per_angle
 from ..machine.two_turns import TURN, cycle_turns
-from ..signals.first_of_equal import named_angle
+from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, Panels, panels_of, peak_of
 from .cycle import breakpoints, cycle
 from .pace import pace, pace_knots
@@ -160,7 +160,7 @@ def _real(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme; none where cylinders cancel but for rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
-    return Extreme(extreme.value, named_angle(extreme.angle, period))
+    return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
 
 
 def _root(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:

@@ -71,7 +71,7 @@ def linkage_loaded(machine: Mechanism) -> bool:
 
 def pushed(machine: Mechanism) -> bool:
     """Return whether loads act on the slider: some that need no speed, or any while it moves."""
-    return any(not load.on_crank for load in _acting(machine))
+    return any(not load.on_crank for load in _acting_loads(machine))
 
 
 def drive_loaded(machine: Mechanism) -> bool:
@@ -79,13 +79,13 @@ def drive_loaded(machine: Mechanism) -> bool:
 
     At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
     """
-    turned = any(load.on_crank for load in _acting(machine))
+    turned = any(load.on_crank for load in _acting_loads(machine))
     lifted = crank_weighs(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
     return linkage_loaded(machine) or turned or lifted
 
 
-def _acting(machine: Mechanism) -> list[Load]:
-    """Return the loads that act: those that need no speed, and all while the crank turns."""
+def _acting_loads(machine: Mechanism) -> list[Load]:
+    """Return the active loads: all if the crank turns, else those that need no speed."""
     return [load for load in machine.loads if machine.speed != 0.0 or not load.speed_power]
 
 

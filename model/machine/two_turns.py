@@ -29,11 +29,11 @@ TURN = 2.0 * math.pi
 
 def cycle_turns(mechanism: Mechanism) -> int:
     """Return how many turns of the crank make a cycle: 2 where a load has a cycle of two."""
-    return turns_with(mechanism.loads)
+    return turns_per_cycle(mechanism.loads)
 
 
-def turns_with(loads: Iterable[Load]) -> int:
-    """Return how many turns of the crank a cycle with some loads takes."""
+def turns_per_cycle(loads: Iterable[Load]) -> int:
+    """Return how many crank turns a cycle takes with these loads."""
     return max((load.cycle_turns for load in loads), default=1)
 
 

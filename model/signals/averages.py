@@ -42,13 +42,13 @@ from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .of_shaft import averages_of_shaft
 from .quadrature import (
+    ANGLE_ROUNDING,
     DEEPEST,
     EVEN,
-    MOST,
+    MOST_HALVINGS,
     NOISE,
     PANELS,
     RESOLVED,
-    ROUNDING,
     gaps_of,
     panel_rule,
     rough,
@@ -167,7 +167,7 @@ def _average(
         if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        first, second, left = 0.0, 0.0, MOST
+        first, second, left = 0.0, 0.0, MOST_HALVINGS
         for v in range(nv + 1):
             greatest[v] = 0.0
         for s in range(count):
@@ -210,13 +210,13 @@ def _average(
                         for i in range(points):
                             greatest[nv] = max(greatest[nv], abs(value[i]))
                         allowed = max(
-                            RESOLVED[0] * resolved * greatest[nv], ROUNDING * steepness(value[:points], width)
+                            RESOLVED[0] * resolved * greatest[nv], ANGLE_ROUNDING * steepness(value[:points], width)
                         )
                         halve = rough(value, tail, allowed)
                         for v in range(nv):
                             for i in range(points):
                                 greatest[v] = max(greatest[v], abs(slope[v, i]))
-                            steep = ROUNDING * steepness(slope[v, :points], width)
+                            steep = ANGLE_ROUNDING * steepness(slope[v, :points], width)
                             halve = halve or rough(slope[v], tail, max(RESOLVED[1] * resolved * greatest[v], steep))
                         if halve and depth < DEEPEST and left > 0:
                             left -= 1

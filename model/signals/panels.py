@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array
-from .first_of_equal import first_of_equal
-from .quadrature import ROUNDING
+from .first_greatest import first_greatest
+from .quadrature import ANGLE_ROUNDING
 
 Curves = Callable[[Array], Array]
 
@@ -44,7 +44,7 @@ class Extreme:
 def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
     """Return the one of greatest size of the least and the greatest value; of equal ones the first."""
     sizes = np.abs([end.value for end in ends])
-    first = ends[int(first_of_equal(sizes, np.array([end.angle for end in ends]), period))]
+    first = ends[int(first_greatest(sizes, np.array([end.angle for end in ends]), period))]
     return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
 
 
@@ -78,7 +78,7 @@ class Panels:
         return float(np.sum(self.width * products) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
-        """Return the least and the greatest value; of equal ones the first (`first_of_equal`)."""
+        """Return the least and the greatest value; of equal ones the first (`first_greatest`)."""
         return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
 
     def integral(self, curve: int) -> float:
@@ -113,7 +113,7 @@ class Panels:
             rows.append(np.full(len(own), i))
         found, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
         angles = self.low[row] + 0.5 * (1.0 + at) * self.width[row]
-        first = int(first_of_equal(found, angles, float(np.sum(self.width))))
+        first = int(first_greatest(found, angles, float(np.sum(self.width))))
         return Extreme(sign * max(best, float(found.max())), float(angles[first]))
 
 
@@ -130,7 +130,7 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
         angles = low[:, None] + 0.5 * width[:, None] * (1.0 + _NODES)
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
         found = np.einsum("ki,mpi->pkm", _FIT, values)
-        steep = ROUNDING * np.ptp(values, axis=2).T / width[:, None]
+        steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
         rough = np.any(np.abs(found[:, -_TAIL:]).max(axis=1) > np.maximum(_RESOLVED * sizes, steep), axis=1)
         if depth == _DEEPEST or total + 2 * len(low) > most:
             rough[:] = False

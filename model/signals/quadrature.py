@@ -18,8 +18,10 @@ EVEN = 0.21
 DEEPEST = 24  # halvings of a panel
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
 RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
-MOST = 20_000  # halvings of the panels of one design: beyond it what is left is the rounding of the curves
-ROUNDING = 1e-13  # rad, by which rounding of angles and positions moves a curve: no halving lessens its slope times it
+MOST_HALVINGS = 20_000  # panels halved for one design: beyond that only the rounding of the curves remains
+ANGLE_ROUNDING = (
+    1e-13  # rad, by which rounding of angles and positions moves a curve: no halving lessens its slope times it
+)
 NOISE = 0.004  # of a curve's rounding, in units of RESOLVED, times kappa^2: that of the crank angle itself
 
 
@@ -50,7 +52,7 @@ def rough(values: Any, tail: Any, allowed: Any) -> bool:
 
 @analytic
 def steepness(values: Any, width: Any) -> Any:
-    """Return the mean slope of values on a panel between the least and the greatest of them."""
+    """Return the range of the values on a panel divided by its width."""
     least = greatest = values[0]
     for i in range(values.shape[0]):
         least, greatest = min(least, values[i]), max(greatest, values[i])

@@ -46,7 +46,7 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
     for depth in range(_DEEPEST + 1):
         angle = low[:, None] + width[:, None] * _NODES
         found, size = shaft.at(row, inside, angle)
-        value, time = found[:, :, 0], _time(shaft, angle)
+        value, time = found[:, :, 0], _time_weight(shaft, angle)
         rough = _is_rough(value, size, sizes[0], row, width)
         if time is not None:
             rough |= _is_rough(np.sqrt(time) * value, np.sqrt(time) * size, sizes[1], row, width)
@@ -74,7 +74,7 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
     return Means(sums[each], slopes[each] if shaft.gradients else None, nothing)
 
 
-def _time(shaft: Shaft, angle: Array) -> Array | None:
+def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
     """Return the time per crank angle at angles, as a share of its mean; None at constant speed."""
     return None if shaft.profile is None else time_per_angle(shaft.profile, angle)
 
@@ -94,6 +94,6 @@ def _add_jumps(shaft: Shaft, segments: Segments, slopes: Array) -> None:
     before = np.empty(len(edge))
     before[segments.after] = edge[:, 1]
     jump, squares = (before - edge[:, 0]) / shaft.period, (before**2 - edge[:, 0] ** 2) / shaft.period
-    time = _time(shaft, segments.low)
+    time = _time_weight(shaft, segments.low)
     for place, own in enumerate([jump, squares] if time is None else [jump, squares, squares * time]):
         np.add.at(slopes[place], segments.row, own[:, None] * rate)

@@ -296,7 +296,7 @@ class Formulas:
         if name in self._places:
             of = self._intervals[name]
             return f"keep variables.{name} off zero: it is from {_ends(of, self._kinds[name])}"
-        instead = self._quantities[name].quotient if name in self._quantities else ""
+        instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
             return f"{instead} serves instead: the share of the work that comes out, of machines that drive as well"
         return "divide by a quantity that is never zero, or ask for something of the product instead"

@@ -104,24 +104,24 @@ class FormulaQuantity(Quantity):
             return fold(self.expression, Slopes(leaves, n, d, gradients))
 
     @property
-    def smooth(self) -> bool:
+    def is_smooth(self) -> bool:
         """Whether no design has a kink of it: nor do its parts, and only an offset of known sign has its size taken."""
 
-        def kinked(node: Node) -> bool:
+        def has_kink(node: Node) -> bool:
             if not isinstance(node, Call):
                 return False
             if node.function == "abs" and node.arguments[0] == Name("offset"):
                 return dict(self.signs).get("offset", 0) == 0
-            return node.function in ("abs", "min", "max") or any(map(kinked, node.arguments))
+            return node.function in ("abs", "min", "max") or any(map(has_kink, node.arguments))
 
-        return not kinked(self.expression) and all(
-            part.smooth if isinstance(part, FormulaQuantity) else type(part).pieces is Quantity.pieces
+        return not has_kink(self.expression) and all(
+            part.is_smooth if isinstance(part, FormulaQuantity) else type(part).pieces is Quantity.pieces
             for part in self.parts
         )
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the formula as the greatest of smooth pieces; see `Quantity`."""
-        if self.smooth:
+        if self.is_smooth:
             return super().pieces(mechanism, dimensions)
         require_width(mechanism, dimensions)
         n, d = dimensions.shape
@@ -179,11 +179,11 @@ def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
     return found
 
 
-def sum_of_quantities(of: FormulaQuantity) -> Linear | None:
+def linear_form(of: FormulaQuantity) -> Linear | None:
     """Return a formula that is linear in dimensions, numbers and the quantities that it names; None if it is not."""
     known = _known(of)
     for part in of.parts:
-        known[part.name] = sum_of_quantities(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
+        known[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
     return linear_of(of.expression, known)
 
 

@@ -25,7 +25,7 @@ from ...model.linkage.single import single
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
-from ...model.signals.first_of_equal import first_of_equal, named_angle
+from ...model.signals.first_greatest import angle_in_cycle, first_greatest
 from ..kinds import Face
 from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
@@ -60,7 +60,7 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 class Extreme:
     """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
-    Of several equal ones it is the first (`first_of_equal`). Angle and position are NaN for a curve that is
+    Of several equal ones it is the first (`first_greatest`). Angle and position are NaN for a curve that is
     constant; all three are NaN for one that friction leaves undetermined at some crank angle.
     """
 
@@ -205,11 +205,11 @@ def _ends(
             value, angle = refined[row]
             if tops[best] > value + _EQUAL * sizes[row, 0]:
                 value, angle = float(tops[best]), float(angles[best])
-            places, heights = _at_cuts([sign * values[row] for values in samples], pieces)
+            places, heights = _maxima_at_cuts([sign * values[row] for values in samples], pieces)
             away = np.all(np.abs(np.subtract.outer(angles[inside], places)) > 4.0 * _INSET, axis=1)
             places = np.concatenate([[angle], places, angles[inside][away]])
-            first = first_of_equal(np.concatenate([[value], heights, tops[inside][away]]), places, period)
-            refined[row] = (sign * value + 0.0, named_angle(float(places[first]), period))
+            first = first_greatest(np.concatenate([[value], heights, tops[inside][away]]), places, period)
+            refined[row] = (sign * value + 0.0, angle_in_cycle(float(places[first]), period))
         ends.append(refined)
     return ends[0], ends[1]
 
@@ -247,7 +247,7 @@ def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
     return float(value), float(angle)
 
 
-def _at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Array]:
+def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Array]:
     """Return crank angles and values of the cuts that are local maxima: kinks, jumps and what is smooth there."""
     begin, end = (np.array([2.0 * v[a] - v[b] for v in curve]) for a, b in ((0, 1), (-1, -2)))
     rises, falls = np.array([v[1] > v[0] for v in curve]), np.array([v[-1] < v[-2] for v in curve])

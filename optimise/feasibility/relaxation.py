@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Sense, Word, merged
-from ..problem.restated import restated
+from ..problem.restatement import restate
 from ..problem.violation import FEASIBLE
 from .best import Best, wanting
 from .safe_side import exact, safe
@@ -127,8 +127,8 @@ def _without(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     kept = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
     if lower is not None or upper is not None:
         kept = (*kept, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
-    known = restated(problem, constraint)
-    left = restated(problem, kept[-1]) if lower is not None or upper is not None else None
+    known = restate(problem, constraint)
+    left = restate(problem, kept[-1]) if lower is not None or upper is not None else None
     floor = problem.quantity(known.quantity).floor
     if floor is not None and known.lower is not None and (left is None or left.lower is None):
         kept = merged((*kept, Constraint(quantity=known.quantity, lower=_LOWEST * known.lower)))

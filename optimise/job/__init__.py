@@ -16,7 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
-from ...model.file_names import path_named, path_text
+from ...model.file_names import path_from_text, path_text
 from ...model.machine.strength import Material
 from ...objectives.units import shown
 from ..problem.problem import Problem
@@ -51,7 +51,7 @@ def load_job(
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
     data = read_job(path)
     with _named(path):
-        return parse_job(data, values, folder=path_named(path).parent, allow_user_code=allow_user_code)
+        return parse_job(data, values, folder=path_from_text(path).parent, allow_user_code=allow_user_code)
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
     Raises JobError for files that cannot be read.
     """
     with _named(path):
-        file = path_named(path)
+        file = path_from_text(path)
         return with_files(read(file), file.parent)
 
 
@@ -81,10 +81,10 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:
     """Return the files beside a job file that it needs: points, speeds, catalogues, modules of its own functions."""
-    file = path_named(path)
+    file = path_from_text(path)
     data, folder = read(file), file.parent
     files = [*(name for name in (points_file(data), speeds_file(data)) if name), *catalogues(data)]
-    return [*(folder / path_named(name) for name in dict.fromkeys(files)), *modules_beside(data, folder)]
+    return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *modules_beside(data, folder)]
 
 
 def parse_job(

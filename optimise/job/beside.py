@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePath
 
 from ...model.errors import JobError
-from ...model.file_names import path_named
+from ...model.file_names import path_from_text
 from ...objectives.units import shown
 
 _LARGEST = 1_000_000  # bytes
@@ -17,7 +17,7 @@ def beside(folder: Path, key: str, file: str) -> tuple[Path, str]:
     """Return the path of a file that a job names under a key, and what messages begin with. Raises `JobError`."""
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
         raise JobError(f"{key}: must lie beside the job file; got {shown(file)}; copy it there")
-    return folder / path_named(file), f"{key}: {shown(file)}"
+    return folder / path_from_text(file), f"{key}: {shown(file)}"
 
 
 def table_of(path: Path, name: str, headers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], list[list[str]]]:

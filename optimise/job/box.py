@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SLACK = 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
-RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
+STROKE_RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
 """Ratios of the strokes that trade against the transmission angle."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other requirements on the dimensions"
@@ -69,10 +69,10 @@ def require_reachable(problem: Problem) -> None:
     if ROD_TO_OFFSET.name in constraints:
         box = _with_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
     formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.of_dimensions)
-    for of in (ROD_TO_CRANK, STROKE, *RATIOS, TRANSMISSION_ANGLE, *formulas):
+    for of in (ROD_TO_CRANK, STROKE, *STROKE_RATIOS, TRANSMISSION_ANGLE, *formulas):
         if of.name in constraints:
             _require_within(of, constraints[of.name], box, problem)
-    for of in RATIOS:
+    for of in STROKE_RATIOS:
         wrong = beyond_both(problem, of, box.share)
         if wrong:
             raise InfeasibleError(f"constraints.{of.name}: {wrong}")
@@ -158,7 +158,7 @@ def _nearest(problem: Problem, constraint: Constraint, kept: tuple[Constraint, .
 
 
 def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | None:
-    """Return in words why no linkage has one of `RATIOS` and the transmission angle as asked; None if one may.
+    """Return in words why no linkage has one of `STROKE_RATIOS` and the transmission angle as asked; None if one may.
 
     share: where offset / rod may lie.
     """

@@ -23,7 +23,7 @@ from ...objectives.units import shown
 from ..feasibility.swinging import require_swinging
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
-from ..problem.restated import restated
+from ..problem.restatement import restate
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
 from .box import Box, require_reachable
@@ -50,7 +50,7 @@ def require_consistent(problem: Problem) -> None:
         return
     _require_delivery(problem)
     require_reachable(problem)
-    _require_reachable_in_other_words(problem)
+    _require_reachable_restated(problem)
     require_slow_stroke(problem)
     require_options(problem)
     require_compatible(problem)
@@ -112,9 +112,9 @@ def _undelivered(part: Problem) -> str:
     return ""
 
 
-def _require_reachable_in_other_words(problem: Problem) -> None:
+def _require_reachable_restated(problem: Problem) -> None:
     """Refuse what formulas ask of a known quantity in other words, and the ranges do not have."""
-    known = {item.quantity: restated(problem, item) for item in problem.constraints}
+    known = {item.quantity: restate(problem, item) for item in problem.constraints}
     other = [key_of(["constraints", name]) for name, item in known.items() if item.quantity != name]
     if not other:
         return
@@ -158,7 +158,7 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
 def _require_free(problem: Problem, name: str) -> None:
     """Refuse an objective that is the same for every design."""
     held = next(
-        (c for c in problem.constraints if c.equality and name in (c.quantity, restated(problem, c).quantity)), None
+        (c for c in problem.constraints if c.equality and name in (c.quantity, restate(problem, c).quantity)), None
     )
     if held is not None:
         raise JobError(
@@ -168,7 +168,7 @@ def _require_free(problem: Problem, name: str) -> None:
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
         # Along a speed profile a ratio of times is the same for every design too, though not one.
-        found = {_in_line(part, name) for part in problem.parts()}
+        found = {_in_line_value(part, name) for part in problem.parts()}
         if len(found) > 1:
             return
         value = found.pop()
@@ -178,14 +178,14 @@ def _require_free(problem: Problem, name: str) -> None:
         )
 
 
-def _in_line(part: Problem, name: str) -> str:
+def _in_line_value(part: Problem, name: str) -> str:
     """Return the value of a quantity that is the same for every design without offset, in words."""
     one = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
     value = float(part.quantity(name).evaluate(part.mechanism, one).values[0])
     return "infinite" if value == math.inf else f"{value:.6g}"
 
 
-def _require_times(part: Problem) -> None:
+def _require_quotients_of_slow_stroke(part: Problem) -> None:
     """Raise `InfeasibleError` for a bound on a quotient of stroke times that asks for the other stroke to be slow."""
     for stroke, of in STROKE_TIME_RATIOS.items():
         own = stroke == part.slow_stroke
@@ -216,7 +216,7 @@ def require_slow_stroke(problem: Problem) -> None:
             "or leave out slow_stroke"
         )
     for part in parts:
-        _require_times(part)
+        _require_quotients_of_slow_stroke(part)
     if any(part.mechanism.speed_profile is not None for part in parts):
         return  # there neither the sign of the offset nor a closed form says which stroke is slow
     ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]

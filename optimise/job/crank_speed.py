@@ -14,14 +14,14 @@ from .speed_profile import SpeedProfilePart
 from .values import AngularAcceleration, AngularSpeed, Part, StrokeRate, Within, optional
 
 Direction = Literal["counter-clockwise", "clockwise"]
-STATED = ("speed", "cycle_time", "strokes_per_minute")
+SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
 """Keys that say how fast the crank turns; a job has one of them."""
-TIMED = STATED[1:]
+TIME_KEYS = SPEED_KEYS[1:]
 """Those that say it by a time, so that a profile is a shape without a size."""
 _RPM = 30.0 / math.pi
 
 
-_CYCLE = Within(
+_CYCLE_TIME = Within(
     TIME,
     "positive",
     rule="a time from 20 us to 1e9 s",
@@ -47,7 +47,7 @@ class CrankSpeedPart(Part):
         "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
         "300 rpm",
     )
-    cycle_time: Annotated[float, _CYCLE] | None = optional(
+    cycle_time: Annotated[float, _CYCLE_TIME] | None = optional(
         "instead of speed: time of a cycle, one turn, or two where a load has a cycle of 720 deg", "2 s"
     )
     strokes_per_minute: StrokeRate | None = optional("instead of speed: turns of the crank in a minute", 30)
@@ -63,9 +63,9 @@ class CrankSpeedPart(Part):
     )
 
     @property
-    def stated(self) -> tuple[str, ...]:
+    def speed_keys(self) -> tuple[str, ...]:
         """Keys that say how fast the crank turns: one, or none of a swing."""
-        return tuple(key for key in STATED if getattr(self, key) is not None)
+        return tuple(key for key in SPEED_KEYS if getattr(self, key) is not None)
 
     def crank_speed(self, turns: int) -> float:
         """Return the mean speed over the crank angle, rad/s, with cycles of some turns; 0 where none is stated.
@@ -87,22 +87,22 @@ class CrankSpeedPart(Part):
         return self
 
     @model_validator(mode="after")
-    def _stated_once(self) -> CrankSpeedPart:
-        if len(self.stated) > 1:
+    def _require_one_speed(self) -> CrankSpeedPart:
+        if len(self.speed_keys) > 1:
             raise InputError(
-                f"one of {', '.join(STATED)} says how fast the crank turns; got {' and '.join(self.stated)}; leave out "
-                "all but one"
+                f"only one of {', '.join(SPEED_KEYS)} may state how fast the crank turns; got "
+                f"{' and '.join(self.speed_keys)}; leave out all but one"
             )
         if self.speed is not None and self.direction not in (None, _direction(self.speed)):
             raise InputError(
                 f"the sign of speed is the direction, positive counter-clockwise; got {_RPM * self.speed:.6g} rpm and "
                 f'direction = "{self.direction}"; give speed = "{-_RPM * self.speed:.6g} rpm", or leave out direction'
             )
-        if self.speed is None and self.stated:
-            self._require_timed(self.stated[0])
+        if self.speed is None and self.speed_keys:
+            self._require_repeating_cycle(self.speed_keys[0])
         return self
 
-    def _require_timed(self, key: str) -> None:
+    def _require_repeating_cycle(self, key: str) -> None:
         """Refuse what has no cycle of a given time."""
         if self.acceleration:
             raise InputError(

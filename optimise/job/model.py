@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import turns_with
+from ...model.machine.two_turns import turns_per_cycle
 from ...objectives.units import shown
 from ..methods.registry import methods
 from ..problem.problem import Settings
@@ -176,7 +176,7 @@ class Job(Part):
         parts |= {"speed_profile": own.speed_profile}
         loads = tuple(load.build() for load in self.load)
         return Mechanism(
-            speed=own.crank_speed(turns_with(loads)),
+            speed=own.crank_speed(turns_per_cycle(loads)),
             acceleration=own.acceleration,
             slider_mass=0.0 if own.slider is None else own.slider.mass,
             gravity=own.gravity_vector,

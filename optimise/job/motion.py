@@ -17,7 +17,7 @@ from ...objectives.kinds import ANGLE
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
 from ..problem.requirements import Constraint
-from .crank_speed import STATED
+from .crank_speed import SPEED_KEYS
 from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
@@ -220,7 +220,7 @@ def require_speed(swing: Swing | None, stated: bool, varying: Iterable[str]) -> 
                 'add for example speed = "300 rpm"'
             )
         return
-    for path in (*(f"mechanism.{key}" for key in (*STATED, "direction")), "mechanism.acceleration"):
+    for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
                 f"{path}: a swing has a motion of its own, that of [motion]; got it as a variable, or in an option; "

@@ -13,7 +13,7 @@ from .own import declared
 
 _MOST = 6  # plain numbers that are told one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
-_PACE = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
+_SPEED_WORDS = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
 _USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
@@ -45,7 +45,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     if job.motion.build() is not None:
         notes += [
             f"mechanism.{key}: a swing has a motion of its own, that of [motion]; leave the {words} out"
-            for key, words in _PACE.items()
+            for key, words in _SPEED_WORDS.items()
             if getattr(job.mechanism, key) is not None
         ]
         notes += [

@@ -20,7 +20,7 @@ from .values import Angle, AngularSpeed, Checked, Number, optional
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
 """First line of a file of speeds."""
 _MOST = 1000
-_OFF = 1e-3  # share by which the mean of a table may differ from the speed, and the end of a turn from 360 deg
+_TOLERANCE = 1e-3  # share by which the mean of a table may differ from the speed, and the end of a turn from 360 deg
 
 
 def _profile(**given: Any) -> Profile:
@@ -68,7 +68,7 @@ class SpeedProfilePart(Checked[Profile]):
     def require_mean(self, speed: float) -> None:
         """Raise `InputError` unless the mean of points is the given speed, rad/s."""
         built = self.build()
-        if isinstance(built, SpeedTable) and abs(built.mean - speed) > _OFF * abs(speed):
+        if isinstance(built, SpeedTable) and abs(built.mean - speed) > _TOLERANCE * abs(speed):
             mean = built.mean * 30.0 / math.pi
             raise InputError(
                 f"speed must be the mean of speed_profile over the crank angle, {mean:.6g} rpm; got "
@@ -125,7 +125,7 @@ def _points(of: str, at: list[float], speeds: list[float]) -> tuple[list[float],
     if any(after <= before for before, after in pairwise(turned)):
         raise InputError("the speed must not be zero or change its sign; got a record that stops; give one that runs")
     last = max(1, int(np.argmin(abs(turned - 360.0))))
-    near = min(360.0 * _OFF, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is taken for rounding
+    near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is taken for rounding
     if 360.0 - near <= turned[-1] < 360.0:
         turned *= 360.0 / turned[-1]
     if turned[-1] < 360.0 - near:

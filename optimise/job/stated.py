@@ -35,7 +35,7 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     require_target(job.target_motion, job.objectives, job.constraints)
     motion = job.motion.build()
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
-    require_speed(motion, bool(job.mechanism.stated), {*variables.paths, *chosen})
+    require_speed(motion, bool(job.mechanism.speed_keys), {*variables.paths, *chosen})
     chosen |= {path for path, given in variables.paths.items() if is_choice(given)}
     require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
     require_swing_asked(motion, job.objectives, job.constraints)

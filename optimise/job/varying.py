@@ -28,7 +28,7 @@ from ...objectives.units import shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from .crank_speed import STATED, TIMED
+from .crank_speed import SPEED_KEYS, TIME_KEYS
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
@@ -247,7 +247,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
-    _require_speed_itself(path, key, jobs)
+    _require_range_of_speed(path, key, jobs)
     lower, upper = (_number(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
@@ -269,10 +269,10 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         raise JobError(f"{key}: {error}") from None
 
 
-def _require_speed_itself(path: str, key: str, jobs: list[Job]) -> None:
+def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
     """Refuse a range of a number that states the crank speed in another way. jobs: those of the ends of its range."""
     stated = path.removeprefix("mechanism.")
-    if path.startswith("mechanism.") and stated in TIMED:
+    if path.startswith("mechanism.") and stated in TIME_KEYS:
         low, high = sorted(ANGULAR_SPEED.metric.factor * other.machine().speed for other in jobs)
         raise JobError(
             f"{key}: of the crank only its speed varies over a range; got a range of {stated}; give speed in place of "
@@ -314,8 +314,8 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
 def _unknown(path: str, job: Job) -> str:
     """Return in words that a job gives no number at a path, or states the crank speed in another way."""
-    stated, key = job.mechanism.stated, path.removeprefix("mechanism.")
-    if stated and path.startswith("mechanism.") and key in STATED:
+    stated, key = job.mechanism.speed_keys, path.removeprefix("mechanism.")
+    if stated and path.startswith("mechanism.") and key in SPEED_KEYS:
         return (
             f"must name a number that the job gives; got {path}, where it gives mechanism.{stated[0]}; give {key} in "
             f"[mechanism] in place of {stated[0]}"

@@ -27,8 +27,8 @@ from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_an
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.given import countable, given_designs, numbers_of, require_machine, shortly
 from ...objectives.tables.measured import measured_from
+from ...objectives.tables.missing_values import missing_value_reason
 from ...objectives.tables.swinging import require_in_motion, swinging
-from ...objectives.tables.valueless import valueless_because
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -238,7 +238,7 @@ def analyse(
         else:
             value = float(item.evaluate(mechanism, row).values[0])
             if math.isnan(value):
-                undefined[item.name] = item.blank if swing else valueless_because(item, machine, linkage)
+                undefined[item.name] = item.blank if swing else missing_value_reason(item, machine, linkage)
             else:
                 values[item.name] = value
     return Analysis(machine, linkage, values, undefined, chosen, title, swing)

@@ -17,7 +17,7 @@ from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from .problem import Problem
 from .requirements import Constraint, Objective, merged
-from .restated import restated
+from .restatement import restate
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
@@ -50,7 +50,7 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
     found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found
-    asked = (restated(problem, item) for item in found)
+    asked = (restate(problem, item) for item in found)
     least = max(c.lower for c in asked if c.quantity == TIME_RATIO.name and c.lower is not None)
     assert problem.slow_stroke is not None
     name = STROKE_TIME_RATIOS[problem.slow_stroke].name
@@ -62,7 +62,7 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
 
 def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints with their floors, formulas that are a known quantity in other words as that quantity."""
-    return tuple(restated(problem, item) for item in constraints_of(problem))
+    return tuple(restate(problem, item) for item in constraints_of(problem))
 
 
 def _with_floor(
@@ -73,7 +73,7 @@ def _with_floor(
     A bound on a formula that is the quantity in other words is one on it.
     """
     assert of.floor is not None
-    own = [c for c in (restated(problem, item) for item in constraints) if c.quantity == of.name]
+    own = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]
     if any(c.lower is not None and (above is None or c.lower > above) for c in own):
         return constraints
     upper, least = min((c.upper for c in own if c.upper is not None), default=None), above or 0.0

@@ -45,7 +45,7 @@ def expected_warnings(problem: Problem) -> list[str]:
         slow = np.atleast_1d(slow_stroke(part.mechanism, linkage))
         loaded = loaded_stroke(part.mechanism, designs)
         found = _fast(slow, loaded)
-        fast, turning = fast + int(found.sum()), turning + int((_one_sided(slow) & _one_sided(loaded)).sum())
+        fast, turning = fast + int(found.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
         sides += [str(stroke) for stroke in loaded[found]]
     if not fast:
         return _left_out(problem)
@@ -89,10 +89,10 @@ def _left_out(problem: Problem) -> list[str]:
 
 
 def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> Mask:
-    return np.asarray(_one_sided(slow) & _one_sided(loaded) & (slow != loaded))
+    return np.asarray(_is_one_stroke(slow) & _is_one_stroke(loaded) & (slow != loaded))
 
 
-def _one_sided(strokes: NDArray[np.str_]) -> Mask:
+def _is_one_stroke(strokes: NDArray[np.str_]) -> Mask:
     return np.isin(strokes, ("outward", "inward"))
 
 

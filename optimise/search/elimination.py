@@ -26,7 +26,7 @@ from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
-from ..problem.restated import restated
+from ..problem.restatement import restate
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
 from .rule import Rule
 from .swing_rules import swing_rules
@@ -169,7 +169,7 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
 
 def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
     bounds = problem.ranges | {"offset": offset}
-    wanted, meant = _wanted(problem)
+    wanted, meant = _requested_values(problem)
     equations: dict[str, Linear] = {}
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
@@ -207,7 +207,7 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
     )
 
 
-def _wanted(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
+def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
     """Return the values that equalities ask for by quantity, and the quantity of each constraint with one.
 
     A formula that is a known quantity in other words asks for that quantity, unless another value of it is asked too.
@@ -217,7 +217,7 @@ def _wanted(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
     meant: dict[str, str] = {}
     for constraint in problem.constraints:
         if constraint.quantity in asked:
-            known = restated(problem, constraint)
+            known = restate(problem, constraint)
             value = asked[constraint.quantity] if known.lower is None else float(known.lower)
             same = {**asked, **wanted}.get(known.quantity, value) == value
             name, value = (known.quantity, value) if same else (constraint.quantity, asked[constraint.quantity])

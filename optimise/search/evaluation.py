@@ -15,7 +15,7 @@ from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
-from ..problem.restated import restated
+from ..problem.restatement import restate
 from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import Sheet
@@ -23,7 +23,7 @@ from .judging import exactly, joined, quickly
 from .pieces import Rows
 
 _HUGE = 1e100
-_OFF = 1e-9
+_CLEARANCE = 1e-9
 """SI: how far off an excluded end of its domain a quantity stays."""
 
 
@@ -49,9 +49,11 @@ class Evaluator:
         self.mechanism = problem.mechanism
         self.dimension = len(sheet.free)
         remaining = [
-            self._inside(restated(problem, c)) for c in constraints_of(problem) if c.quantity not in sheet.eliminated
+            self._off_excluded_end(restate(problem, c))
+            for c in constraints_of(problem)
+            if c.quantity not in sheet.eliminated
         ]
-        self.eliminated = tuple(restated(problem, c) for c in problem.constraints if c.quantity in sheet.eliminated)
+        self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in sheet.eliminated)
         self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
         self.loose = any(c.equality for c in self.constraints)
@@ -68,12 +70,12 @@ class Evaluator:
             found = self._quantities[name] = self.problem.quantity(name)
         return found
 
-    def _inside(self, constraint: Constraint) -> Constraint:
+    def _off_excluded_end(self, constraint: Constraint) -> Constraint:
         """Return a constraint with a least value at an end that its quantity excludes moved off it: 0 deg is locked."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
             return constraint
-        return replace(constraint, lower=domain.lower + _OFF)
+        return replace(constraint, lower=domain.lower + _CLEARANCE)
 
     def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step, see `Checkpoints.step`."""

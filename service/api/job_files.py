@@ -81,12 +81,12 @@ class CatalogueModel(BaseModel):
 
 
 class FloorModel(BaseModel):
-    """A least value that has a default."""
+    """The least allowed value of a quantity, of the job or by default."""
 
     quantity: str = Field(examples=["self_locking_margin"])
-    least: float = Field(description="in the unit", examples=[5.0])
+    least: float = Field(description="least allowed value, in the unit", examples=[5.0])
     unit: str = Field(examples=["deg"])
-    default: bool = Field(description="whether the default holds, since the job sets none", examples=[True])
+    is_default: bool = Field(description="whether this is the default, used because the job sets none", examples=[True])
 
 
 class Understood(BaseModel):
@@ -98,7 +98,7 @@ class Understood(BaseModel):
     costs: list[str] = Field(examples=[[]])
     variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])
     rules: list[str] = Field(examples=[["rod to offset 3.2"]])
-    floors: list[FloorModel] = Field(description="least values that have a default", examples=[[]])
+    floors: list[FloorModel] = Field(description="least allowed values, of the job or by default", examples=[[]])
     objectives: list[str] = Field(examples=[["minimise peak torque"]])
     unknowns: int = Field(examples=[3])
     degrees_of_freedom: int = Field(examples=[2])

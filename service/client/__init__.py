@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, JobError, ServiceError
-from ...model.file_names import path_named
+from ...model.file_names import path_from_text
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
@@ -267,5 +267,5 @@ def tables_of(job: JobSource) -> Record:
             return tomllib.loads(job)
         except ValueError as error:
             raise JobError(f"the text is no valid TOML: {error}; correct the line") from None
-    file = path_named(job)
+    file = path_from_text(job)
     return with_files(read(file), file.parent)

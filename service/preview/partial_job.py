@@ -13,7 +13,7 @@ from ...model.cycle.stroke_times import massless_machine
 from ...model.errors import InputError
 from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.registry import QUANTITIES
-from ...optimise.job.crank_speed import STATED, CrankSpeedPart
+from ...optimise.job.crank_speed import SPEED_KEYS, CrankSpeedPart
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.values import RangeOf
 from ...optimise.job.varying import ends_of
@@ -82,7 +82,7 @@ def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
     given = part if isinstance(part, Mapping) else {}
     branch: Branch = "crossed" if given.get("branch") == "crossed" else "open"
-    for keys in ((*STATED, "direction", "speed_profile"), (*STATED, "direction")):
+    for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):
         with suppress(InputError, ValidationError):
             part = CrankSpeedPart.model_validate({key: given[key] for key in keys if key in given})
             profile = None if part.speed_profile is None else part.speed_profile.build()

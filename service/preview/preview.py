@@ -12,7 +12,7 @@ from ...objectives.counted import counted
 from ...optimise.feasibility.relaxation import missed
 from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
-from ...optimise.job.box import RATIOS, beyond_both
+from ...optimise.job.box import STROKE_RATIOS, beyond_both
 from ...optimise.job.file import require_few
 from ...optimise.job.stated_formulas import OwnName, StatedFormula, own_names, stated_formulas
 from ...optimise.problem.problem import Problem
@@ -87,7 +87,7 @@ def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     except InputError:
         stated = None
     whole, wrong, rest = None, list[Wrong](), tables
-    both = [] if stated is None else [(of.name, beyond_both(stated, of)) for of in RATIOS]
+    both = [] if stated is None else [(of.name, beyond_both(stated, of)) for of in STROKE_RATIOS]
     beyond = {name: said for name, said in both if said is not None}
     if beyond:  # it is said once; the rest of the job is checked without it
         wrong += [Wrong(f"constraints.{name}", said, infeasible=True) for name, said in beyond.items()]

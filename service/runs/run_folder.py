@@ -27,7 +27,7 @@ from pathlib import Path
 from types import TracebackType
 
 from ...model.errors import InputError, RunError
-from ...model.file_names import path_named, path_text
+from ...model.file_names import path_from_text, path_text
 from ..resources.disk import is_full, room
 from .result import Result, csv_text, json_text
 
@@ -114,7 +114,7 @@ class RunFolder:
     def keep_files(self, files: Mapping[str, bytes]) -> None:
         """Write files under their names, which may lead into folders but not out of this one."""
         for name, content in files.items():
-            kept = self.path / path_named(name)
+            kept = self.path / path_from_text(name)
             if not kept.resolve().is_relative_to(self.path.resolve()):
                 raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
             with disk(self.path):

@@ -9,7 +9,7 @@ from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
 from ...model.errors import InputError
-from ...model.file_names import path_named, path_text
+from ...model.file_names import path_from_text, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
 HIDDEN = "***"
@@ -45,7 +45,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     """Return the database at an address. Raises `InputError` for one of another kind of database."""
     text = str(address)
     if "://" not in text:
-        return URL.create("sqlite", database=str(path_named(text)))
+        return URL.create("sqlite", database=str(path_from_text(text)))
     try:
         url = make_url(text)
     except (ArgumentError, ValueError):
@@ -54,7 +54,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     if scheme in ("postgresql", "postgres"):
         return url.set(drivername="postgresql+psycopg")
     if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
-        return url.set(drivername="sqlite", database=str(path_named(url.database)))
+        return url.set(drivername="sqlite", database=str(path_from_text(url.database)))
     raise InputError(
         f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
         "give one of these"

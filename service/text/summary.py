@@ -22,7 +22,7 @@ from ...optimise.job.options import idle_options
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
-from ...optimise.problem.restated import restated
+from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
@@ -299,14 +299,14 @@ def _rule(constraint: Constraint, problem: Problem, *, own: bool = False) -> str
 
 
 def _floors(problem: Problem) -> list[dict[str, Any]]:
-    """Return each least value that some default holds for: quantity, value, unit, and whether it is the default."""
+    """Return the least allowed values of quantities with a default: quantity, value, unit, whether it is default."""
     found = []
     for constraint in constraints_of(problem):
-        known = restated(problem, constraint)
+        known = restate(problem, constraint)
         of = problem.quantity(known.quantity)
         if of.floor is not None and known.lower is not None:
             value, default = known.lower * of.unit.factor, constraint not in problem.constraints
-            found.append({"quantity": of.name, "least": value, "unit": of.unit.symbol, "default": default})
+            found.append({"quantity": of.name, "least": value, "unit": of.unit.symbol, "is_default": default})
     return found
 
 

@@ -50,14 +50,14 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
 def undefined_of(row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> dict[str, str]:
     """Return why a design has no value of a quantity, by column. row: of `numbers_of`. own: of its job."""
     from ...objectives.registry import QUANTITIES
-    from ...objectives.tables.valueless import valueless_because
+    from ...objectives.tables.missing_values import missing_value_reason
 
     reasons = {}
     for of in (*QUANTITIES.values(), *own):
         reason = of.undefined_because([mechanism])
         value = row.get(of.field)
         if reason is None and isinstance(value, float) and math.isnan(value):
-            reason = valueless_because(of, mechanism, linkage)
+            reason = missing_value_reason(of, mechanism, linkage)
         if reason:
             reasons[of.field] = reason
     return reasons

@@ -115,11 +115,14 @@ def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_
         "quantity": "self_locking_margin",
         "least": 0.0,
         "unit": "deg",
-        "default": False,
+        "is_default": False,
     }
-    assert floors["transmission_angle"]["default"]
+    assert floors["transmission_angle"]["is_default"]
     held = {item["quantity"]: item for item in summarise(job())["floors"]}
-    assert (held["self_locking_margin"]["least"], held["self_locking_margin"]["default"]) == (pytest.approx(5.0), True)
+    assert (held["self_locking_margin"]["least"], held["self_locking_margin"]["is_default"]) == (
+        pytest.approx(5.0),
+        True,
+    )
 
 
 def test_with_the_floor_off_a_front_has_designs_nearer_to_self_locking_and_none_that_lock() -> None:

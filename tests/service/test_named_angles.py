@@ -12,7 +12,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.first_of_equal import first_of_equal, named_angle
+from slidercrank.model.signals.first_greatest import angle_in_cycle, first_greatest
 from slidercrank.objectives.tables.analysis import columns_of
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves
@@ -35,7 +35,7 @@ def even(count: int, seed: int) -> tuple[Mechanism, Linkage]:
     return machine, Linkage(crank, crank * float(random.uniform(2.2, 5.0)), 0.0)
 
 
-def first_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
+def angle_of_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
     """Return the first crank angle, deg, of the greatest torque, by parabolas through samples; sign 0: of its size."""
     theta = np.linspace(0.0, TURN, 20_000, endpoint=False)
     torque = whole_curves(machine, linkage, theta).torque
@@ -53,7 +53,7 @@ def first_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
 @pytest.mark.parametrize("seed", range(4))
 def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed: int) -> None:
     machine, linkage = even(count, seed)
-    size, most, least = (first_greatest(machine, linkage, sign) for sign in (0, 1, -1))
+    size, most, least = (angle_of_greatest(machine, linkage, sign) for sign in (0, 1, -1))
     row = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
     together = cylinders.numbers(machine, linkage)
     whole = motor.numbers(machine, linkage)
@@ -82,9 +82,9 @@ def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
 def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_but_for_rounding() -> None:
     values = np.array([[3.0, 1.0, 3.0 * (1.0 - 1e-12)], [2.0, 2.0 + 1e-6, 2.0], [np.inf, np.nan, np.nan]])
     angles = np.array([[5.0, 0.1, 2.0], [0.5, 1.0, 1.5], [np.nan, np.nan, np.nan]])
-    assert first_of_equal(values, angles, TURN).tolist() == [2, 1, 0]
+    assert first_greatest(values, angles, TURN).tolist() == [2, 1, 0]
     # A sample beside a flat top is as high but for rounding, and is not the peak.
-    assert first_of_equal(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
+    assert first_greatest(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
     # At zero from below.
-    assert first_of_equal(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
-    assert [named_angle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
+    assert first_greatest(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
+    assert [angle_in_cycle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]

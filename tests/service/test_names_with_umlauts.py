@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.file_names import path_named, path_text
+from slidercrank.model.file_names import path_from_text, path_text
 from slidercrank.optimise.job import files_beside, load_job
 from slidercrank.service.jobs.own_run import files_of
 from slidercrank.service.store.address import shown_url, url_of
@@ -26,8 +26,8 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems k
 def test_text_of_a_path_can_be_written_and_leads_back_to_it() -> None:
     assert path_text(os.fsdecode("Förderer".encode())) == "Förderer"
     assert path_text(LATIN) == "F\ufffdrderer"
-    assert path_named("Förderer") == Path("Förderer")
-    assert path_named(LATIN) == Path(LATIN)
+    assert path_from_text("Förderer") == Path("Förderer")
+    assert path_from_text(LATIN) == Path(LATIN)
 
 
 def test_files_that_a_job_names_are_kept_under_their_names(tmp_path: Path) -> None:

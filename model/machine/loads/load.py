@@ -104,8 +104,8 @@ class Table:
         unknown = keys - named if len(named) == len(taken) else set()
         if unknown or needed - keys:
             raise ValueError(
-                f"a table of loads is built from its entries by their names; got {_listed(unknown)} that the build of "
-                f"{self.name} does not take, and no {_listed(needed - keys)}; say which field an entry is of with "
+                f"the build of a load table must take its entries by name; got {_listed(unknown)}, which the build of "
+                f"{self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
                 "built(kind, key='field')"
             )
 

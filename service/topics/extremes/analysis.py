@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from ....model.cycle.self_locking import locks_because
+from ....model.cycle.self_locking import locking_reason
 from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -33,7 +33,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     differences are those of the outward stroke against the inward one.
     """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
-    locks = locks_because(mechanism.friction, linkage)
+    locks = locking_reason(mechanism.friction, linkage)
     return {
         "curves": {name: _entry(found) for name, found in extremes.items()},
         "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),

@@ -11,7 +11,7 @@ import { split } from "../lib/units.js";
 const TABLE = ["mechanism"];
 const DIRECTION = [...TABLE, "direction"];
 /** What states the speed: its key, by its label. @type {Record<string, string>} */
-const STATED = { "crank speed": "speed", "time of a cycle": "cycle_time", "strokes a minute": "strokes_per_minute" };
+const SPEED_KEYS = { "crank speed": "speed", "time of a cycle": "cycle_time", "strokes a minute": "strokes_per_minute" };
 /** @type {Record<string, string | null>} */
 const KINDS = { speed: "angular speed", cycle_time: "time", strokes_per_minute: null };
 /** @type {Record<string, string>} */
@@ -32,9 +32,9 @@ export function speedProfile(form) {
 
 /** Return the fields of speed and direction; a time of a cycle, or strokes a minute, may stand in place of the speed. @param {Form.Whole} form */
 export function speed(form) {
-  const key = Object.values(STATED).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
-  const [usual, ...others] = Object.keys(STATED);
-  const label = Object.keys(STATED).find((one) => STATED[one] === key) ?? usual;
+  const key = Object.values(SPEED_KEYS).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
+  const [usual, ...others] = Object.keys(SPEED_KEYS);
+  const label = Object.keys(SPEED_KEYS).find((one) => SPEED_KEYS[one] === key) ?? usual;
   const path = [...TABLE, key];
   const kind = KINDS[key];
   const signed = key === "speed"; // its sign is the direction
@@ -65,9 +65,9 @@ export function speed(form) {
     write();
   });
   const stated = choice(
-    { ...form, at: () => (key === "speed" ? undefined : label), put: (_, chosen) => state(form, STATED[String(chosen ?? usual)], way.value) },
+    { ...form, at: () => (key === "speed" ? undefined : label), put: (_, chosen) => stateSpeedAs(form, SPEED_KEYS[String(chosen ?? usual)], way.value) },
     [...TABLE, "stated"],
-    { options: others, fallback: usual, label: "speed given by", why: "The speed at which the crank turns, which is its mean over the crank angle; the time of a cycle; or how often the crank turns in a minute. A speed profile is scaled to the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, STATED[chosen || usual]], "c")) },
+    { options: others, fallback: usual, label: "speed given by", why: "The speed at which the crank turns, which is its mean over the crank angle; the time of a cycle; or how often the crank turns in a minute. A speed profile is scaled to the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, SPEED_KEYS[chosen || usual]], "c")) },
   );
   return [
     stated,
@@ -77,8 +77,8 @@ export function speed(form) {
 }
 
 /** State the speed in another way, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */
-function state(form, key, sign) {
-  for (const other of Object.values(STATED)) form.put([...TABLE, other], undefined);
+function stateSpeedAs(form, key, sign) {
+  for (const other of Object.values(SPEED_KEYS)) form.put([...TABLE, other], undefined);
   form.put([...TABLE, key], key === "speed" ? sign : "");
   form.put(DIRECTION, key !== "speed" && sign ? "clockwise" : undefined);
 }

@@ -1,4 +1,4 @@
-"""Why a design has no value of a quantity that its machine defines."""
+"""Why a design has no value for a quantity that is defined for its machine."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.cycle.self_locking import locks_because
+from ...model.cycle.self_locking import locking_reason
 from ...model.linkage.linkage import Linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Quantity
 
 
-def valueless_because(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> str:
-    """Return why a fully turning linkage has no value of a quantity that its machine, with nothing varying, defines.
+def missing_value_reason(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> str:
+    """Return why a fully rotating linkage has no value for a quantity that is defined for its machine, variables fixed.
 
-    Friction is why where it locks the linkage and the quantity has a value without it.
+    Friction is the reason if it locks the linkage and the quantity has a value without friction.
     """
-    locks = locks_because(mechanism.friction, linkage)
+    locks = locking_reason(mechanism.friction, linkage)
     if locks:
         design = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
         without = quantity.evaluate(replace(mechanism, friction=Friction()), design).values[0]

@@ -1,9 +1,9 @@
-"""Constraints on formulas that are a known quantity in other words, stated on that quantity.
+"""Constraints on formulas that are equivalent to a known quantity, restated as constraints on that quantity.
 
-A formula may be a factor times a quantity and a constant, such as `2 * stroke - 10 mm`, or write out the closed form of
-one, such as `rod / crank`. Elimination, bounds and floors know the quantity. What a formula names is told exactly. A
-closed form is recognised by its values: analytic functions that agree at many random designs of the job's ranges, to
-rounding, are one; so formulas that are made of several such functions (min, max, abs) are left as they are.
+A formula may be a factor times a quantity plus a constant, such as `2 * stroke - 10 mm`, or write out the closed form
+of one, such as `rod / crank`. Elimination, bounds and floors work on the quantity. A quantity that a formula names is
+recognised exactly. A closed form is recognised by its values: analytic functions that agree to rounding at many random
+designs within the job's ranges are the same; formulas made of several such functions (min, max, abs) are left alone.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.formula.expression import Call, Name, Node, Number
-from ...objectives.formula.quantity import FormulaQuantity, sum_of_quantities
+from ...objectives.formula.quantity import FormulaQuantity, linear_form
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
@@ -28,33 +28,33 @@ from .problem import Problem
 from .requirements import Constraint, Range
 
 _DRAWN, _COMPARED, _FEWEST = 4096, 256, 32
-"""Random designs; of those that turn fully so many are compared; fewer than these tell nothing."""
+"""Random designs drawn; how many of the fully rotating ones are compared; the fewest that prove equality."""
 _SEED = 14
-_SAME = 1e-11  # of the values' range: agreement to rounding
-_SNAP = 1e-12  # a factor this near to one is one, a constant as near to zero zero
+_SAME = 1e-11  # share of the values' range: agreement to rounding
+_SNAP = 1e-12  # a factor this close to one is one; a constant this close to zero is zero
 
-Real = Callable[[float], float]
+RealFunction = Callable[[float], float]
 
 
 @dataclass(frozen=True)
-class Known:
-    """A formula as factor * form(quantity) + constant, SI. inverse: of the form, which rises or falls everywhere."""
+class Restatement:
+    """A formula as factor * form(quantity) + constant, SI. inverse: of the form, which is monotonic."""
 
     quantity: str
     factor: float
     constant: float
     rises: bool = True
-    inverse: Real = float
+    inverse: RealFunction = float
 
-    def value(self, bound: float) -> float:
-        """Return the value of the quantity where the formula has a value; NaN where there is none."""
+    def quantity_value(self, bound: float) -> float:
+        """Return the value of the quantity at which the formula has a value; NaN if there is none."""
         try:
             return self.inverse((bound - self.constant) / self.factor)
         except (ValueError, ZeroDivisionError):
             return math.nan
 
 
-_FORMS: tuple[tuple[Quantity, Callable[[Array], Array], Real, bool], ...] = (
+_FORMS: tuple[tuple[Quantity, Callable[[Array], Array], RealFunction, bool], ...] = (
     (STROKE, np.asarray, float, True),
     (ROD_TO_CRANK, np.asarray, float, True),
     (ROD_TO_CRANK, np.reciprocal, lambda x: 1.0 / x, False),
@@ -68,11 +68,11 @@ _FORMS: tuple[tuple[Quantity, Callable[[Array], Array], Real, bool], ...] = (
     (TRANSMISSION_ANGLE, np.sin, math.asin, True),
     (TRANSMISSION_ANGLE, np.tan, math.atan, True),
 )
-"""Closed forms with functions of them, the inverses of these, and whether they rise."""
+"""Closed forms, functions of them, the inverses of these functions, and whether these rise."""
 
 
-def restated(problem: Problem, constraint: Constraint) -> Constraint:
-    """Return a constraint of a problem without choices, stated on the quantity that its formula is, itself if none."""
+def restate(problem: Problem, constraint: Constraint) -> Constraint:
+    """Return a constraint of a problem without choices, restated on the quantity of its formula if any."""
     if constraint.quantity in QUANTITIES:
         return constraint
     of = next((own for own in problem.own if own.name == constraint.quantity), None)
@@ -80,57 +80,59 @@ def restated(problem: Problem, constraint: Constraint) -> Constraint:
         return constraint
     machine = problem.mechanism.fullest
     steady = machine.speed_profile is None
-    known = _known(of, machine.branch, steady, problem.crank, problem.rod, problem.offset)
+    known = _restatement(of, machine.branch, steady, problem.crank, problem.rod, problem.offset)
     if known is None or not (known.quantity in QUANTITIES or any(own.name == known.quantity for own in problem.own)):
         return constraint
     rises = known.rises == (known.factor > 0.0)
     ends = (constraint.lower, constraint.upper)[:: 1 if rises else -1]
-    lower, upper = (None if end is None else known.value(end) for end in ends)
+    lower, upper = (None if end is None else known.quantity_value(end) for end in ends)
     meant = problem.quantity(known.quantity)
     for value, least in ((lower, True), (upper, False)):
-        if value is not None and not _possible(meant, value, least=least):
+        if value is not None and not _is_possible(meant, value, least=least):
             return constraint
     return Constraint(quantity=known.quantity, lower=lower, upper=upper)
 
 
-def _possible(of: Quantity, value: float, *, least: bool) -> bool:
-    """Return whether a bound asks something that rules of the quantity can take."""
+def _is_possible(of: Quantity, value: float, *, least: bool) -> bool:
+    """Return whether the quantity can have a value as a bound."""
     refused = of.domain is not None and of.domain.refuses(value, least=least)
     return math.isfinite(value) and not refused and (of.signed or value >= 0.0)
 
 
 @lru_cache(maxsize=256)
-def _known(of: FormulaQuantity, branch: Branch, steady: bool, crank: Range, rod: Range, offset: Range) -> Known | None:
-    linear = sum_of_quantities(of)
-    names = {part.name for part in _parts(of)}
+def _restatement(
+    of: FormulaQuantity, branch: Branch, steady: bool, crank: Range, rod: Range, offset: Range
+) -> Restatement | None:
+    linear = linear_form(of)
+    names = {part.name for part in _known_parts(of)}
     if linear is not None and len(linear.factors) == 1 and linear.names[0] in names:
-        return Known(linear.names[0], float(linear.factors[0][1]), float(linear.constant))
-    if not of.of_dimensions or not _analytic(of):
+        return Restatement(linear.names[0], float(linear.factors[0][1]), float(linear.constant))
+    if not of.of_dimensions or not _is_analytic(of):
         return None
     machine = Mechanism(speed=1.0, branch=branch)
-    designs = _designs(crank, rod, offset)
+    designs = _random_designs(crank, rod, offset)
     if len(designs) < _FEWEST:
         return None
     values = of.evaluate(machine, designs).values
     for quantity, form, inverse, rises in _FORMS:
-        if quantity is TIME_RATIO and not steady:  # along a speed profile no formula of dimensions
+        if quantity is TIME_RATIO and not steady:  # along a speed profile it is not a formula of the dimensions
             continue
         found = _line(form(quantity.evaluate(machine, designs).values), values)
         if found is not None:
-            return Known(quantity.name, *found, rises, inverse)
+            return Restatement(quantity.name, *found, rises, inverse)
     return None
 
 
-def _parts(of: FormulaQuantity) -> Iterator[Quantity]:
-    """Yield the quantities that a formula comes down to."""
+def _known_parts(of: FormulaQuantity) -> Iterator[Quantity]:
+    """Yield the quantities that a formula is made of, those of its parts included."""
     for part in of.parts:
-        yield from _parts(part) if isinstance(part, FormulaQuantity) else (part,)
+        yield from _known_parts(part) if isinstance(part, FormulaQuantity) else (part,)
 
 
-def _analytic(of: FormulaQuantity) -> bool:
-    """Return whether a formula is one analytic function on either side of the offset's zero, as are its parts.
+def _is_analytic(of: FormulaQuantity) -> bool:
+    """Return whether a formula and its parts are analytic for each sign of the offset.
 
-    A ratio that is kept to 1 in an inverse sine or cosine is one: beyond that there is none.
+    An argument of an inverse sine or cosine may be clipped to 1: beyond it the function is undefined.
     """
 
     def one(node: Node) -> bool:
@@ -146,11 +148,11 @@ def _analytic(of: FormulaQuantity) -> bool:
             return node.arguments[0] == Name("offset")
         return node.function not in ("min", "max") and all(map(one, node.arguments))
 
-    return one(of.expression) and all(_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity))
+    return one(of.expression) and all(_is_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity))
 
 
-def _designs(crank: Range, rod: Range, offset: Range) -> Array:
-    """Return random designs (n, 3) within ranges that turn fully and have an offset."""
+def _random_designs(crank: Range, rod: Range, offset: Range) -> Array:
+    """Return random fully rotating designs (n, 3) with an offset, within the ranges."""
     lower, upper = (np.array([getattr(ends, end) for ends in (crank, rod, offset)]) for end in ("lower", "upper"))
     drawn = lower + (upper - lower) * np.random.default_rng(_SEED).random((_DRAWN, 3))
     turning = (drawn[:, 0] > 0.0) & (drawn[:, 2] != 0.0) & (drawn[:, 1] > drawn[:, 0] + np.abs(drawn[:, 2]))
@@ -158,7 +160,7 @@ def _designs(crank: Range, rod: Range, offset: Range) -> Array:
 
 
 def _line(x: Array, y: Array) -> tuple[float, float] | None:
-    """Return factor and constant of the line through all points (n,), None where they lie on none."""
+    """Return factor and constant of the line through all points (n,); None if they are not on a line."""
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         return None
     low, high = int(np.argmin(x)), int(np.argmax(x))

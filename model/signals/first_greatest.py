@@ -1,0 +1,36 @@
+"""The crank angle reported for a greatest value: of equal ones the first in the cycle, counted from zero.
+
+Symmetric machines reach their greatest value more than once. These values differ by rounding, so that different
+computations would choose different angles.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array, Whole
+
+EQUAL = 1e-9
+"""Relative difference of peaks that count as equal: peaks are accurate to about 1e-13, near-cancelling sums less."""
+_ZERO = 1e-7  # rad: a flat peak is located no better, so one this close before zero is at zero
+_APART = 1e-3  # rad: an equally high point closer to a peak than this is the same peak
+
+
+def first_greatest(values: Array, angles: Array, period: float) -> Whole:
+    """Return the indices (...) of the first of the greatest values (..., k), in order of crank angle, rad, from zero.
+
+    The index is 0 if no value is finite.
+    """
+    top = values.max(axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        equal = values >= top - EQUAL * np.abs(top)
+        turned = np.where(equal, np.mod(angles + _ZERO, period), np.inf)
+        off = turned - turned.min(axis=-1, keepdims=True)
+        same = equal & (np.abs(off - period * np.round(off / period)) <= _APART)
+    return np.asarray(np.argmax(np.where(same, values, -np.inf), axis=-1))
+
+
+def angle_in_cycle(angle: float, period: float) -> float:
+    """Return a crank angle wrapped into the cycle, rad; one that differs from zero by rounding is zero."""
+    turned = angle % period
+    return 0.0 if period - turned < _ZERO else turned
