@@ -44,8 +44,8 @@ lint-style: $(VENV)/.installed-test
 lint-types: $(VENV)/.installed-test
 	$(BIN)/mypy
 
-# While working: lint, types, and the tests of what differs from a branch. tests/changed.py says which these are; where
-# all of them are slow, they run all the same.
+# While working: lint, types, and the tests of files that differ from a branch, chosen by tests/changed.py. If all of
+# them are slow, they run anyway.
 BASE ?= main
 CHECKS := lint-types test-changed lint-style
 check: $(VENV)/.installed-test

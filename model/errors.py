@@ -5,7 +5,7 @@
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
     |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
-    |   |   `-- InfeasibleError     a job that is right, and that no design can meet
+    |   |   `-- InfeasibleError     a valid job that no design can meet
     |   `-- NotFound        what was asked for by its name or number is not there
     |-- MissingExtra        an optional part of the software is not installed; also an ImportError
     |-- OutputLost          standard output that is closed or full
@@ -43,9 +43,9 @@ class JobError(InputError):
 
 
 class InfeasibleError(JobError):
-    """What is asked is stated rightly, and no design can meet it.
+    """The input is valid, but no design can meet it.
 
-    problem: what is asked, as far as it could be stated; None where no job asks it.
+    problem: the stated problem, as far as it could be built; None if there is no job.
     """
 
     def __init__(self, message: str, problem: object = None) -> None:

@@ -1,4 +1,4 @@
-"""Average torques: root mean square over time (what heats a motor), mean over the crank angle (what the work costs)."""
+"""Average torques: root mean square over time, which heats a motor, and mean over the crank angle, work per angle."""
 
 from functools import partial
 
@@ -34,7 +34,7 @@ MEAN_TORQUE = _average(
     short="mean torque",
     which="mean",
     place=80,
-    sentence="The average of the drive torque over the crank angle: work per angle, of load and friction.",
+    sentence="The mean drive torque over the crank angle: the work on load and friction per angle.",
     advice="Inertia and gravity need no torque on average, however high their peaks.",
     formula="mean of T over the crank angle",
     signed=True,

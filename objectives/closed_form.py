@@ -31,11 +31,11 @@ class ClosedFormQuantity(Quantity):
         return True
 
     def is_closed(self, mechanism: Mechanism) -> bool:
-        """Return whether its closed form holds for a machine, and what follows from it: `rises` and `reach`."""
+        """Return whether the closed form, and with it `rises` and `reach`, holds for a machine."""
         return True
 
     def reach_for(self, mechanism: Mechanism) -> Reach | None:
-        """Return its reach if its closed form holds for the machine."""
+        """Return its reach if the closed form holds for the machine."""
         return self.reach if self.is_closed(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

@@ -21,9 +21,9 @@ Which = Literal["mean", "rms"]
 class CycleAverage(Quantity):
     """The mean of a signal over the crank angle, or its root mean square over time.
 
-    What heats or shakes does so over time; the mean of a torque over the crank angle is work. The
-    torque counts with its sign. times_speed: the average times the mean speed over time; of the mean torque that is the
-    mean power over time.
+    Heating and shaking depend on time; the mean of a torque over the crank angle is work per angle. The torque has a
+    sign. times_speed: the average multiplied by the mean speed over time; for the mean torque that is the mean power
+    over time.
     """
 
     section: str = fact("10. Motor and balance")

@@ -1,4 +1,4 @@
-"""Energy of a cycle, one turn or two: work of the drive, friction heat, and the share that comes out as work."""
+"""Energy per cycle of one turn or two: work of the drive, friction heat, and efficiency."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .needs import DRIVEN, LOAD_WORK, LOSSES, RUBS, WORK
 from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
-_ROUNDING = 1e-12  # share of the friction heat below which the work on the loads is what rounding leaves of none
+_ROUNDING = 1e-12  # fraction of the friction heat below which the work on the loads is rounding error
 
 
 def _circle(slot: int) -> Formula:
@@ -81,7 +81,7 @@ class EnergyPerCycle(Quantity):
 
 
 class DeliveredWork(Quantity):
-    """Minus the work of the drive torque over a cycle in the sense of rotation."""
+    """Minus the work of the drive torque over a cycle, in the direction of rotation."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -101,11 +101,11 @@ class FrictionLoss(Quantity):
 
 
 class Efficiency(Quantity):
-    """Work that comes out over work that is put in, of the work U on the loads and the friction heat H.
+    """Work output divided by work input, from the work U on the loads and the friction heat H.
 
-    U / (U + H) where the loads take work; 1 - H / -U where they give it and the crank delivers the rest, 0 where
-    friction takes all of it. Loads on the crank count. NaN for a design whose loads neither take nor give net work;
-    -inf where friction locks.
+    U / (U + H) if the loads take work; 1 - H / -U if they supply it and the crank delivers the rest; 0 if friction
+    takes all of it. Loads on the crank count. NaN for a design whose loads neither take nor supply net work; -inf
+    where friction locks.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -139,16 +139,16 @@ EFFICIENCY = Efficiency(
     place=436,
     group=Group.DRIVE,
     sentence=(
-        "The share of the work put in over a cycle that comes out: on the loads if the crank is driven, at the crank "
-        "if the loads drive it, as in an engine. The rest is heat of guide and pins."
+        "Work output divided by work input over a cycle. The output is the work on the loads if the crank is driven, "
+        "or the work at the crank if the loads drive it, as in an engine. The rest is friction heat in guide and pins."
     ),
     advice=(
-        "0 where friction takes all that the loads give. Undefined for a design whose loads take and give no net work, "
-        "such as masses alone."
+        "It is 0 if friction takes all the work that the loads supply. It is undefined for a design whose loads do no "
+        "net work, such as masses alone."
     ),
     formula=(
-        "U / (U + H) for U > 0, max(0, 1 + H / U) for U < 0: U = -(integral of F dx + M d theta), M: torques on the "
-        "crank, H: friction loss, over a cycle"
+        "U / (U + H) for U > 0, max(0, 1 + H / U) for U < 0: U = -(integral of F dx + M d theta), M torques on the "
+        "crank, H friction loss, over a cycle"
     ),
     section=_SECTION,
     picture="torque",
@@ -163,8 +163,8 @@ ENERGY_PER_CYCLE = EnergyPerCycle(
     place=437,
     group=Group.DRIVE,
     sentence=(
-        "The net work of the drive over a cycle, a turn or two: what the load takes, and friction; negative where the "
-        "load drives the machine."
+        "The net work of the drive over a cycle of one turn or two: the work on the load plus friction; negative if "
+        "the load drives the machine."
     ),
     advice="What the drive gives and takes back within the cycle, such as kinetic energy, cancels.",
     formula="(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
@@ -184,10 +184,10 @@ DELIVERED_WORK = DeliveredWork(
     place=435,
     group=Group.DRIVE,
     sentence=(
-        "The work that the crank gives over a cycle, a turn or two, to whatever it drives; negative for a machine that "
-        "must be driven."
+        "The work that the crank delivers to whatever it drives over a cycle of one turn or two; negative for a "
+        "machine that must be driven."
     ),
-    advice="It tells a driving machine from a driven one: maximise it in either case.",
+    advice="Its sign distinguishes driving from driven machines; maximise it in both cases.",
     formula="-(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
     section="10. Motor and balance",
     picture="torque",
@@ -206,7 +206,7 @@ FRICTION_LOSS = FrictionLoss(
     kind=ENERGY,
     place=438,
     group=Group.DRIVE,
-    sentence="The heat of guide and pins over a cycle: a turn, two with a cycle of 720 deg.",
+    sentence="The friction heat in guide and pins over a cycle: one turn, or two if the cycle has 720 deg.",
     advice="It is the same at every speed where the load alone makes the forces.",
     formula="integral of mu |N| |x'| + rho_O |P| + rho_A |A| (1 - phi') + rho_B |B| |phi'| over the crank angle",
     section=_SECTION,

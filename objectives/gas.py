@@ -58,11 +58,11 @@ INDICATED_WORK = _gas(
     of=lambda gas: gas.work,
     place=430,
     sentence=(
-        "The work that the gas does on the pistons over a cycle, a turn or two: positive for an engine, negative for a "
-        "compressor or pump, which takes it."
+        "The work that the gas does on the pistons over a cycle of one turn or two: positive for an engine, negative "
+        "for a compressor or pump."
     ),
     advice="Maximise it in either case. Friction and other loads are not in it; with them it is the delivered work.",
-    formula="sum of the areas of p over V: integral of p dV over a cycle, one turn or two",
+    formula="sum of the areas of the p-V diagrams: integral of p dV over a cycle, one turn or two",
     example="-60 J",
     better="high",
     signed=True,

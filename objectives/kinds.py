@@ -127,7 +127,7 @@ TIME = _kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
 """The kinds above, in their order: those of numbers of a job and of quantities."""
-STROKE_RATE = _kind("a number of strokes a minute", "", "30", 9e6)
+STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
 _PER_ANGLE = Kind("a length per angle", "m/rad", "", 0.0, per("mm/rad", 1e3), per("in/rad", _PER_INCH))
 _PER_SQUARED_ANGLE = Kind(
     "a length per squared angle", "m/rad^2", "", 0.0, per("mm/rad^2", 1e3), per("in/rad^2", _PER_INCH)

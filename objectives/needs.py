@@ -42,7 +42,7 @@ class Need:
 
     @property
     def rule(self) -> str:
-        """What the quantity comes from, without value and remedy."""
+        """The requirement of the quantity, without value and remedy."""
         return self.missing.partition(";")[0]
 
 
@@ -108,8 +108,7 @@ SPEED = Need(_speed, _SPEED)
 TURNING = _defining(_speed, _SPEED)
 REPEATS = _defining(
     lambda machine: machine.fullest.acceleration == 0.0,
-    "a stroke has a time where the speed repeats with every turn; got a crank acceleration; leave it out, or use "
-    "time_ratio",
+    "a stroke time needs a speed that repeats every turn; got a crank acceleration; leave it out, or use time_ratio",
 )
 MOTION = Need(_motion, _SPEED)
 """A crank that turns or is about to."""
@@ -128,8 +127,8 @@ WORK = Need(
 )
 LOAD_WORK = _defining(
     load_works_over_a_turn,
-    "an efficiency is the share of the work put in that comes out; got no load that takes or gives net work over a "
-    'cycle; add for example [[load]] force = "200 N", opposes = "motion"',
+    "an efficiency needs a load that takes or supplies net work over a cycle; got none; "
+    'add for example [[load]] force = "200 N", opposes = "motion"',
 )
 _RUBS = "add for example [friction] guide = 0.1"
 RUBS = _defining(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")

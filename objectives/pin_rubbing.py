@@ -1,4 +1,4 @@
-"""Rubbing of the pins: mean of pressure times rubbing speed over time, and depth worn off."""
+"""Rubbing of the pins: mean over time of pressure times rubbing speed, and wear depth."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ PV_PIVOT = _pv(
     short="pv of the crank pivot",
     place=470,
     sentence="The mean over time of pressure times rubbing speed at the crank's pivot, over the depth of the crank.",
-    formula="mean of |P| |omega| / (2 b) over time, b the depth of the bar",
+    formula="mean of |P| |omega| / (2 b) over time, b depth of the bar",
     **of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_CRANK_PIN = _pv(
@@ -96,7 +96,7 @@ PV_CRANK_PIN = _pv(
     short="pv of the crank pin",
     place=471,
     sentence="The mean over time of pressure times rubbing speed at the crank pin, in the thinner of crank and rod.",
-    formula="mean of |A| (1 - phi') |omega| / (2 b) over time, b the depth of the bar",
+    formula="mean of |A| (1 - phi') |omega| / (2 b) over time, b depth of the bar",
     **of_pin("crank_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_SLIDER_PIN = _pv(
@@ -105,7 +105,7 @@ PV_SLIDER_PIN = _pv(
     short="pv of the slider pin",
     place=472,
     sentence="The mean over time of pressure times rubbing speed at the slider pin, over the depth of the rod.",
-    formula="mean of |B| |phi'| |omega| / (2 b) over time, b the depth of the bar",
+    formula="mean of |B| |phi'| |omega| / (2 b) over time, b depth of the bar",
     **of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 WEAR_PIVOT = _wear(

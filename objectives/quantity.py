@@ -66,7 +66,7 @@ class Domain:
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{within}, ends excluded", remedy=remedy)
 
     def refuses(self, value: float, *, least: bool) -> bool:
-        """Return whether no linkage has a value. least: whether it is asked as a least value.
+        """Return whether no linkage has a value. least: whether the value is a lower bound.
 
         A least value at the lower end has no effect, except that it switches off the floor of a quantity with one.
         """

@@ -22,7 +22,7 @@ class TorqueFluctuation(Quantity):
         locks = np.isinf(found.rms_over_angle)
         mean, rms = np.where(locks, 0.0, found.mean), np.where(locks, 1.0, found.rms_over_angle)
         apart = rms - np.abs(mean)
-        apart = np.where(apart > _ROUNDING * rms, apart, 0.0)  # of a torque that is the same at every crank angle
+        apart = np.where(apart > _ROUNDING * rms, apart, 0.0)  # of a constant torque
         values = np.sqrt(apart * (rms + np.abs(mean)))
         slopes = None
         if found.mean_gradients is not None and found.rms_over_angle_gradients is not None:
@@ -41,7 +41,7 @@ TORQUE_FLUCTUATION = TorqueFluctuation(
     place=85,
     group=Group.DRIVE,
     sentence="The root mean square over the crank angle of the drive torque's deviation from its mean.",
-    advice="A flywheel evens it out. At constant speed it is the RMS torque where a turn takes no work.",
+    advice="A flywheel evens it out. At constant speed it equals the RMS torque if a turn takes no work.",
     formula="sqrt(mean of (T - mean of T)^2 over the crank angle)",
     section="10. Motor and balance",
     picture="torque",

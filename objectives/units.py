@@ -29,7 +29,7 @@ Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
 """Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
 
-_OTHERS = (Kind("a frequency, not saying of turns or of radians", "s^-1", "", 0.0, Face("1/s", "")),)
+_OTHERS = (Kind("a frequency, without saying whether of turns or radians", "s^-1", "", 0.0, Face("1/s", "")),)
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
 # within the two forces. Degrees carry pi to 36 digits.

@@ -1,7 +1,7 @@
 """The command line: `slidercrank COMMAND`.
 
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
-feasible: the input is right, and no design meets it; 4 not proven within the budget; 130 interrupted (Ctrl-C).
+feasible: the input is valid, but no design meets it; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
 A command is imported when it is named. Nothing that is slow to import is imported here or at the top of the command
 modules: `--help`, which names all, stays quick.

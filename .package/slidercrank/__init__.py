@@ -32,7 +32,7 @@ Use other optimisers
 
 Errors
     SlidercrankError     any of this software; `InputError`, `AssemblyError` and `JobError` among them
-    InfeasibleError      a `JobError` of a job that is right, and that no design can meet
+    InfeasibleError      a `JobError` for a valid job that no design can meet
 
 Every name is imported when it is first used. Values are in SI and radians unless a name or a column carries a unit.
 """

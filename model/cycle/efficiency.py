@@ -10,7 +10,7 @@ Per cycle, one turn or two, with dt = dtheta / w at constant speed:
 - stored: what the crank's acceleration, if there is one, puts into kinetic energy. Springs and gravity give back in a
   turn what they take.
 
-Loads that do net work on the machine drive it: what friction leaves of that comes out at the crank.
+Loads that do net work on the machine drive it: the crank delivers that work less friction.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from ..signals.panels import panels_of
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
 
-_PIECES = 8  # panels between two breakpoints at least
+_PIECES = 8  # least number of panels between two breakpoints
 _SAMPLES = 720
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Energies:
-    """Energies of one cycle, a turn or two, J. useful: work done against the load, negative if the load drives.
+    """Energies of one cycle of one turn or two, J. useful: work done against the load, negative if the load drives.
 
     throughput: integral of |F dx|, by which it can be told whether the useful work is more than rounding.
     """
@@ -59,10 +59,10 @@ class Energies:
 
     @property
     def efficiency(self) -> float | None:
-        """Work that comes out over work that is put in; None if the load neither takes nor gives net work.
+        """Work output divided by work input; None if the load neither takes nor supplies net work.
 
-        Put in are useful work and friction heat by the crank or, where the load drives, its work; out at the crank
-        comes then what friction leaves, if anything.
+        If the crank drives, the input is useful work plus friction heat. If the load drives, the input is the work of
+        the load and the output is what the crank delivers after friction, at least 0.
         """
         if abs(self.useful) <= _ROUNDING * self.throughput:
             return None
@@ -71,7 +71,7 @@ class Energies:
 
 
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
-    """Return the energies of one cycle of one linkage.
+    """Return the energies of one cycle for one linkage.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
     """

@@ -39,8 +39,8 @@ class GasCycle(NamedTuple):
     """Sums over the cylinders of n designs, each (n,), real or complex.
 
     swept, clearance: volumes, m^3. work: of the gas on the pistons over a cycle of the machine, one turn or two, J.
-    cycle_work: over one cycle of each cylinder, of two turns for four strokes, J. delivers: of compressors alone, the
-    volume taken in over the swept one; zero or less where nothing is delivered.
+    cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors only,
+    the intake volume divided by the swept volume; zero or less where nothing is delivered.
     """
 
     swept: Any

@@ -58,9 +58,10 @@ class WholeCurves:
 class WholeCycle:
     """Numbers of all cylinders together over a turn; SI.
 
-    least, greatest: torque. peak: the one of greatest size. mean: of the torque, over the crank angle. rms: of it, over
-    time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change: range of the
-    integral of torque minus mean, J, which a flywheel takes up. shaking_force, shaking_moment, couple: greatest sizes.
+    least, greatest: torque. peak: the torque of greatest magnitude. mean: of the torque, over the crank angle. rms: of
+    the torque, over time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change:
+    range of the integral of torque minus mean, J, which a flywheel absorbs. shaking_force, shaking_moment, couple:
+    greatest magnitudes.
     rms_shaking_force, rms_shaking_moment: over time.
     """
 

@@ -1,6 +1,6 @@
 """Means and root mean squares over the cycle, above all of the torque, with exact gradients.
 
-Here the speed is constant, so that the crank angle goes with time; along a profile it is `shaft_averages`.
+Here the speed is constant, so the crank angle is proportional to time; along a profile see `shaft_averages`.
 
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
@@ -11,7 +11,7 @@ the torque jump. A breakpoint that moves adds the jump times its own motion to t
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
 to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
-what rounding leaves of a load that changes within a hair's breadth.
+rounding error from a load that changes over a tiny distance.
 """
 
 from __future__ import annotations
@@ -68,9 +68,9 @@ _TURN = 2.0 * math.pi
 class Averages:
     """Averages (3, n) of n designs' curves and their gradients (3, n, 3 + k) or None, over the cycle.
 
-    Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, which a flywheel evens
-    out; RMS value over time, which heats. At constant speed the last two are the same. Where friction locks a design
-    the mean is NaN and the RMS values are infinite.
+    Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, relevant for a flywheel;
+    RMS value over time, relevant for heating. At constant speed the last two are the same. Where friction locks a
+    design the mean is NaN and the RMS values are infinite.
     """
 
     values: Array

@@ -108,7 +108,7 @@ def averages_of_shaft(
     values, slopes = found[:, :, 0], None if slopes is None else slopes[:, :, 0]
     locks = np.isnan(values[1])
     values[1:, locks] = np.inf
-    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
+    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, without rounding error
         values[0] = np.where(locks, np.nan, 0.0)
         if slopes is not None:
             slopes[0] = 0.0

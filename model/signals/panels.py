@@ -1,8 +1,8 @@
 """Curves over the crank angle as polynomials on panels: means, extremes and integrals to rounding.
 
 On every panel each curve is its polynomial of degree 15 through the nodes of Gauss and Legendre. Panels are halved
-until the last coefficients have died out, or are what rounding of the crank angle makes of a steep curve. Extremes are
-at ends of panels, by their one-sided limits, or where the derivative of the polynomial is zero.
+until the last coefficients have died out, or are rounding error of the crank angle on a steep curve. Extremes are at
+the ends of panels, by their one-sided limits, or where the derivative of the polynomial is zero.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
 _TAIL = 3  # coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-12  # ... and what is left of them then, of the curve's size
 _DEEPEST = 24  # halvings of a panel
-_MOST = 20_000  # panels that halving may add: beyond it what is left is the rounding of the curves
+_MOST = 20_000  # panels that halving may add: beyond that only the rounding of the curves remains
 _THIN = 1e-12  # rad
 _NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
 _PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
@@ -42,7 +42,7 @@ class Extreme:
 
 
 def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
-    """Return the one of greatest size of the least and the greatest value; of equal ones the first."""
+    """Return the least or the greatest value, whichever is greater in magnitude; if equal, the first in the cycle."""
     sizes = np.abs([end.value for end in ends])
     first = ends[int(first_greatest(sizes, np.array([end.angle for end in ends]), period))]
     return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
@@ -57,13 +57,13 @@ class Panels:
     coefficients: Array
 
     def mean(self, curve: int, time: int | None = None) -> float:
-        """Return the mean over the crank angle, or over time. time: the curve of the time per crank angle, any unit."""
+        """Return the mean over the crank angle or over time. time: curve of the time per crank angle, any unit."""
         if time is not None:
             return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
         return self.integral(curve) / float(np.sum(self.width))
 
     def mean_square(self, curve: int, *, less: float = 0.0, time: int | None = None) -> float:
-        """Return the mean, as `mean` does, of the square of the curve minus a number."""
+        """Return the mean, as in `mean`, of the square of the curve minus a number."""
         c = self.coefficients[:, :, curve].copy()
         c[:, 0] -= less
         if time is None:
@@ -73,7 +73,7 @@ class Panels:
         return float(np.sum(self.width * integrals) / np.sum(self.width)) / self.mean(time)
 
     def _mean_product(self, first: Array, second: Array) -> float:
-        """Return the mean over the crank angle of the product of two curves by their coefficients (p, 16)."""
+        """Return the mean over the crank angle of the product of two curves, given by coefficients (p, 16)."""
         products = np.sum(first * second / (2.0 * np.arange(_DEGREE + 1) + 1.0), axis=1)
         return float(np.sum(self.width * products) / np.sum(self.width))
 

@@ -1,7 +1,7 @@
 """Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives: Gauss on resolved panels.
 
-Over time every crank angle counts by the time that the crank takes there, 1 / p along a profile p of its speed. A panel
-is resolved where a curve T is, and for its mean square over time where T / sqrt(p) is.
+In means over time every crank angle has the weight 1 / p, where p is the speed profile. A panel is resolved if the
+curve T is, and for the mean square over time if T / sqrt(p) is too.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 class Means:
     """Means (3, n) in the rows above, and their derivatives (3, n, v) or None. NaN where friction locks a design.
 
-    nothing: (n,), whether cylinders cancel but for rounding.
+    nothing: (n,), whether the cylinders cancel to within rounding.
     """
 
     values: Array
@@ -75,19 +75,19 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
 
 
 def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
-    """Return the time per crank angle at angles, as a share of its mean; None at constant speed."""
+    """Return the time per crank angle divided by its mean; None at constant speed."""
     return None if shaft.profile is None else time_per_angle(shaft.profile, angle)
 
 
 def _is_rough(value: Array, size: Array, sizes: Array, row: Whole, width: Array) -> Mask:
-    """Return which panels (p,) are not resolved, by values and sizes (p, 16); sizes of designs (n,) are raised."""
+    """Return which panels (p,) are not resolved, from values and sizes (p, 16); raise the sizes (n,) of the designs."""
     np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
     found: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
     return found
 
 
 def _add_jumps(shaft: Shaft, segments: Segments, slopes: Array) -> None:
-    """Add to derivatives (rows, n, v) what breakpoints that move give where the curve jumps there."""
+    """Add to derivatives (rows, n, v) the effect of moving breakpoints at which the curve jumps."""
     ends = np.stack([segments.low, segments.high], axis=1)
     edge = shaft.at(segments.row, segments.inside, ends)[0][:, :, 0]
     rate = shaft.rates(segments.cut, segments.inside)

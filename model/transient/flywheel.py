@@ -85,8 +85,8 @@ def design_flywheel(
     if not surplus(0.0) >= 0.0:
         if speed and not estimate:
             raise InputError(
-                "a flywheel evens out a torque that varies over the cycle; got one that does not, and no inertia at "
-                "some crank angle: any flywheel keeps the speed; add masses, or loads that vary"
+                "sizing a flywheel needs a torque that varies over the cycle; got a constant torque and no inertia at "
+                "some crank angle, so that any flywheel holds the speed; add masses, or loads that vary"
             )
         enough = 1.1 * estimate
         for _ in range(_WIDEST):

@@ -19,7 +19,7 @@ from .forward import drive_of
 from .shaft import equation_of
 from .turn import Guess, PeriodicTurn, Profile, Torque
 
-_ROUNDING = 1e-13  # share of the greatest torque over the cycle: a change of energy below is none
+_ROUNDING = 1e-13  # fraction of greatest torque times cycle angle: a smaller change of energy is rounding error
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,8 +121,8 @@ class Runner:
         """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
 
         The least is 0 where the crank all but stops: below a millionth of the greatest. inertia: see `constant`.
-        Raises `InputError` where nothing has an inertia at some crank angle, so that speeds are not defined, and where
-        viscous loads or friction leave no steady running that is found.
+        Raises `InputError` if the inertia is zero at some crank angle, so that speeds are undefined, or if no steady
+        running is found with viscous loads or friction.
         """
         self.equation.require_inertia(inertia)
         try:

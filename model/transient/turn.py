@@ -11,8 +11,8 @@ number, E at the start, onto E at the end, and chained they close the turn.
 
 Where the crank nearly stops, the time for an angle, 1 / sqrt(2 E), rises steeply: panels whose last Legendre
 coefficients have not died out, neither at the node nor in the integral over the turn, are halved, and the turn is
-solved anew. The second matters where a load changes within a hair's breadth: what rounding leaves of the slider's
-position is then much of the load, and no halving lessens it. With friction, panels also end where a guide's
+solved anew. The second matters where a load changes over a tiny distance: the rounding error of the slider's position
+then changes the load considerably, and halving does not reduce it. With friction, panels also end where a guide's
 force changes sides, and as that moves with the motion, the turn is solved anew until it stays.
 """
 
@@ -38,8 +38,8 @@ _STEPS = 60
 _EXACT = 1e-13
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
 _RESOLVED = 1e-11  # ... and what is left of them then, of the greatest value over the turn
-_NEGLIGIBLE = 1e-13  # share of the integral over the turn that the tail of one panel may be off by: that is rounding
-_MOST = 4_000  # panels that halving may add: 2 kB a matrix, and a few of them
+_NEGLIGIBLE = 1e-13  # error of one panel as a fraction of the integral over the turn: a smaller one is rounding
+_MOST = 4_000  # panels that halving may add: each needs a few matrices of 2 kB
 _HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
 _MOVES = 12  # times that panels are moved to where guides change sides
 _MOVED = 1e-9  # rad; a kink nearer to the end of a panel than its first node is off by the square of this
@@ -207,8 +207,8 @@ class PeriodicTurn:
     ) -> tuple[PeriodicTurn, Profile] | None:
         """Return the turn that repeats, on panels fine enough for it; None if none is found that never stops.
 
-        guess: where Newton's iteration starts on a turn; None ends the search. Other arguments: see `solve`. Raises
-        `InputError` where halving has added `_MOST` panels and the motion is still not resolved.
+        guess: start of Newton's iteration for a turn; None ends the search. Other arguments: see `solve`. Raises
+        `InputError` if the motion is still not resolved after halving has added `_MOST` panels.
         """
         turn, moves = self, _MOVES if self.equation.rubs else 0
         for _ in range(_HALVINGS + moves):
@@ -225,9 +225,9 @@ class PeriodicTurn:
             if len(turn.width) + rough.sum() > len(self.width) + _MOST:
                 at = math.degrees(float(turn.low[rough][0])) % math.degrees(turn.equation.period)
                 raise InputError(
-                    "steady running needs a motion that panels of the cycle resolve; got one that "
-                    f"{len(turn.width):,} panels do not, at a crank angle of {at:.6g} deg among others; smooth what "
-                    "loads the machine there, or add a flywheel"
+                    "steady running needs a motion that can be resolved; got one that "
+                    f"{len(turn.width):,} panels do not resolve, for example at a crank angle of {at:.6g} deg; smooth "
+                    "the load there, or add a flywheel"
                 )
             turn = turn.cut(turn.low[rough] + 0.5 * turn.width[rough])
         return None
@@ -264,7 +264,7 @@ class PeriodicTurn:
         return PeriodicTurn(self.equation, self.dimensions, self.cuts, tuple(found))
 
     def _rough(self, values: Array) -> Mask:
-        """Return the panels, (panels,), on which values are resolved neither as such nor in the integral."""
+        """Return the panels (panels,) on which neither the values nor their integral are resolved."""
         tail, size, width = np.abs(values @ self._series[-_TAIL:].T).max(axis=1), np.abs(values), np.abs(self.width)
         negligible = tail * width <= _NEGLIGIBLE * float(width @ (size @ self.weights))
         return np.asarray(~((tail <= _RESOLVED * size.max()) | negligible))

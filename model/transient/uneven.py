@@ -28,7 +28,7 @@ from ..signals.panels import Extreme, panels_of
 
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 360
-_TIME = 2  # row of the time per crank angle
+_TIME = 2  # row with the time per crank angle
 _SQUARES = ("pivot_force", "crank_pin_force", "slider_pin_force", "shaking_force")
 _SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration", "shaking_moment")
 
@@ -51,7 +51,7 @@ class UnevenCycle:
     """Numbers over a turn, SI.
 
     period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over the mean speed.
-    peaks: greatest sizes by name. mean_torque: over the crank angle. rms_torque: over time. work: of the torque, J.
+    peaks: greatest magnitudes by name. mean_torque: over the crank angle. rms_torque: over time. work: of torque, J.
     """
 
     least_speed: Extreme

@@ -298,7 +298,7 @@ class Formulas:
             return f"keep variables.{name} off zero: it is from {_ends(of, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
-            return f"{instead} serves instead: the share of the work that comes out, of machines that drive as well"
+            return f"use {instead} instead: work output divided by work input, also for machines that drive"
         return "divide by a quantity that is never zero, or ask for something of the product instead"
 
 

@@ -105,7 +105,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether no design has a kink of it: nor do its parts, and only an offset of known sign has its size taken."""
+        """Whether no design is at a kink: its parts are smooth, and it takes abs() only of an offset of known sign."""
 
         def has_kink(node: Node) -> bool:
             if not isinstance(node, Call):
@@ -180,7 +180,7 @@ def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
 
 
 def linear_form(of: FormulaQuantity) -> Linear | None:
-    """Return a formula that is linear in dimensions, numbers and the quantities that it names; None if it is not."""
+    """Return a formula as linear in dimensions, numbers and the quantities that it names; None if it is not linear."""
     known = _known(of)
     for part in of.parts:
         known[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else unknown(part.name)

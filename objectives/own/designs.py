@@ -100,7 +100,7 @@ class Designs:
 
     @property
     def time_ratio(self) -> Numbers:
-        """Duration of the slower stroke over the faster, (n, 1). Raises `InputError` where cylinders differ in it."""
+        """Duration of the slower stroke divided by the faster, (n, 1). Raises `InputError` if cylinders differ."""
         if self.mechanism.speed_profile is None:
             return self.crank_angle_ratio
         if not ONE_TIMING.met(self.mechanism):
@@ -110,7 +110,7 @@ class Designs:
 
     @property
     def crank_angle_ratio(self) -> Numbers:
-        """Crank angle of the longer stroke over that of the shorter, (n, 1)."""
+        """Crank angle of the longer stroke divided by that of the shorter, (n, 1)."""
         return cast(Numbers, geometry.time_ratio(self.crank, self.rod, magnitude(self.offset)))
 
     @property

@@ -39,7 +39,7 @@ _LEAST_SAMPLES = 33  # in a piece, however short
 _INSET = 1e-8
 """Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
 _REACH = 4.0
-"""Steps between neighbours by which a curve may rise beyond a sample: one at a tip, less where it is smooth."""
+"""Rise of a curve above a sample, in differences of neighbouring samples: one at a tip, less where it is smooth."""
 _CANDIDATES = 60  # of each curve and side; there are more only where samples are equal but for rounding
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -60,8 +60,8 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 class Extreme:
     """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
-    Of several equal ones it is the first (`first_greatest`). Angle and position are NaN for a curve that is
-    constant; all three are NaN for one that friction leaves undetermined at some crank angle.
+    Of several equal values it is the first (`first_greatest`). Angle and position are NaN for a constant curve; all
+    three are NaN for a curve that friction leaves undetermined at some crank angle.
     """
 
     value: float
@@ -248,10 +248,10 @@ def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
 
 
 def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Array]:
-    """Return crank angles and values of the cuts that are local maxima: kinks, jumps and what is smooth there."""
+    """Return crank angles and values of the cuts that are local maxima: kinks, jumps and smooth maxima."""
     begin, end = (np.array([2.0 * v[a] - v[b] for v in curve]) for a, b in ((0, 1), (-1, -2)))
     rises, falls = np.array([v[1] > v[0] for v in curve]), np.array([v[-1] < v[-2] for v in curve])
-    left, rising = np.roll(end, 1), ~np.roll(falls, 1)  # of the piece before each cut
+    left, rising = np.roll(end, 1), ~np.roll(falls, 1)  # end of the piece before each cut
     top = np.where(left >= begin, rising & ((left > begin) | ~rises), ~rises)
     at = np.array([angles[0] - _INSET for angles in pieces])
     return at[top], np.maximum(left, begin)[top]
@@ -264,7 +264,7 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
         highest = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
         before, after = np.maximum(highest - 1, 0), np.minimum(highest + 1, len(angles) - 1)
-        steps = np.abs(np.diff(values))  # two to either side: at the end of a piece the last one may be short
+        steps = np.abs(np.diff(values))  # two on each side: the last step of a piece may be short
         step = np.max([steps[np.clip(highest + k, 0, len(steps) - 1)] for k in (-2, -1, 0, 1)], axis=0)
         bounds = (values[highest] + _REACH * step).tolist()
         found += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)

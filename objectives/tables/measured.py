@@ -94,8 +94,8 @@ def columns_of(
         )
     elif mechanism.speed_profile is not None:
         raise InputError(
-            f"time becomes a crank angle at constant speed; got one that varies, {mechanism.speed_profile.text}; give "
-            "crank angles"
+            "times convert to crank angles only at constant speed; got a speed profile, "
+            f"{mechanism.speed_profile.text}; give crank angles"
         )
     measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:

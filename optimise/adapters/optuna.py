@@ -23,9 +23,9 @@ def optuna_objective(
     """Return an objective for `study.optimize`: those of a trial as minimised, its requirements as constraints.
 
     Create the study with a direction "minimize" for each objective. eliminate: equality constraints are eliminated, see
-    `standard_form`; the parameters then run from 0 to 1. elimination_branch: which of several solutions of theirs. Each
-    trial has its design as user attribute "design", crank, rod, offset, m, and the varying numbers, SI. Raises
-    `InputError` as `standard_form` does.
+    `standard_form`; the parameters then run from 0 to 1. elimination_branch: which of several solutions of the
+    equalities. Each trial has its design as user attribute "design": crank, rod, offset, m, extra variables, SI.
+    Raises `InputError` as `standard_form` does.
     """
     form = standard_form(problem, eliminate=eliminate, elimination_branch=elimination_branch)
 

@@ -23,7 +23,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
     """Return a pymoo `Problem` that evaluates whole populations: F as minimised, G <= 0, H = 0.
 
     eliminate: equality constraints are eliminated, see `standard_form`; genetic algorithms meet them hardly otherwise.
-    elimination_branch: which of several solutions of theirs.
+    elimination_branch: which of several solutions of the equalities.
     The variables then run from 0 to 1; `found.form.designs(X)` gives the designs. Raises `InputError` without pymoo.
     """
     try:
@@ -46,7 +46,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
 
         def __reduce__(self) -> tuple[object, ...]:
             made = partial(pymoo_problem, eliminate=eliminate, elimination_branch=elimination_branch)
-            return made, (problem,)  # a class within a function is no name
+            return made, (problem,)  # a class inside a function cannot be pickled by name
 
         def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
             found = form.arrays(x)

@@ -195,7 +195,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
 
     eliminate: whether equality constraints are eliminated as `solve` does it, exactly: fewer unknowns, and no equality
     for a method that meets none, such as most genetic algorithms. elimination_branch: which of several solutions of the
-    equalities, from 0 on, such as those with an offset above and below 0: each has a form of its own.
+    equalities, from 0, such as those with an offset above and below 0: each has its own form.
 
     The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
     and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
@@ -215,8 +215,8 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
         )
     if elimination_branch is not None and not eliminate:
         raise InputError(
-            f"a branch is one of eliminated equalities; got elimination_branch={elimination_branch!r} with "
-            "eliminate=False; set eliminate=True, or leave the branch out"
+            f"elimination_branch needs eliminated equalities; got elimination_branch={elimination_branch!r} with "
+            "eliminate=False; set eliminate=True, or leave out elimination_branch"
         )
     asked = constraints_of(problem)
     sheet = _sheet(problem, elimination_branch) if eliminate else None
@@ -245,9 +245,9 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
 
 
 def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
-    """Return a sheet of a problem whose equalities are eliminated: the branch, or the only one.
+    """Return the requested or the only branch of a problem whose equalities are eliminated.
 
-    None if there is nothing to eliminate, and no branch is named. Raises `InputError`.
+    None if there is nothing to eliminate and no branch is requested. Raises `InputError`.
     """
     found = sheets(problem)
     if branch is None and len(found) > 1 and not any(constraint.equality for constraint in problem.constraints):
@@ -257,8 +257,8 @@ def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
     if isinstance(branch, bool) or not isinstance(branch, int) or not 0 <= branch < len(found):
         several = "; ".join(f"{place}: offset {_side(sheet)}" for place, sheet in enumerate(found))
         raise InputError(
-            f"equalities are eliminated in one of their branches; got {branch!r} of {len(found)} ({several}); make a "
-            f"form for each, with elimination_branch=0 to {len(found) - 1}, or leave the equalities in, with "
+            f"eliminating equalities needs one of their branches; got {branch!r} of {len(found)} ({several}); make a "
+            f"form for each, with elimination_branch=0 to {len(found) - 1}, or keep the equalities, with "
             "eliminate=False"
         )
     if not found[branch].free:
@@ -267,7 +267,7 @@ def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
 
 
 def _side(sheet: Sheet) -> str:
-    """Return in words on which side of 0 a sheet has its offsets, and the root that it takes of several."""
+    """Return as text the sign of the offsets of a branch, and the root that it takes of several."""
     side = "above 0" if sheet.sign > 0.0 else "below 0"
     roots = [
         f"root {step.solutions.index(step) + 1} for {step.target}" for step in sheet.steps if len(step.solutions) > 1

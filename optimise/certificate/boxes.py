@@ -39,7 +39,7 @@ def covered(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
     Bounded are all closed forms, and from below the peaks over the cycle of machines without friction; of several
-    cylinders those of one alone, and with a speed profile those that the speed does not matter to. A time ratio along a
+    cylinders those of one alone, and with a speed profile those that do not depend on the speed. A time ratio along a
     speed profile is not a closed form.
     """
     quantity = problem.quantity(objective.quantity)

@@ -17,7 +17,7 @@ MOST = 200_000
 
 
 def require_meetable(problem: Problem) -> None:
-    """Raise InfeasibleError, with the nearest, if values of all three dimensions are given and none meets the rules.
+    """Raise InfeasibleError, with the nearest, if all three dimensions have discrete values and none meets the rules.
 
     Only what needs no cycle is looked at, and no more than `MOST` combinations; the rest is left to the search.
     """

@@ -90,7 +90,7 @@ def wanting(problem: Problem, name: str, sense: Sense, target: float | None = No
 def on_dimensions(problem: Problem) -> Problem:
     """Return the problem with its requirements on the dimensions alone, of a machine that weighs nothing.
 
-    How long its strokes take is kept.
+    The stroke times stay the same.
 
     Choices that leave the dimensions and what is asked of them as they are fall together.
     """

@@ -64,7 +64,7 @@ def diagnose(
     found = []
     stroke = {of.name for of in STROKE_TIME_RATIOS.values()} - {item.quantity for item in problem.constraints}
     for constraint in constraints_of(problem):
-        if constraint.quantity in stroke:  # the slow stroke along a speed profile, whose sentence is below
+        if constraint.quantity in stroke:  # the slow stroke along a speed profile is reported below
             continue
         for item in relaxations(problem, constraint, best):
             if not isinstance(item, Relaxation):

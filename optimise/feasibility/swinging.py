@@ -24,7 +24,7 @@ _HALVINGS = 10  # of the share of the friction: three digits
 
 
 def require_swinging(problem: Problem) -> None:
-    """Raise `InfeasibleError` if no one of many designs of the ranges swings as asked, or friction locks those."""
+    """Raise `InfeasibleError` if none of many designs within the ranges swings as required, or friction locks them."""
     message = unswung(problem)
     if message:
         raise InfeasibleError(f"motion: {message}")

@@ -45,7 +45,7 @@ def load_job(
     all that the user may do. Refuse them in jobs of others.
 
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
-    schema, or contradicts itself; `InfeasibleError`, which is one, where no design can meet what it states.
+    schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
@@ -124,7 +124,7 @@ def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     part = job_with(declared(data, allowed=True)).model_validate(data).sections
     with _named(path):
         if part is None:
-            raise JobError("sizing sections needs the table [sections]; got none; add its material and its pins")
+            raise JobError("sizing sections needs the table [sections]; got none; add it with a material and pins")
     return part.build()
 
 

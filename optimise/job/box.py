@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SLACK = 1e-9
 """Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
 STROKE_RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
-"""Ratios of the strokes that trade against the transmission angle."""
+"""Ratios of the strokes that conflict with the transmission angle."""
 _CELLS = 10_000
 _AND_OTHERS = " and the other requirements on the dimensions"
 _ANY = Range(lower=0.0, upper=1.0)
@@ -106,7 +106,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 
 def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
-    """Raise InfeasibleError unless the constraint and what is possible meet."""
+    """Raise InfeasibleError unless the constraint overlaps what is possible."""
     key, reach = key_of(["constraints", of.name]), problem.reach_of(of)
     if reach is None:
         return
@@ -158,7 +158,7 @@ def _nearest(problem: Problem, constraint: Constraint, kept: tuple[Constraint, .
 
 
 def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | None:
-    """Return in words why no linkage has one of `STROKE_RATIOS` and the transmission angle as asked; None if one may.
+    """Return why no linkage can meet a ratio of `STROKE_RATIOS` and the transmission angle; None if one may.
 
     share: where offset / rod may lie.
     """

@@ -36,7 +36,7 @@ from .pins import require_room_for_pins
 def require_consistent(problem: Problem) -> None:
     """Raise, naming key, rule, value and remedy, if the problem contradicts itself.
 
-    `InfeasibleError` where each part of it is right and no design has them all, else `JobError`.
+    `InfeasibleError` if its parts are valid but no design meets them all, else `JobError`.
     """
     for key, quantity, word, value in _asked(problem):
         _require_possible(problem, key, quantity, word, value)
@@ -113,12 +113,12 @@ def _undelivered(part: Problem) -> str:
 
 
 def _require_reachable_restated(problem: Problem) -> None:
-    """Refuse what formulas ask of a known quantity in other words, and the ranges do not have."""
+    """Raise `InfeasibleError` if formulas require values of known quantities out of reach in the ranges."""
     known = {item.quantity: restate(problem, item) for item in problem.constraints}
     other = [key_of(["constraints", name]) for name, item in known.items() if item.quantity != name]
     if not other:
         return
-    words = f"{' and '.join(other)} {'asks' if len(other) == 1 else 'ask'} in other words"
+    words = f"{' and '.join(other)} {'requires' if len(other) == 1 else 'require'} in other words"
     try:
         require_reachable(replace(problem, constraints=merged(known.values())))
     except InputError as error:
@@ -167,7 +167,7 @@ def _require_free(problem: Problem, name: str) -> None:
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
-        # Along a speed profile a ratio of times is the same for every design too, though not one.
+        # Along a speed profile a ratio of times is also the same for every design, though not 1.
         found = {_in_line_value(part, name) for part in problem.parts()}
         if len(found) > 1:
             return
@@ -179,28 +179,28 @@ def _require_free(problem: Problem, name: str) -> None:
 
 
 def _in_line_value(part: Problem, name: str) -> str:
-    """Return the value of a quantity that is the same for every design without offset, in words."""
+    """Return as text the value of a quantity that is the same for every design without offset."""
     one = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
     value = float(part.quantity(name).evaluate(part.mechanism, one).values[0])
     return "infinite" if value == math.inf else f"{value:.6g}"
 
 
 def _require_quotients_of_slow_stroke(part: Problem) -> None:
-    """Raise `InfeasibleError` for a bound on a quotient of stroke times that asks for the other stroke to be slow."""
+    """Raise `InfeasibleError` for a bound on a ratio of stroke times that requires the other stroke to be slow."""
     for stroke, of in STROKE_TIME_RATIOS.items():
         own = stroke == part.slow_stroke
         for item in part.constraints:
             for word, bound in item.sides if item.quantity == of.name else ():
                 if (bound <= 1.0 and word != "min") if own else (bound >= 1.0 and word != "max"):
                     raise InfeasibleError(
-                        f"constraints.slow_stroke: where the {part.slow_stroke} stroke is slow, {of.name} is "
+                        f"constraints.slow_stroke: if the {part.slow_stroke} stroke is slow, {of.name} must be "
                         f"{'above' if own else 'below'} 1; got constraints.{of.name} with {word} {bound:.6g}; leave "
                         "out one of the two"
                     )
 
 
 def require_slow_stroke(problem: Problem) -> None:
-    """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the slow stroke that is asked.
+    """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the requested slow stroke.
 
     The ranges must be known to have designs that turn fully.
     """
@@ -218,7 +218,7 @@ def require_slow_stroke(problem: Problem) -> None:
     for part in parts:
         _require_quotients_of_slow_stroke(part)
     if any(part.mechanism.speed_profile is not None for part in parts):
-        return  # there neither the sign of the offset nor a closed form says which stroke is slow
+        return  # then neither the sign of the offset nor a closed form decides which stroke is slow
     ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]
     narrowed = replace(
         problem,

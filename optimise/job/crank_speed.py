@@ -1,4 +1,4 @@
-"""How fast the crank turns, as a job states it: by its speed, by the time of a cycle, or by strokes a minute."""
+"""How fast the crank turns, as a job states it: by its speed, by the cycle time, or by strokes per minute."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from .values import AngularAcceleration, AngularSpeed, Part, StrokeRate, Within,
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
-"""Keys that say how fast the crank turns; a job has one of them."""
+"""Keys that state how fast the crank turns; a job has one of them."""
 TIME_KEYS = SPEED_KEYS[1:]
-"""Those that say it by a time, so that a profile is a shape without a size."""
+"""Keys that state a time, so that a profile gives only the shape."""
 _RPM = 30.0 / math.pi
 
 
@@ -41,36 +41,36 @@ def _turning(speed: float) -> float:
 
 
 class CrankSpeedPart(Part):
-    """Speed of the crank, and how it goes over the turn."""
+    """Crank speed and its variation over the turn."""
 
     speed: Annotated[AngularSpeed, AfterValidator(_turning)] | None = optional(
         "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
         "300 rpm",
     )
     cycle_time: Annotated[float, _CYCLE_TIME] | None = optional(
-        "instead of speed: time of a cycle, one turn, or two where a load has a cycle of 720 deg", "2 s"
+        "instead of speed: time of one cycle, which is one turn, or two if a load has a cycle of 720 deg", "2 s"
     )
-    strokes_per_minute: StrokeRate | None = optional("instead of speed: turns of the crank in a minute", 30)
+    strokes_per_minute: StrokeRate | None = optional("instead of speed: crank turns per minute", 30)
     direction: Direction | None = optional(
-        "in which the crank turns, with cycle_time or strokes_per_minute; counter-clockwise if left out", "clockwise"
+        "of crank rotation, with cycle_time or strokes_per_minute; counter-clockwise if left out", "clockwise"
     )
     acceleration: AngularAcceleration = optional(
         "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
     )
     speed_profile: SpeedProfilePart | None = optional(
-        "how the speed goes over the crank angle; quantities are those along it, but for stresses and wear",
+        "how the speed varies with the crank angle; applies to all quantities except stresses and wear",
         {"cosines": [0.0, 0.05]},
     )
 
     @property
     def speed_keys(self) -> tuple[str, ...]:
-        """Keys that say how fast the crank turns: one, or none of a swing."""
+        """Keys that state how fast the crank turns: one, or none for a swing."""
         return tuple(key for key in SPEED_KEYS if getattr(self, key) is not None)
 
     def crank_speed(self, turns: int) -> float:
-        """Return the mean speed over the crank angle, rad/s, with cycles of some turns; 0 where none is stated.
+        """Return the mean speed over the crank angle, rad/s, 0 if none is stated. turns: of the crank per cycle.
 
-        A turn takes the time 2 pi / (speed s), with s the profile's mean over time as a share of that over the angle.
+        A turn takes the time 2 pi / (speed s), where s is the profile's mean over time divided by its mean over angle.
         """
         if self.speed is not None:
             return self.speed
@@ -95,26 +95,27 @@ class CrankSpeedPart(Part):
             )
         if self.speed is not None and self.direction not in (None, _direction(self.speed)):
             raise InputError(
-                f"the sign of speed is the direction, positive counter-clockwise; got {_RPM * self.speed:.6g} rpm and "
-                f'direction = "{self.direction}"; give speed = "{-_RPM * self.speed:.6g} rpm", or leave out direction'
+                "the sign of speed must match direction, positive counter-clockwise; got "
+                f'{_RPM * self.speed:.6g} rpm and direction = "{self.direction}"; give speed = '
+                f'"{-_RPM * self.speed:.6g} rpm", or leave out direction'
             )
         if self.speed is None and self.speed_keys:
             self._require_repeating_cycle(self.speed_keys[0])
         return self
 
     def _require_repeating_cycle(self, key: str) -> None:
-        """Refuse what has no cycle of a given time."""
+        """Raise `InputError` if the crank has no cycle of a given time."""
         if self.acceleration:
             raise InputError(
-                f"a crank that accelerates has no cycle that repeats; got {key} and an acceleration of "
-                f"{self.acceleration:g} rad/s^2; give speed, that at every crank angle, in place of {key}"
+                f"{key} needs a cycle that repeats; got an acceleration of {self.acceleration:g} rad/s^2; give speed, "
+                f"which holds at every crank angle, in place of {key}"
             )
         way = self.direction or "counter-clockwise"
         profile = None if self.speed_profile is None else self.speed_profile.build()
         if isinstance(profile, SpeedTable) and _direction(profile.mean) != way:
             other = _direction(profile.mean)
             raise InputError(
-                "speeds of speed_profile have the sign of the direction, positive counter-clockwise; got "
+                "speeds of speed_profile must have the sign of the direction, positive counter-clockwise; got "
                 f'{_RPM * profile.speeds[0]:.6g} rpm, {other}, with direction = "{way}"; give direction = "{other}", '
                 "or correct the signs"
             )

@@ -28,7 +28,7 @@ class ConstantMotor(Built[model.Motor]):
 
     makes = model.ConstantTorque
 
-    torque: DrivingTorque = required("at every speed; zero where a load drives the crank alone", "20 N m")
+    torque: DrivingTorque = required("at every speed; zero if a load alone drives the crank", "20 N m")
 
 
 class LineMotor(Built[model.Motor]):

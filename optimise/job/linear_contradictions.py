@@ -39,7 +39,7 @@ class _Row:
 
 
 def require_compatible(problem: Problem) -> None:
-    """Raise InfeasibleError, naming the requirements, if no point of the ranges meets all linear ones."""
+    """Raise InfeasibleError, naming the requirements, if no point within the ranges meets all linear ones."""
     seen: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
     for part in parts:

@@ -211,20 +211,19 @@ def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part
 def require_speed(swing: Swing | None, stated: bool, varying: Iterable[str]) -> None:
     """Raise JobError for a crank that turns through at no speed, and for a swing with a varying one.
 
-    stated: whether the job says how fast the crank turns. varying: paths of the numbers that variables and options set.
+    stated: whether the job states a crank speed. varying: paths of the numbers that variables and options set.
     """
     if swing is None:
         if not stated:
             raise JobError(
-                "mechanism.speed: is missing, but required where neither cycle_time nor strokes_per_minute is given; "
+                "mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; "
                 'add for example speed = "300 rpm"'
             )
         return
     for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
-                f"{path}: a swing has a motion of its own, that of [motion]; got it as a variable, or in an option; "
-                "leave it out"
+                f"{path}: a swing follows [motion] instead; got it as a variable, or in an option; leave it out"
             )
 
 

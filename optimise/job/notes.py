@@ -44,7 +44,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     notes += _pins(job)
     if job.motion.build() is not None:
         notes += [
-            f"mechanism.{key}: a swing has a motion of its own, that of [motion]; leave the {words} out"
+            f"mechanism.{key}: a swing follows [motion] instead; leave out the {words}"
             for key, words in _SPEED_WORDS.items()
             if getattr(job.mechanism, key) is not None
         ]

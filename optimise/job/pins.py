@@ -11,7 +11,7 @@ from ..problem.problem import Problem
 
 
 def require_room_for_pins(problem: Problem) -> None:
-    """Raise `InfeasibleError` where stresses are asked for and no choice has eyes that are wider than their pins."""
+    """Raise `InfeasibleError` if stresses are requested and no choice has eyes wider than their pins."""
     asked = {*(of.quantity for of in problem.constraints), *(of.quantity for of in problem.objectives)}
     found = [of for of in map(problem.quantity, asked) if isinstance(of, LinkStress)]
     if not found:

@@ -20,7 +20,7 @@ from .values import Angle, AngularSpeed, Checked, Number, optional
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
 """First line of a file of speeds."""
 _MOST = 1000
-_TOLERANCE = 1e-3  # share by which the mean of a table may differ from the speed, and the end of a turn from 360 deg
+_TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
 
 
 def _profile(**given: Any) -> Profile:
@@ -42,21 +42,21 @@ def _profile(**given: Any) -> Profile:
 
 
 class SpeedProfilePart(Checked[Profile]):
-    """How the crank speed goes over the crank angle; speed is its mean, a time of the cycle scales it."""
+    """Crank speed over the crank angle; `speed` is its mean, or a cycle time scales it."""
 
     makes = staticmethod(_profile)
 
     cosines: tuple[Number, ...] | None = optional(
-        "share of the mean in cos(k crank angle), k = 1, 2, ...", [0.0, 0.05], max_length=100
+        "fraction of the mean in cos(k crank angle), k = 1, 2, ...", [0.0, 0.05], max_length=100
     )
-    sines: tuple[Number, ...] | None = optional("share of the mean in sin(k crank angle)", [0.02], max_length=100)
+    sines: tuple[Number, ...] | None = optional("fraction of the mean in sin(k crank angle)", [0.02], max_length=100)
     crank_angles: tuple[Angle, ...] | None = optional(
         "crank angles of points, increasing, spanning less than 360 deg; a periodic cubic spline joins them",
         ["0 deg", "90 deg", "180 deg", "270 deg"],
         max_length=_MOST,
     )
     speeds: tuple[AngularSpeed, ...] | None = optional(
-        "speed at each point, with the sign of the direction; of any size where the time of a cycle is given",
+        "speed at each point, with the sign of the direction; only the shape counts if a cycle time is given",
         ["300 rpm", "290 rpm", "310 rpm", "300 rpm"],
         max_length=_MOST,
     )
@@ -99,7 +99,7 @@ def with_speeds(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
                 raise ValueError
         except ValueError:
             raise JobError(
-                f"{name} must have two numbers a line; got {','.join(line)!r} in line {number}; correct it"
+                f"{name} must have two finite numbers per line; got {','.join(line)!r} in line {number}; correct it"
             ) from None
         values.append((at, speed))
     try:
@@ -125,12 +125,12 @@ def _points(of: str, at: list[float], speeds: list[float]) -> tuple[list[float],
     if any(after <= before for before, after in pairwise(turned)):
         raise InputError("the speed must not be zero or change its sign; got a record that stops; give one that runs")
     last = max(1, int(np.argmin(abs(turned - 360.0))))
-    near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is taken for rounding
+    near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is mistaken for rounding
     if 360.0 - near <= turned[-1] < 360.0:
         turned *= 360.0 / turned[-1]
     if turned[-1] < 360.0 - near:
-        raise InputError(f"a record over time must be of a turn at least; got {turned[-1]:.6g} deg; record longer")
-    kept = np.flatnonzero(turned < 360.0 - near)  # a point nearer than that repeats the first one
+        raise InputError(f"a record over time must cover at least one turn; got {turned[-1]:.6g} deg; record longer")
+    kept = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
     end = float(CubicSpline(turned, speeds)(360.0))
     if abs(end - speeds[0]) > 0.02 * abs(speeds[0]):
         raise InputError(

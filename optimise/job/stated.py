@@ -27,7 +27,7 @@ from .varying import discrete_of, ends_of, is_choice, reach_of, variants_of, var
 
 
 def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
-    """Return the problem that a job states. Raises JobError, `InfeasibleError` where no design can meet it.
+    """Return the problem that a job states. Raises JobError; `InfeasibleError` if no design can meet it.
 
     folder: where the modules of its functions lie. installed: quantities of packages that it names.
     """
@@ -99,7 +99,7 @@ def _require_shorter(problem: Problem) -> None:
 def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
     """Return constraints, those on one formula as one: a formula may be written in several ways.
 
-    Raises `InfeasibleError` where they leave nothing.
+    Raises `InfeasibleError` if they leave nothing.
     """
     found: dict[str, Constraint] = {}
     for constraint in constraints:
@@ -120,7 +120,7 @@ def _possible(
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
     """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
 
-    Raises `InfeasibleError` where there is none.
+    Raises `InfeasibleError` if there is none.
     """
     known = QUANTITIES | {of.name: of for of in own}
     reasons = [_contradiction(variant, constraints, known) for variant in variants]

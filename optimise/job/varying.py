@@ -270,13 +270,13 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
 
 
 def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
-    """Refuse a range of a number that states the crank speed in another way. jobs: those of the ends of its range."""
+    """Raise `JobError` for a range of a time that states the crank speed. jobs: at the ends of the range."""
     stated = path.removeprefix("mechanism.")
     if path.startswith("mechanism.") and stated in TIME_KEYS:
         low, high = sorted(ANGULAR_SPEED.metric.factor * other.machine().speed for other in jobs)
         raise JobError(
-            f"{key}: of the crank only its speed varies over a range; got a range of {stated}; give speed in place of "
-            f'{stated} and variables.mechanism.speed = ["{low:.6g} rpm", "{high:.6g} rpm"], or let {stated} be a choice'
+            f"{key}: only mechanism.speed may vary over a range; got a range of {stated}; give speed in place of "
+            f'{stated} and variables.mechanism.speed = ["{low:.6g} rpm", "{high:.6g} rpm"], or make {stated} a choice'
         )
 
 
@@ -313,12 +313,12 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
 
 def _unknown(path: str, job: Job) -> str:
-    """Return in words that a job gives no number at a path, or states the crank speed in another way."""
+    """Return the message that a job gives no number at a path, or states the crank speed by another key."""
     stated, key = job.mechanism.speed_keys, path.removeprefix("mechanism.")
     if stated and path.startswith("mechanism.") and key in SPEED_KEYS:
         return (
-            f"must name a number that the job gives; got {path}, where it gives mechanism.{stated[0]}; give {key} in "
-            f"[mechanism] in place of {stated[0]}"
+            f"must name a number that the job gives; got {path}, but the job gives mechanism.{stated[0]}; give "
+            f"{key} in [mechanism] in place of {stated[0]}"
         )
     return unknown_path(path, job.model_dump(exclude_unset=True))
 

@@ -105,7 +105,7 @@ class Problem:
     variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and
     constraints may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset
-    has one sign only, see `slow_side`, unless the speed follows a profile, and the time ratio is above 1, see
+    has only one sign, see `slow_side`, unless the speed follows a profile, and the time ratio is above 1, see
     `violation.constraints_of`. discrete:
     which of a design's numbers have one of some values only; their ranges are the hulls of these. motion: a swing
     of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
@@ -326,7 +326,7 @@ class Problem:
 
     @property
     def machines(self) -> tuple[Mechanism, ...]:
-        """The machine of every variant; that of the problem if there is nothing to choose."""
+        """The machine of every variant, or that of the problem if there are no choices."""
         return tuple(variant.mechanism for variant in self.variants) or (self.mechanism,)
 
     @property
@@ -347,7 +347,7 @@ class Problem:
         """Sign of the offset (+1 or -1) that gives the slow stroke asked for; None where none is asked.
 
         The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
-        None along a speed profile too: there no sign makes a stroke slow, and a constraint does, see
+        Also None along a speed profile: there a constraint replaces the sign, see
         `violation.constraints_of`.
         """
         if self.slow_stroke is None or self.mechanism.speed_profile is not None:

@@ -29,8 +29,8 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
     They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
-    deliver nothing on the volumetric efficiency, and where a slow stroke is asked on the time ratio, along a speed
-    profile on that of the stroke asked for. Of a swing the only one is on its transmission angle: the margin from its
+    deliver nothing on the volumetric efficiency, and for a required slow stroke on the time ratio, along a speed
+    profile on the ratio of that stroke. For a swing the only one is on its transmission angle: the margin from its
     dead points.
     """
     if problem.motion is not None:
@@ -46,7 +46,7 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
-    """Return constraints with a time ratio above 1, along a speed profile that of the stroke which is to be slow."""
+    """Return constraints with a time ratio above 1; along a speed profile, the ratio of the required slow stroke."""
     found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found
@@ -61,16 +61,16 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
 
 
 def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
-    """Return the constraints with their floors, formulas that are a known quantity in other words as that quantity."""
+    """Return the constraints with their floors, and formulas restated on known quantities."""
     return tuple(restate(problem, item) for item in constraints_of(problem))
 
 
 def _with_floor(
     problem: Problem, constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
 ) -> tuple[Constraint, ...]:
-    """Return constraints with a floor on a quantity unless they have one. above: a bound that is none, by itself.
+    """Return constraints with a floor on a quantity unless they have one. above: a bound that alone does not count.
 
-    A bound on a formula that is the quantity in other words is one on it.
+    A bound on a formula that restates the quantity counts as a bound on it.
     """
     assert of.floor is not None
     own = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]

@@ -7,9 +7,9 @@ from .problem import Problem
 
 
 def require_ranking(problem: Problem) -> None:
-    """Raise for a quantity that is zero whatever the design, robust or not, in all variants.
+    """Raise for a quantity that is zero for every design, robust or not, in all variants.
 
-    `InputError` for an objective, `InfeasibleError` for a constraint that zero does not meet.
+    `InputError` for an objective, `InfeasibleError` for a constraint that zero violates.
     """
     machines = [part.mechanism for part in problem.parts()]
     for objective in problem.objectives:

@@ -10,10 +10,10 @@ from ..problem.problem import Problem, require_problem
 
 
 def quantities(problem: Problem | None = None) -> pd.DataFrame:
-    """Return a table of quantities by name: title, unit as shown, column in tables of designs, what they need of a job.
+    """Return a table of quantities by name: title, display unit, column in tables of designs, needs.
 
-    problem: adds its own. In Python values are in SI; `factor` is what one SI unit is in the unit that is shown. needs:
-    empty for what every job has.
+    problem: adds its own quantities. In Python values are in SI; `factor` converts SI to the display unit. needs: what
+    a job must contain; empty if every job has it.
 
     >>> from slidercrank import quantities
     >>> quantities().loc["peak_torque", "title"]

@@ -124,7 +124,7 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
     other one its only design is all.
     eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
-    leaves one sign at constant speed. Raises `InfeasibleError` where the ranges have no offset of that sign.
+    leaves one sign at constant speed. Raises `InfeasibleError` if the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -139,7 +139,7 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
-    """Raise `InfeasibleError` if a slow stroke is asked that no offset of any part's range has."""
+    """Raise `InfeasibleError` if no offset in the range of any part has the required slow stroke."""
     if any(signs(part) for part in parts):
         return
     part = parts[0]
@@ -208,9 +208,9 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
 
 
 def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
-    """Return the values that equalities ask for by quantity, and the quantity of each constraint with one.
+    """Return the values that equalities require by quantity, and the quantity of each equality.
 
-    A formula that is a known quantity in other words asks for that quantity, unless another value of it is asked too.
+    A formula that restates a known quantity requires that quantity, unless another value of it is required too.
     """
     asked = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
     wanted: dict[str, float] = {}
@@ -262,19 +262,19 @@ def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
 
 
 def _rules(wanted: dict[str, float], *, steady: bool) -> list[Rule]:
-    """Return every rule that the wanted values give. steady: whether the time ratio is that of the crank angles."""
+    """Return every rule for the required values. steady: whether the time ratio is that of the crank angles."""
     rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():
         names = origin.split("+")
         if all(name in wanted for name in names) and (steady or TIME_RATIO.name not in names):
             rules.append(ClosedRule(origin, target, sources, tuple(wanted[name] for name in names)))
-    # At a ratio of one the dead centres lie opposite, whatever the rod.
+    # At a ratio of one the dead centres are opposite for any rod.
     level = {pair for name, pair in _PAIRS.items() if name in wanted and _excess(wanted[name])[1] == 1.0}
     return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
 
 def _excess(ratio: float) -> tuple[float, float]:
-    """Return sine and cosine of the excess angle b that gives a ratio of crank angles."""
+    """Return sine and cosine of the excess angle b for a crank angle ratio."""
     b = math.pi * (ratio - 1.0) / (ratio + 1.0)
     return math.sin(b), math.cos(b)
 

@@ -24,7 +24,7 @@ from .pieces import Rows
 
 _HUGE = 1e100
 _CLEARANCE = 1e-9
-"""SI: how far off an excluded end of its domain a quantity stays."""
+"""Distance, SI, of a bound from an excluded end of the domain."""
 
 
 class Evaluator:
@@ -71,7 +71,7 @@ class Evaluator:
         return found
 
     def _off_excluded_end(self, constraint: Constraint) -> Constraint:
-        """Return a constraint with a least value at an end that its quantity excludes moved off it: 0 deg is locked."""
+        """Return a constraint with a lower bound on an excluded end of the domain moved off it; at 0 deg it locks."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
             return constraint

@@ -69,7 +69,7 @@ class RodSpace:
 
 @dataclass(frozen=True)
 class Shaking:
-    """Peaks, and root mean squares over time: force, N, moment about the crank pivot, N m; peak angles, rad."""
+    """Peaks and root mean squares over time: force, N, and moment about the crank pivot, N m; peak angles, rad."""
 
     peak_force: float
     peak_force_angle: float

@@ -70,7 +70,7 @@ class Sections:
 def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits) -> Sections:
     """Return the sections of crank and rod with the least mass that carry a machine's loads.
 
-    They replace what the mechanism has as crank and rod. Raises `InfeasibleError` where no section within the ranges
+    They replace what the mechanism has as crank and rod. Raises `InfeasibleError` if no section within the ranges
     carries the loads, naming what fails, for arrays of linkages, and for friction, which would bend the bars at their
     pins.
     """

@@ -105,7 +105,7 @@ def allocate(
 
     kind: how errors add up. window: the part of the cycle in which the error counts; that of the mechanism if None.
     mechanism: its clearances, and its tolerances of what has no cost, take their part of the limit; its speed says
-    which way the crank turns. Raises `InfeasibleError` where even the least tolerances exceed the limit.
+    which way the crank turns. Raises `InfeasibleError` if even the smallest tolerances exceed the limit.
     """
     require_word("kind", kind, Kind)
     if not (math.isfinite(limit) and limit > 0.0):

@@ -61,8 +61,8 @@ class CycleModel(BaseModel):
     undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
     and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
     without a speed, and of a slow swing. slider_ends_mm: slider positions at the inner and the outer dead centre, or at
-    start and end of a swing. slow_stroke: outward, inward or equal, or differs where that of cylinders does. outlines:
-    of what moves, to draw it.
+    start and end of a swing. slow_stroke: outward, inward or equal; differs if cylinders differ. outlines: of the
+    moving parts, for drawing.
     """
 
     turns: int = Field(examples=[1])

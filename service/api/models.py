@@ -23,9 +23,9 @@ def _plain(given: Any) -> Any:
 
 
 PLAIN_DIGITS = BeforeValidator(_plain)
-"""Of a whole number in an address: not all that Python takes for one, such as "6.0", "1_0" and " 6".
+"""Validator of a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
 
-Behind the limits of the number, or its schema has them under names that JSON Schema does not know.
+It must follow the limits of the number; otherwise the schema lists them under names unknown to JSON Schema.
 """
 JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
 """A path parameter."""

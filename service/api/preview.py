@@ -46,7 +46,7 @@ class Draft(BaseModel, extra="forbid", strict=True):
 class WrongModel(BaseModel):
     """Something that is wrong with a job. path: the key, "" for the whole job, "submission.seconds" and the like.
 
-    infeasible: whether it is stated rightly, and no design can meet it.
+    infeasible: whether the input is valid but no design can meet it.
     """
 
     path: str = Field(examples=["mechanism.slider.mass"])
@@ -85,7 +85,7 @@ class MotionModel(BaseModel):
 
 
 class ExampleModel(BaseModel):
-    """A linkage within the ranges. feasible: whether it meets all requirements that were checked.
+    """A linkage within the ranges. feasible: whether it meets all checked requirements.
 
     slider_ends_mm: slider positions at the inner and the outer dead centre.
     """
@@ -98,7 +98,7 @@ class ExampleModel(BaseModel):
     slow_stroke: str = Field(examples=["outward"])
     stroke_mm: float
     slider_ends_mm: tuple[float, float] = Field(examples=[(59.2, 139.6)])
-    time_ratio: float | None = Field(description="null where cylinders differ in it", examples=[1.2])
+    time_ratio: float | None = Field(description="null if cylinders differ", examples=[1.2])
     least_transmission_angle_deg: float
     motion: MotionModel
 
@@ -111,9 +111,9 @@ class SwingCurve(BaseModel):
 
 
 class SwingExample(BaseModel):
-    """A linkage within the ranges that makes the swing. feasible: whether it meets all that was checked.
+    """A linkage within the ranges that makes the swing. feasible: whether it meets all checked requirements.
 
-    slider_ends_mm: slider positions at start and end of the swing.
+    slider_ends_mm: slider positions at the start and end of the swing.
     """
 
     crank_mm: float = Field(examples=[1400.0])

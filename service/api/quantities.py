@@ -174,9 +174,9 @@ _DIMENSIONS = {
         "offset",
         "1. Notation and signs",
         "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-        "direction, on the crossed branch to its right; it makes the crank turn farther in one stroke than in the "
+        "direction, on the crossed branch to its right; it makes the crank turn further in one stroke than in the "
         "other.",
-        "The more offset, the higher the time ratio at constant speed, and the smaller the transmission angle.",
+        "The greater the offset, the higher the time ratio at constant speed and the smaller the transmission angle.",
         "e; the slider line is y = e",
     ),
 }

@@ -21,7 +21,7 @@ _FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
 _ENDED, _AWAY = 204, 503
-_INFEASIBLE = "infeasible"  # type of a problem: the request is right, and no design can meet it
+_INFEASIBLE = "infeasible"  # problem type: the request is valid, but no design can meet it
 Record = dict[str, Any]
 Event = Record
 
@@ -142,8 +142,8 @@ class Tries:
 def refusal(answer: httpx.Response) -> SlidercrankError:
     """Return the exception for a refusal of a service, with its sentence.
 
-    `NotFound` for 404, `InputError` for what was wrong in the request, `InfeasibleError` where it is right and no
-    design can meet it, `RunError` for what a job cannot do or give as
+    `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid one that no design can
+    meet, `RunError` for what a job cannot do or give as
     it stands, `ServiceError` for all others, of which `Away` may pass.
     """
     kind = None

@@ -21,7 +21,7 @@ EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTE
 
 
 class NoDesigns(InfeasibleError):
-    """A run without designs, of which one is asked for."""
+    """A run without designs, where a design is needed."""
 
     def __init__(self, result: Result) -> None:
         super().__init__(result.message)
@@ -29,7 +29,7 @@ class NoDesigns(InfeasibleError):
 
 
 def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that with --json gives what no design can meet as the JSON of a run that found none."""
+    """Return a command that with --json prints an infeasible input as the JSON of a run without designs."""
 
     @wraps(command)
     def run(**given: Any) -> None:
@@ -45,7 +45,7 @@ def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def end_without_design(message: str) -> NoReturn:
-    """End a command whose search found no design, or that finds none that meets the conditions."""
+    """End a command whose search found no design, or that has no design that meets the conditions."""
     say(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
 

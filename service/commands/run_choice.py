@@ -35,7 +35,7 @@ def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
 def front_of_run(name: str, runs: Path | None, number: int | None) -> tuple[Path, Result, ParetoFront]:
     """Return the folder, the result and the front of a run.
 
-    Raises `InputError` if it has no design of the number, `NoDesigns` if it has none at all.
+    Raises `InputError` if it has no design with this number, `NoDesigns` if it has none at all.
     """
     from ..designs.stored_designs import front_of
 
@@ -95,8 +95,8 @@ class Choice:
     def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
         """Return the number of the design that the options name, counted from 1.
 
-        Exits with 3 where conditions leave none. Raises `NoDesigns` for an empty front, `InputError` for a number that
-        the run does not have, and for no choice or two.
+        Exits with 3 if the conditions leave none. Raises `NoDesigns` for an empty front, `InputError` for a number that
+        the run does not have, and unless exactly one choice is given.
         """
         if not result.designs:
             raise NoDesigns(result)

@@ -24,7 +24,7 @@ class DesignCurves:
     """Curves of a design at even places of its cycle. turns: of the crank in it; 0 of a swing forth and back.
 
     seconds: that the cycle takes; None without a speed, and of a slow swing. centres: crank angles of the inner and the
-    outer dead centre, deg; None of a swing. slider_ends: slider positions there, or at start and end of a swing, mm.
+    outer dead centre, deg; None of a swing. slider_ends: slider positions there, or at both ends of a swing, mm.
     """
 
     turns: int

@@ -93,7 +93,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
             at = int(np.searchsorted(angles, angle))
             lines.append(Line("", degrees[at : at + 1], values[at : at + 1], points=True))
             note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
-        # Counter-clockwise the outward stroke is that from the inner dead centre to the outer one.
+        # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
         ahead = (slow == "outward") == (mechanism.direction > 0.0)
         shaded = _span(*(dead if ahead else dead[::-1])) if has_slow else ()
         panels.append(replace(over_turn(title, *lines, note=note), across=across, shaded=shaded))
@@ -130,5 +130,5 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
 
 
 def _span(start: float, end: float) -> tuple[tuple[float, float], ...]:
-    """Return the crank angles of a turn, deg, that a crank passes counter-clockwise between two of them."""
+    """Return the spans within a turn, deg, that a crank passes counter-clockwise from start to end."""
     return ((start, end),) if start < end else ((0.0, end), (start, 360.0))

@@ -30,7 +30,7 @@ _REST = "all other requirements on the dimensions"
 class Wrong:
     """Something that is wrong. path: the key, as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
 
-    infeasible: whether it is stated rightly, and no design can meet it.
+    infeasible: whether the input is valid but no design can meet it.
     """
 
     path: str

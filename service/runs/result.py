@@ -116,7 +116,7 @@ class Result:
 
 
 def wanted_of(problem: Problem) -> list[Wanted]:
-    """Return the objectives of a problem as they are shown."""
+    """Return the objectives of a problem as shown."""
     wanted = []
     for objective in problem.objectives:
         of = problem.quantity(objective.quantity)
@@ -154,7 +154,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
 
 
 def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
-    """Return the result of what no design can meet, known before a search. run: its folder, "" without one."""
+    """Return the result for an input known to be infeasible before a search. run: its folder, "" if none."""
     from ...optimise.problem.problem import Problem
 
     problem = error.problem if isinstance(error.problem, Problem) else None

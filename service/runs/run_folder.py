@@ -220,7 +220,7 @@ def _rename(hidden: Path, wanted: Path) -> Path:
 
 
 def _bytes(content: str | bytes) -> bytes:
-    return content.encode(errors="surrogateescape") if isinstance(content, str) else content  # of paths in it
+    return content.encode(errors="surrogateescape") if isinstance(content, str) else content  # of paths
 
 
 def _write(path: Path, content: str | bytes) -> None:

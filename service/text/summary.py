@@ -32,7 +32,7 @@ from ...optimise.search.elimination import sheets
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, warnings, search.
 
-    Each is a list of lines but for name, search, the numbers of the freedom, and the floors, see `_floors`.
+    Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
     sheet = sheets(problem)[0]
     free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
@@ -94,8 +94,8 @@ def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
     if mechanism.acceleration:
         return [speed]
     turns, seconds = cycle_turns(mechanism), turn_time(mechanism)
-    cycle = "a cycle" if turns == 1 else "a cycle of two turns"
-    return [speed, f"time of {cycle} {turns * seconds:.6g} s, {60.0 / seconds:.6g} strokes a minute"]
+    cycle = "cycle time" if turns == 1 else "cycle time (two turns)"
+    return [speed, f"{cycle} {turns * seconds:.6g} s, {60.0 / seconds:.6g} strokes per minute"]
 
 
 def _given(mechanism: Mechanism) -> list[str]:

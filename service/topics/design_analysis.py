@@ -48,7 +48,7 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
 
 
 def undefined_of(row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> dict[str, str]:
-    """Return why a design has no value of a quantity, by column. row: of `numbers_of`. own: of its job."""
+    """Return by column why a design has no value for a quantity. row: from `numbers_of`. own: quantities of its job."""
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.missing_values import missing_value_reason
 

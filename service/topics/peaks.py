@@ -27,6 +27,6 @@ def row_of(linkage: Linkage) -> NDArray[np.float64]:
 
 
 def peak(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> Peak:
-    """Return the peak of a signal over the cycle; of equal ones the first (`first_peaks`)."""
+    """Return the peak of a signal over the cycle; of equal peaks the first (`first_peaks`)."""
     values, angles = first_peaks(mechanism, signal, row_of(linkage))
     return Peak(float(values[0]), math.degrees(float(angles[0])))

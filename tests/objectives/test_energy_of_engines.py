@@ -198,5 +198,5 @@ def test_a_quotient_of_works_is_refused_before_the_run_with_what_serves_instead(
     for below in ("indicated_work", "delivered_work", "energy_per_cycle"):
         ratio = {"formula": f"friction_loss / {below}"}
         wrong = {**JOB, "quantity": {"ratio": ratio}, "objectives": {"ratio": "minimise", "footprint": "minimise"}}
-        with pytest.raises(InputError, match=rf"got {below} as a divisor, .*; efficiency serves instead: the share of"):
+        with pytest.raises(InputError, match=rf"got {below} as a divisor, .*; use efficiency instead: work output"):
             sc.problem(wrong)

@@ -1,4 +1,4 @@
-"""A crank speed that a job states by its speed, by the time of a cycle, or by strokes a minute."""
+"""A crank speed that a job states by its speed, by the time of a cycle, or by strokes per minute."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_a_cycle_of_720_deg_takes_two_turns_and_a_stroke_a_minute_is_a_turn() ->
 @pytest.mark.parametrize(
     ("mechanism", "said"),
     [
-        ({}, r"mechanism\.speed: is missing, but required where neither cycle_time nor strokes_per_minute"),
+        ({}, r"mechanism\.speed: is missing, but required unless cycle_time or strokes_per_minute"),
         ({"speed": 3.0, "cycle_time": 2.0}, "got speed and cycle_time; leave out all but one"),
         ({"cycle_time": 2.0, "strokes_per_minute": 30}, "got cycle_time and strokes_per_minute; leave out all"),
         (
@@ -107,9 +107,12 @@ def test_a_cycle_of_720_deg_takes_two_turns_and_a_stroke_a_minute_is_a_turn() ->
         ({"cycle_time": "0 s"}, "cycle_time: must be positive"),
         ({"cycle_time": "1 us"}, r"cycle_time: must be a time from 20 us to 1e9 s; got \"1 us\""),
         ({"strokes_per_minute": -30}, "strokes_per_minute: must be positive; got -30"),
-        ({"strokes_per_minute": "30 rpm"}, 'must be a number of strokes a minute; got "30 rpm"'),
+        ({"strokes_per_minute": "30 rpm"}, 'must be a number of strokes per minute; got "30 rpm"'),
         ({"cycle_time": 2.0, "direction": "left"}, 'must be "counter-clockwise" or "clockwise"; got "left"'),
-        ({"cycle_time": 2.0, "acceleration": 1.0}, "accelerates has no cycle .* got cycle_time .*; give speed"),
+        (
+            {"cycle_time": 2.0, "acceleration": 1.0},
+            "needs a cycle that repeats; got an acceleration .*; give speed",
+        ),
         (
             {"cycle_time": 2.0, "speed_profile": {"crank_angles": POINTS, "speeds": [-3.0, -2.0, -3.0, -4.0]}},
             'direction = "counter-clockwise"; give direction = "clockwise"',
@@ -140,11 +143,11 @@ def test_a_time_may_be_chosen_and_a_range_is_refused_with_that_of_the_speed() ->
         )
     )
     assert [part.mechanism.direction for part in ways.parts()] == [-1.0, 1.0]
-    said = r'got a range of cycle_time; .* variables.mechanism.speed = \["-60 rpm", "-30 rpm"\], or let cycle_time be'
+    said = r'got a range of cycle_time; .* variables.mechanism.speed = \["-60 rpm", "-30 rpm"\], or make'
     for given in (["1 s", "2 s"], {"values": ["1 s", "2 s"]}):
         with pytest.raises(JobError, match=said):
             parse_job(job({"cycle_time": "2 s", "direction": "clockwise"}, cycle_time=given))
-    said = "got mechanism.speed, where it gives mechanism.cycle_time; give speed in .mechanism. in place of cycle_time"
+    said = "got mechanism.speed, but the job gives mechanism.cycle_time; give speed in .mechanism. in place of cycle"
     with pytest.raises(JobError, match=said):
         parse_job(job({"cycle_time": "2 s"}, speed=["30 rpm", "60 rpm"]))
     assert parse_job(job({"cycle_time": "2 s"}), {"mechanism.cycle_time": "1 s"}).mechanism.speed == pytest.approx(
@@ -163,5 +166,5 @@ def test_a_swing_is_told_that_it_has_no_time_of_a_cycle() -> None:
     swing = job({"cycle_time": "2 s", "direction": "clockwise"})
     swing |= {"motion": {"kind": "swing", "from": "0 deg", "to": "60 deg"}, "objectives": {"rod_to_crank": "minimise"}}
     notes = notes_of(swing)
-    assert "mechanism.cycle_time: a swing has a motion of its own, that of [motion]; leave the time out" in notes
+    assert "mechanism.cycle_time: a swing follows [motion] instead; leave out the time" in notes
     assert any(note.startswith("mechanism.direction: a swing") for note in notes)

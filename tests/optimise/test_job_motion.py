@@ -198,7 +198,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ),
         (
             {"variables": JOB["variables"] | {"mechanism.speed": ["1 rpm", "2 rpm"]}},
-            "mechanism.speed: a swing has a motion of its own",
+            "mechanism.speed: a swing follows .motion. instead",
         ),
     ],
 )
@@ -231,7 +231,7 @@ def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothin
     assert np.isfinite(values[0]).all()
     assert np.array_equal(values[0], values[1])
     assert not any("speed" in note for note in notes_of(changed()))
-    assert "mechanism.speed: a swing has a motion of its own" in notes_of(given)[-1]
+    assert "mechanism.speed: a swing follows [motion] instead" in notes_of(given)[-1]
     job = changed()
     del job["motion"]
     with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required"):

@@ -172,12 +172,12 @@ def test_the_floor_of_a_slow_stroke_is_that_of_its_time_ratio() -> None:
         ({"time_ratio": {"max": 1.0}}, "a time ratio above 1; got constraints.time_ratio with max 1"),
         (
             {"outward_to_inward_time_ratio": {"max": 0.9}},
-            "is above 1; got constraints.outward_to_inward_time_ratio with max 0.9",
+            "must be above 1; got constraints.outward_to_inward_time_ratio with max 0.9",
         ),
         ({"outward_to_inward_time_ratio": {"equals": 0.9}}, "with equals 0.9; leave out one of the two"),
         (
             {"inward_to_outward_time_ratio": {"min": 1.2}},
-            "is below 1; got constraints.inward_to_outward_time_ratio with min 1.2",
+            "must be below 1; got constraints.inward_to_outward_time_ratio with min 1.2",
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""What is stated rightly and no design can meet is infeasible at every door, before a search as after one."""
+"""Valid input that no design can meet is infeasible at every entry point, before and after a search."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def test_what_no_design_could_mean_is_wrong_input(tables: dict[str, Any]) -> Non
 
 @pytest.fixture
 def impossible(tmp_path: Path) -> Path:
-    """Return a job file that is right and that no design can meet."""
+    """Return a valid job file that no design can meet."""
     file = tmp_path / "impossible.json"
     file.write_text(json.dumps(changed(**WISH)), encoding="utf-8")
     return file

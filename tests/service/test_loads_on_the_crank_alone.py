@@ -72,7 +72,7 @@ def test_the_command_says_it(command: Command, tmp_path: Path) -> None:
     assert row["torque_fluctuation_Nm"] == 0.0
     refused = command("analyse", str(path), "--show", "flywheel")
     assert refused.exit_code == 2
-    assert "a flywheel evens out a torque that varies over the cycle" in refused.stderr
+    assert "sizing a flywheel needs a torque that varies over the cycle" in refused.stderr
 
 
 def test_a_job_with_neither_mass_nor_load_stays_refused() -> None:

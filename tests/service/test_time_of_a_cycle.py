@@ -32,7 +32,7 @@ JOB: dict[str, Any] = {
 SIZES = ("--crank", "30 mm", "--rod", "120 mm", "--offset", "10 mm")
 LINES = [
     "crank speed -2771.28 rpm (mean over the crank angle, clockwise)",
-    "time of a cycle 0.025 s, 2400 strokes a minute",
+    "cycle time 0.025 s, 2400 strokes per minute",
 ]
 """With w = w0 (1 + cos(2 theta) / 2) the mean over time is w0 sqrt(1 - 1/4): w0 = 2400 rpm / 0.866."""
 
@@ -50,11 +50,11 @@ def test_check_says_speed_time_and_strokes(job: Path, command: Command) -> None:
     constant = json.loads(job.read_text()) | {"mechanism": {"strokes_per_minute": 30, "slider": {"mass": "1 kg"}}}
     job.write_text(json.dumps(constant))
     said = json.loads(command("check", job, "--json").stdout)["given"]
-    assert said[:2] == ["crank speed 30 rpm (counter-clockwise)", "time of a cycle 2 s, 30 strokes a minute"]
+    assert said[:2] == ["crank speed 30 rpm (counter-clockwise)", "cycle time 2 s, 30 strokes per minute"]
     four = [{"torque_angles": ["0 deg", "300 deg", "600 deg"], "torques": [0.0, -20.0, 0.0], "cycle": "720 deg"}]
     job.write_text(json.dumps(constant | {"load": four}))
     said = json.loads(command("check", job, "--json").stdout)["given"]
-    assert said[1] == "time of a cycle of two turns 4 s, 30 strokes a minute"
+    assert said[1] == "cycle time (two turns) 4 s, 30 strokes per minute"
 
 
 def test_analyse_takes_the_time_and_other_times(job: Path, command: Command) -> None:
@@ -96,7 +96,8 @@ def test_curves_over_time_are_refused_along_a_profile() -> None:
     problem, linkage = sc.problem(JOB), sc.Linkage(0.03, 0.12, 0.01)
     table = {"time_s": [0.0, 0.005, 0.01, 0.015], "slider_position_mm": [149.0, 140.0, 120.0, 110.0]}
     with pytest.raises(
-        InputError, match="at constant speed; got one that varies, 2 harmonics of the crank angle; give crank angles"
+        InputError,
+        match="only at constant speed; got a speed profile, 2 harmonics of the crank angle; give",
     ):
         measured_from(table, problem.mechanism, linkage)
     assert len(measured_from(table, replace(problem.mechanism, speed_profile=None), linkage).crank_angle) == 4

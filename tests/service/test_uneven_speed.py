@@ -124,7 +124,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
     points: int, last: float, said: str, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
     _recorded(tmp_path, np.linspace(0.0, last, points), np.full(points, 60.0))
-    with pytest.raises(InputError, match=rf"must be of a turn at least; {said}"):
+    with pytest.raises(InputError, match=rf"must cover at least one turn; {said}"):
         load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path))
 
 
@@ -142,8 +142,8 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
             '{ crank_angles = ["0 deg", 1, 2, "360 deg"], speeds = ["9 rpm", "8 rpm", "9 rpm", "7 rpm"] }',
             "a turn later and differs by -2 rpm",
         ),
-        ('{ file = "gap.csv" }', "must have two numbers a line; got '0.01,nan' in line 3"),
-        ('{ file = "short.csv" }', "must be of a turn at least; got 54 deg"),
+        ('{ file = "gap.csv" }', "must have two finite numbers per line; got '0.01,nan' in line 3"),
+        ('{ file = "short.csv" }', "must cover at least one turn; got 54 deg"),
         ('{ file = "rising.csv" }', r"must repeat after a turn, to 2 %; got 900 rpm at its start and 1024\.7"),
         (
             '{ crank_angles = ["0 deg", "90 deg", "180 deg", "270 deg"], '

@@ -76,7 +76,7 @@ declare namespace Page {
     curveColumns: Api.Column[];
     /** Places in the cycle of the inner and the outer dead centre, or of both ends of a swing. */
     centres: Point;
-    /** Slider positions there, mm: exact, where the curves have points only. */
+    /** Exact slider positions there, mm; the curves have only points. */
     sliderEnds: Point;
     /** Of the crank in a cycle; 0 of a swing forth and back. */
     turns: number;

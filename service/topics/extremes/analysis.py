@@ -30,7 +30,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
 
     A curve without masses, loads or a speed that it needs is left out. None stands for what friction leaves
     undetermined, with the reason, and for crank angle and slider position of a curve that is constant. Ratios and
-    differences are those of the outward stroke against the inward one.
+    differences compare the outward stroke with the inward stroke.
     """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
@@ -57,9 +57,9 @@ def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
 
 
 def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
-    """Return crank angle, duration and greatest slider speed of both strokes, and how these differ.
+    """Return crank angle, duration and greatest slider speed of both strokes, with ratios and differences.
 
-    Durations are None along a speed profile of several cylinders, which have not the same ones.
+    Durations are None for several cylinders along a speed profile, where they differ between cylinders.
     """
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     outward = (mechanism.direction * (outer - inner)) % (2.0 * math.pi)

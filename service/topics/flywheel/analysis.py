@@ -45,7 +45,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
 
 
 def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[tuple[float, float] | None, str | None]:
-    """Return fluctuation and least speed, rad/s, of the machine without a flywheel, or why it has none."""
+    """Return fluctuation and least speed, rad/s, without a flywheel, or the reason why there are none."""
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
         if drive is None:

@@ -1,4 +1,4 @@
-"""Friction of one design: self-locking, what friction adds to torque and forces, where the work of a cycle goes."""
+"""Friction of one design: self-locking, effect on torque and forces, energy balance of a cycle."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ _JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return verdict, torque with and without friction, energies of a cycle and efficiency of one linkage.
 
-    What is not defined is None: torques and energies of a linkage that locks, the efficiency if the load takes
-    and gives no net work.
+    Undefined values are None: torques and energies of a linkage that locks, the efficiency if the load does no net
+    work.
     """
     whole, mechanism = is_shaft(mechanism), alone(mechanism)
     friction, found = mechanism.friction, verdict(mechanism, linkage)
@@ -102,8 +102,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     efficiency = numbers["efficiency"]
     drives = (numbers["useful_work_J"] or 0.0) < 0.0
     side = "negative: the load drives the machine" if drives else "against the load"
-    share_of = "of the load's work, what the crank delivers" if drives else ""
-    why = "the load takes and gives no net work" if heat is not None else "nothing is determined"
+    share_of = "of the load's work is delivered at the crank" if drives else ""
+    why = "the load does no net work" if heat is not None else "nothing is determined"
     lines += [
         ("input work per cycle", numbers["input_work_J"], "J", ""),
         ("useful work per cycle", numbers["useful_work_J"], "J", side),

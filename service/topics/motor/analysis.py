@@ -35,7 +35,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
-    None where friction locks the linkage. Of several cylinders they are those of all together.
+    None if friction locks the linkage. For several cylinders they are those of all together.
     """
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)

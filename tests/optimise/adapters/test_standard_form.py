@@ -215,5 +215,5 @@ def test_offsets_of_both_signs_need_no_elimination_where_there_are_no_equalities
     np.testing.assert_array_equal(form.arrays(x).F, sc.standard_form(support).arrays(x).F)
     tables = {"name": "both", "mechanism": {"speed": 3.0}, "objectives": {"time_ratio": "maximise"}}
     tables |= {"variables": {"crank": [0.02, 0.06], "rod": [0.1, 0.3], "offset": [-0.05, 0.05]}}
-    with pytest.raises(InputError, match="elimination_branch=0 to 1, or leave the equalities in, with eliminate=False"):
+    with pytest.raises(InputError, match="elimination_branch=0 to 1, or keep the equalities, with eliminate=False"):
         sc.standard_form(sc.problem(tables | {"constraints": {"stroke": {"equals": 0.08}}}), eliminate=True)

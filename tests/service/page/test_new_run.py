@@ -145,7 +145,7 @@ def test_the_first_job_of_an_empty_form_can_be_solved_and_its_sketch_moves_until
     assert drawn.inner_html() == before
 
 
-IMPOSSIBLE = "Impossible as asked: no design meets it."
+IMPOSSIBLE = "Impossible: no design can meet this job."
 WRONG = [
     ("name", "", "is missing"),
     ("crank speed", "fast", "must be an angular speed"),
@@ -187,7 +187,7 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
     )
     expect(status(page)).to_have_text(IMPOSSIBLE)
     start(page)
-    expect(page.get_by_role("alert")).to_have_text(f"{IMPOSSIBLE} Change what is marked.")
+    expect(page.get_by_role("alert")).to_have_text(f"{IMPOSSIBLE} Change the marked fields.")
     assert store.jobs() == []
     expect(page.get_by_text("Time ratio exactly 1.5 is asked, at the nearest 1.2")).to_be_visible()
     page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("max")
@@ -205,7 +205,7 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
     expect(status(page)).to_have_text("One thing to correct.")
     start(page)
     expect(page.get_by_label("slider mass", exact=True)).to_be_focused()
-    expect(page.get_by_role("alert")).to_have_text("Correct what is marked first.")
+    expect(page.get_by_role("alert")).to_have_text("Correct the marked fields first.")
     assert store.jobs() == []
 
 
@@ -314,21 +314,21 @@ def test_a_time_of_a_cycle_stands_in_place_of_the_speed(form: Open, store: Store
     rest = {key: value for key, value in job["mechanism"].items() if key != "speed"}
     job["mechanism"] = {**rest, "cycle_time": "2 s", "direction": "clockwise"}
     page.locator("#job-text").fill(json.dumps(job))
-    seconds = page.get_by_label("time of a cycle", exact=True)
+    seconds = page.get_by_label("cycle time", exact=True)
     expect(seconds).to_have_value("2")
     expect(page.get_by_label("direction", exact=True)).to_have_value("-")
     ready(page)
     assert text_of(page) == job
-    expect(page.locator("body")).to_contain_text("time of a cycle 2 s, 30 strokes a minute")
+    expect(page.locator("body")).to_contain_text("cycle time 2 s, 30 strokes per minute")
     seconds.fill("1.5")
     page.get_by_label("direction", exact=True).select_option("")
     ready(page)
     assert text_of(page)["mechanism"] == {**rest, "cycle_time": "1.5 s"}
     page.get_by_label("direction", exact=True).select_option("-")
-    page.get_by_label("speed given by", exact=True).select_option("strokes a minute")
-    strokes = page.get_by_label("strokes a minute", exact=True)
+    page.get_by_label("speed given by", exact=True).select_option("strokes per minute")
+    strokes = page.get_by_label("strokes per minute", exact=True)
     expect(strokes).to_be_focused()
-    expect(page.locator("#f-mechanism-strokes_per_minute-c-error")).to_contain_text("strokes a minute")
+    expect(page.locator("#f-mechanism-strokes_per_minute-c-error")).to_contain_text("strokes per minute")
     strokes.fill("40")
     ready(page)
     assert text_of(page)["mechanism"] == {**rest, "strokes_per_minute": 40, "direction": "clockwise"}
@@ -461,7 +461,7 @@ def test_limits_and_priority_go_with_the_job_and_wrong_ones_are_said(form: Open,
     priority = page.get_by_label("priority", exact=True)
     priority.fill("2000")
     start(page)
-    expect(page.get_by_role("alert")).to_have_text("Correct what is marked first.")
+    expect(page.get_by_role("alert")).to_have_text("Correct the marked fields first.")
     priority.fill("5")
     page.get_by_label("time limit (s)", exact=True).fill("60")
     ready(page)

@@ -137,7 +137,7 @@ export function centresOf(said, { kind }, datum, unit) {
   if (!example || !found) return [];
   const [inner, outer] = example.slider_ends_mm.map((end) => {
     const { angle } = Math.abs(found.low.value - end) < Math.abs(found.high.value - end) ? found.low : found.high;
-    return { angle, value: Math.abs(end) }; // a table counts distances, also on the crossed branch
+    return { angle, value: Math.abs(end) }; // a table has distances, also on the crossed branch
   });
   /** @type {(value: number) => number} */
   let counted = (value) => value;

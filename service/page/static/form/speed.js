@@ -1,4 +1,4 @@
-/** The speed of the crank and the way in which it turns: a speed, whose sign is the direction, or a time and a direction. */
+/** Crank speed and direction: a speed, whose sign is the direction, or a time and a direction. */
 
 import { h } from "../lib/dom.js";
 import { byschema, changeUnit, choice, number as counted, numberInput, unitSelect } from "./controls.js";
@@ -10,27 +10,27 @@ import { split } from "../lib/units.js";
 
 const TABLE = ["mechanism"];
 const DIRECTION = [...TABLE, "direction"];
-/** What states the speed: its key, by its label. @type {Record<string, string>} */
-const SPEED_KEYS = { "crank speed": "speed", "time of a cycle": "cycle_time", "strokes a minute": "strokes_per_minute" };
+/** Keys that state the speed, by label. @type {Record<string, string>} */
+const SPEED_KEYS = { "crank speed": "speed", "cycle time": "cycle_time", "strokes per minute": "strokes_per_minute" };
 /** @type {Record<string, string | null>} */
 const KINDS = { speed: "angular speed", cycle_time: "time", strokes_per_minute: null };
 /** @type {Record<string, string>} */
 const WHY = {
-  speed: "The speed at which the crank turns; with a speed profile its mean over the crank angle.",
-  cycle_time: "The time of one turn; of two where a load has a cycle of 720 deg. A speed profile is scaled to it.",
-  strokes_per_minute: "How often the crank turns in a minute. A speed profile is scaled to it.",
+  speed: "The speed of the crank; with a speed profile, its mean over the crank angle.",
+  cycle_time: "The time of one turn, or of two turns if a load has a cycle of 720 deg. A speed profile is scaled to it.",
+  strokes_per_minute: "The number of crank turns per minute. A speed profile is scaled to it.",
 };
 
 /** Return the fields of a speed that goes up and down over the turn: harmonics, or points. @param {Form.Whole} form */
 export function speedProfile(form) {
   const path = ["mechanism", "speed_profile"];
   const table = points(form, path, [{ key: "crank_angles", label: "crank angle", kind: "angle" }, { key: "speeds", label: "crank speed", kind: "angular speed" }],
-    "Measured speeds, with the sign of the speed, at crank angles that increase and span less than a turn; a smooth curve joins them. The speed of the job is their mean; to a time of the cycle they are scaled", { optional: true, title: "speeds over the turn, one a line" });
+    "Measured speeds, with the sign of the speed, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, they are scaled to it", { optional: true, title: "speeds over the turn, one a line" });
   const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service opens no files
   return h("fieldset", { class: "inner" }, h("legend", {}, "speed profile"), h("div", { class: "fields" }, byschema(form, [...path, "cosines"]), byschema(form, [...path, "sines"]), table, file));
 }
 
-/** Return the fields of speed and direction; a time of a cycle, or strokes a minute, may stand in place of the speed. @param {Form.Whole} form */
+/** Return the fields for speed and direction; a cycle time or strokes per minute may replace the speed. @param {Form.Whole} form */
 export function speed(form) {
   const key = Object.values(SPEED_KEYS).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
   const [usual, ...others] = Object.keys(SPEED_KEYS);
@@ -56,7 +56,7 @@ export function speed(form) {
     const found = kind ? taken(input, { kind, select: units }) : counted(input);
     form.put(DIRECTION, !signed && way.value ? "clockwise" : undefined);
     if (signed) form.put(path, found && way.value + found);
-    else form.put(path, found ?? ""); // so that it is this one that is missing
+    else form.put(path, found ?? ""); // so that this one is reported as missing
   };
   input.addEventListener("input", write);
   way.addEventListener("change", write);
@@ -67,16 +67,16 @@ export function speed(form) {
   const stated = choice(
     { ...form, at: () => (key === "speed" ? undefined : label), put: (_, chosen) => stateSpeedAs(form, SPEED_KEYS[String(chosen ?? usual)], way.value) },
     [...TABLE, "stated"],
-    { options: others, fallback: usual, label: "speed given by", why: "The speed at which the crank turns, which is its mean over the crank angle; the time of a cycle; or how often the crank turns in a minute. A speed profile is scaled to the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, SPEED_KEYS[chosen || usual]], "c")) },
+    { options: others, fallback: usual, label: "speed given by", why: "The mean speed of the crank over the crank angle, the cycle time, or the number of crank turns per minute. A speed profile is scaled to either of the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, SPEED_KEYS[chosen || usual]], "c")) },
   );
   return [
     stated,
     field(form, path, label, units ? [input, units] : [input], WHY[key]),
-    field(form, [...TABLE, "speed", "direction"], "direction", [way], "With the sign of the offset, the direction says which stroke is the slow one: counter-clockwise and a positive offset make it the inward one.", { register: false }),
+    field(form, [...TABLE, "speed", "direction"], "direction", [way], "At constant speed, direction and sign of the offset decide which stroke is slow: with counter-clockwise rotation and a positive offset it is the inward stroke.", { register: false }),
   ];
 }
 
-/** State the speed in another way, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */
+/** State the speed by another key, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */
 function stateSpeedAs(form, key, sign) {
   for (const other of Object.values(SPEED_KEYS)) form.put([...TABLE, other], undefined);
   form.put([...TABLE, key], key === "speed" ? sign : "");

@@ -24,7 +24,7 @@ export function statusOf(error) {
   return error instanceof Problem ? error.status : null;
 }
 
-/** Whether what was asked is right, and no design can meet it. @type {(error: unknown) => boolean} */
+/** Whether the request is valid but no design can meet it. @type {(error: unknown) => boolean} */
 export function isInfeasible(error) {
   return error instanceof Problem && error.type === "infeasible";
 }

@@ -32,9 +32,9 @@ const OWN = {
 
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
-  [/ where neither cycle_time nor strokes_per_minute is given/g, ""],
-  [/\bcycle_time\b/g, "time of a cycle"],
-  [/\bstrokes_per_minute\b/g, "strokes a minute"],
+  [/ unless cycle_time or strokes_per_minute is given/g, ""],
+  [/\bcycle_time\b/g, "cycle time"],
+  [/\bstrokes_per_minute\b/g, "strokes per minute"],
   [/\bdirection = "([a-z-]+)"/g, (_, way) => `the direction ${way}`],
   [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
   [/\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g, (whole, table, key) => (PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole)],

@@ -21,7 +21,7 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), slider_ends_mm (slider positions there, for the
- *   dimension; it is not written without them), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
+ *   stroke dimension, which is omitted without them), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
  *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
  *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js), outlines (of the API: piston,
  *   cylinders, actuator, body on the crank).

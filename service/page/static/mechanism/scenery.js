@@ -104,7 +104,7 @@ function offset(view, e, x, written) {
   );
 }
 
-/** Dimension the stroke, outside of the guide. @param {View} view @param {Page.Point} ends @param {number} y @param {boolean} swings */
+/** Dimension the stroke, outside the guide. @param {View} view @param {Page.Point} ends @param {number} y @param {boolean} swings */
 function strokeOf(view, ends, y, swings) {
   const [from, to] = ends.map(view.x).sort((a, b) => a - b);
   const long = withUnit(Math.abs(ends[1] - ends[0]), "mm", 4);

@@ -18,10 +18,10 @@ import { system } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "New run";
-const IMPOSSIBLE = "Impossible as asked: no design meets it.";
+const IMPOSSIBLE = "Impossible: no design can meet this job.";
 
-/** Return what is to be done about what is marked. @param {Api.Wrong[]} wrong */
-const correction = (wrong) => wrong.every(({ infeasible }) => infeasible) ? `${IMPOSSIBLE} Change what is marked.` : "Correct what is marked first.";
+/** Return the remedy for the marked fields. @param {Api.Wrong[]} wrong */
+const correction = (wrong) => wrong.every(({ infeasible }) => infeasible) ? `${IMPOSSIBLE} Change the marked fields.` : "Correct the marked fields first.";
 
 /** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
