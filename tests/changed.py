@@ -1,10 +1,10 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
-They are the test files that differ and, for each other file, those named after it or after the folder that it is in,
-wherever they are in the mirror of its folder at the top (`service/topics/clearance/analysis.py` has all
-`test_analysis*.py` and `test_clearance*.py` under `tests/service/`), then those that import it. Where these are fewer
-than three, those that import what imports it are added, and so on; the ones that mention most of its names come first.
-A source file with neither is an error.
+They are the test files that differ and, for every other file, those named after it or after its folder, anywhere in the
+mirror of its top-level folder (`service/topics/clearance/analysis.py` has all `test_analysis*.py` and
+`test_clearance*.py` under `tests/service/`), then those that import it. If these are fewer than three, those that
+import it indirectly are added; the ones that mention most of its names come first. A source file without any test
+file is an error.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 from tests.imports import importers
 
 PRODUCT = ("model", "objectives", "optimise", "service")
-ENOUGH, MOST = 3, 6  # test files for one file: what it takes to see a fault in it, within some ten seconds
+ENOUGH, MOST = 3, 6  # test files for one file: enough to notice a fault in about ten seconds
 
 _NAMES = re.compile(
     r"^(?:(?:async )?def |class |export (?:async )?(?:function|class|const) |)([A-Za-z]\w{2,})\b(?=[(:= ])",
@@ -29,7 +29,7 @@ def belonging(file: Path, root: Path, graph: dict[Path, set[Path]]) -> list[Path
     """Return the test files that belong to a file, by paths from the top. graph: what imports each file."""
     if _is_test(file):
         return [file]
-    named = _named(file, root)
+    named = _tests_named_after(file, root)
     found = dict.fromkeys(named)
     words = _words(root / file)
     level, seen = {file}, {file}
@@ -46,18 +46,18 @@ def _is_test(file: Path) -> bool:
 
 
 def _is_quick(test: Path) -> bool:
-    """Return whether a file has tests besides slow ones."""
+    """Return whether a test file has tests that are not slow."""
     return not re.search(r"^pytestmark = .*mark\.slow\b", test.read_text(encoding="utf-8"), re.MULTILINE)
 
 
-def _named(file: Path, root: Path) -> list[Path]:
+def _tests_named_after(file: Path, root: Path) -> list[Path]:
     names = {file.stem, *file.parts[1:-1][-1:]} - {"__init__", "static", "lib"}
     tests = (found for name in names for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
     return sorted(found.relative_to(root) for found in tests if _is_quick(found))
 
 
 def _words(file: Path) -> set[str]:
-    """Return the names by which tests speak of a file: its own and those that it defines."""
+    """Return the names by which tests refer to a file: its own and those that it defines."""
     return {file.stem, *_NAMES.findall(file.read_text(encoding="utf-8", errors="replace"))}
 
 
@@ -66,9 +66,9 @@ def _mentions(test: Path, words: set[str]) -> int:
 
 
 def changed(branch: str, root: Path) -> list[Path]:
-    """Return the files that differ from where a branch was left, those not yet committed or added among them.
+    """Return the files that differ from the merge base with a branch, uncommitted and new files included.
 
-    Files that are gone are left out: what still imports them does not pass the check of types.
+    Deleted files are left out: files that still import them fail the type check.
     """
     base = _git(root, "merge-base", branch, "HEAD")
     names = _git(root, "diff", "--name-only", *base, "--"), _git(root, "ls-files", "--others", "--exclude-standard")
@@ -83,7 +83,7 @@ def _git(root: Path, *arguments: str) -> list[str]:
 
 
 def main(branch: str) -> None:
-    """Print them. Raises `SystemExit` where a file of the product has none."""
+    """Print the test files. Raises `SystemExit` if a source file has none."""
     root = Path.cwd()
     graph = importers(root)
     differing = [file for file in changed(branch, root) if file in graph or _is_test(file) or file.parts[0] in PRODUCT]

@@ -1,4 +1,4 @@
-"""Imports between the files of the project, Python and JavaScript: those within functions and for types, too."""
+"""Imports between the Python and JavaScript files of the project, also within functions and for types."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _VIEW = re.compile(r"match: \(parts\) => (.*?), load: \(\) => import\(\"\./(.*?)
 
 
 def files_of(root: Path, *suffixes: str) -> list[Path]:
-    """Return the files of the project, those with one of some suffixes if any are given, by paths from the top."""
+    """Return the files of the project, only those with the suffixes if given, by paths from the top."""
     every = (file for folder in FOLDERS for file in (root / folder).rglob("*") if file.is_file())
     found = (file for file in every if not suffixes or file.suffix in suffixes)
     return sorted(file.relative_to(root) for file in found)
@@ -28,8 +28,8 @@ def files_of(root: Path, *suffixes: str) -> list[Path]:
 def importers(root: Path) -> dict[Path, set[Path]]:
     """Return the files that import each file.
 
-    A module that no other imports is found by its folder, as quantities and commands are: its importers are the modules
-    with a call of `import_module` in the nearest folder above it that has some. Data is read by the modules of the
+    A module that no other module imports is loaded by its folder, as quantities and commands are: its importers are the
+    modules that call `import_module` in the nearest folder above it that has any. Data is read by the modules in the
     nearest folder above it. A view of the page is opened by the tests that name its address.
     """
     texts = {file: (root / file).read_text(encoding="utf-8") for file in files_of(root, ".py", ".js", ".mjs")}
@@ -45,7 +45,7 @@ def importers(root: Path) -> dict[Path, set[Path]]:
     for file in sources:
         if not found[file] and file.name != "__init__.py":
             found[file] |= _nearest(file, finders)
-    for file in [file for file in found if file.name != "__init__.py"]:  # a package is run before its modules
+    for file in [file for file in found if file.name != "__init__.py"]:  # importing a module runs its package first
         for folder in file.parents[:-1]:
             found[folder / "__init__.py"] |= found[file]
     for file in texts.keys() - python.keys():
@@ -68,7 +68,7 @@ def _dotted(file: Path) -> str:
 
 
 def _imported(text: str, file: Path, modules: dict[str, Path]) -> Iterator[tuple[str, Path]]:
-    """Yield the names that a module gives to what it imports from the project, and the files that it comes from."""
+    """Yield the names under which a module imports from the project, and the files that they come from."""
     package = _dotted(file).split(".")[: None if file.name == "__init__.py" else -1]
     for name, alias in _IMPORT.findall(text):
         if name in modules:
@@ -84,7 +84,7 @@ def _imported(text: str, file: Path, modules: dict[str, Path]) -> Iterator[tuple
 
 
 def _passed_on(text: str, own: dict[str, Path], names: dict[Path, dict[str, Path]]) -> Iterator[Path]:
-    """Yield where the names come from that a module takes from packages which only pass them on."""
+    """Yield the files that define the names that a module imports from packages that re-export them."""
     for name, source in own.items():
         if source.name == "__init__.py":
             taken = [name, *re.findall(rf"\b{re.escape(name)}\.(\w+)", text)]
@@ -92,7 +92,7 @@ def _passed_on(text: str, own: dict[str, Path], names: dict[Path, dict[str, Path
 
 
 def _nearest(file: Path, others: list[Path]) -> set[Path]:
-    """Return those of other files that are in the nearest folder above a file that has any."""
+    """Return the other files in the nearest folder above a file that has any."""
     folders = ({other for other in others if other.parent == folder} - {file} for folder in file.parents)
     return next(filter(None, folders), set())
 

@@ -1,4 +1,4 @@
-"""Words of a schema that JSON Schema does not know: what reads the schema passes over them."""
+"""Words of a schema that are unknown to JSON Schema: readers of the schema ignore them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OF_OPENAPI = frozenset(("discriminator", "xml", "externalDocs", "example"))
 
 
 def unknown_words(schema: Any, known: frozenset[str] = KNOWN, place: str = "") -> Iterator[str]:
-    """Yield place and word of each that is not known; words that begin with x- are the schema's own."""
+    """Yield place and word of each unknown word; words that begin with x- are allowed."""
     if not isinstance(schema, Mapping):
         return
     for word, value in schema.items():
@@ -43,7 +43,7 @@ def unknown_words(schema: Any, known: frozenset[str] = KNOWN, place: str = "") -
 
 
 def schemas_within(document: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield place and schema of each that a description in OpenAPI has, outside of other schemas."""
+    """Yield place and schema of every schema in an OpenAPI description that is not inside another one."""
     if isinstance(document, list):
         for number, item in enumerate(document):
             yield from schemas_within(item, f"{place}/{number}")

@@ -39,7 +39,7 @@ FEEDER = np.array([[0.0376, 0.0998, 0.03119]])
 
 @dataclass(frozen=True)
 class Case:
-    """A machine along a profile, one design of it (3,), and the turns of its cycle."""
+    """A machine with a speed profile, one design (3,), and the number of turns in its cycle."""
 
     machine: Mechanism
     design: Array
@@ -53,7 +53,7 @@ class Case:
 
 
 def random_profile(random: np.random.Generator, seed: int) -> Profile:
-    """Return up to six harmonics that leave a tenth of the mean speed, or a table whose speeds differ fivefold."""
+    """Return up to six harmonics down to a tenth of the mean speed, or a table with a speed ratio up to five."""
     if seed % 2:
         waves = random.normal(size=(2, random.integers(1, 7)))
         waves *= random.uniform(0.1, 0.9) / np.hypot(*waves).sum()
@@ -64,7 +64,7 @@ def random_profile(random: np.random.Generator, seed: int) -> Profile:
     while True:
         try:
             return SpeedTable(angles=tuple(angles.tolist()), speeds=tuple(speeds.tolist()))
-        except ValueError:  # the spline swings below zero
+        except ValueError:  # the spline falls below zero
             speeds = np.sqrt(speeds * speeds.mean())
 
 
@@ -90,7 +90,7 @@ def random_case(seed: int) -> Case:
     return Case(machine, random_designs(1, seed=seed, least_margin=0.5 if rubs else 0.03)[0], 2 if two else 1)
 
 
-class Turning:
+class CrankOverTime:
     """The crank angle over time: dtheta/dt = speed p(theta), solved from theta = 0 on, anew from every knot of p."""
 
     def __init__(self, case: Case) -> None:
@@ -105,10 +105,10 @@ class Turning:
         self.period = float(self.starts[-1])
 
     def _solved(self, start: float, end: float) -> Any:
-        def there(_: float, y: Any) -> Any:
+        def arrival(_: float, y: Any) -> Any:
             return (y[0] - end) * math.copysign(1.0, self._speed)
 
-        there.terminal, there.direction = True, 1.0  # type: ignore[attr-defined]
+        arrival.terminal, arrival.direction = True, 1.0  # type: ignore[attr-defined]
         width = abs(end - start)
         return solve_ivp(
             lambda _, y: self._speed * self._profile.ratio(y),
@@ -118,7 +118,7 @@ class Turning:
             rtol=3e-14,
             atol=1e-14,
             max_step=0.02 / abs(self._speed),
-            events=there,
+            events=arrival,
             dense_output=True,
         )
 
@@ -149,7 +149,7 @@ def over_time(case: Case, curve: Callable[[Array, Array, Array], Array]) -> Arra
 
     Gauss over panels of time between breakpoints, which are halved until both halves say the same.
     """
-    speed, profile, turning = case.machine.speed, case.profile, Turning(case)
+    speed, profile, turning = case.machine.speed, case.profile, CrankOverTime(case)
 
     def gauss(low: Array, width: Array) -> Array:
         theta = turning.angle((low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)).ravel())
@@ -178,8 +178,8 @@ def over_time(case: Case, curve: Callable[[Array, Array, Array], Array]) -> Arra
 
 
 def breakpoints_of(case: Case) -> Array:
-    """Return crank angles of the shaft at which a torque may have a kink or a jump, but for those of friction."""
-    plain, tables = split(case.machine)
+    """Return the crank angles at which the torque may have a kink or a jump, except those from friction."""
+    plain, tables = split_two_turn_tables(case.machine)
     found = [0.0]
     for one, lead, _ in cylinders(plain):
         own = [*breakpoints(one, case.design), *(angle % (2.0 * TURN) for table in tables for angle in table.angles)]
@@ -187,8 +187,8 @@ def breakpoints_of(case: Case) -> Array:
     return np.array(found)
 
 
-def split(machine: Mechanism) -> tuple[Mechanism, list[AngleTable]]:
-    """Return a machine without its tables of two turns, and these."""
+def split_two_turn_tables(machine: Mechanism) -> tuple[Mechanism, list[AngleTable]]:
+    """Return a machine without its two-turn tables, and these tables."""
     tables: list[AngleTable] = []
     others: list[Load] = []
     for load in machine.loads:
@@ -200,7 +200,7 @@ def split(machine: Mechanism) -> tuple[Mechanism, list[AngleTable]]:
 
 
 def torque_of_one(machine: Mechanism, design: Array, theta: Array, speed: Array, acceleration: Array) -> Array:
-    """Return the drive torque of one cylinder: by virtual work, or by `cycle` where it rubs.
+    """Return the drive torque of one cylinder: by virtual work, or by `cycle` if it has friction.
 
     Without friction the torque is a polynomial of second order in a speed of one sign and of first order in the
     acceleration. `cycle` with friction is compared with nine equations in `test_friction`.
@@ -208,7 +208,7 @@ def torque_of_one(machine: Mechanism, design: Array, theta: Array, speed: Array,
     if machine.friction != Friction():
         linkage = linkage_of(design, machine.branch)
         return np.asarray(cycle(machine, linkage, theta, speed=speed, acceleration=acceleration).torque)
-    plain, tables = split(machine)
+    plain, tables = split_two_turn_tables(machine)
     w = machine.speed
     at = [drive_torque(replace(plain, speed=k * w), design, theta) for k in (0.5, 1.0, 2.0)]
     inertia = drive_torque(replace(plain, acceleration=1.0), design, theta) - at[1]
@@ -224,7 +224,7 @@ def torque_of_one(machine: Mechanism, design: Array, theta: Array, speed: Array,
 
 
 def cylinders(machine: Mechanism) -> list[tuple[Mechanism, float, float]]:
-    """Return each cylinder as a machine of its own, how far its crank leads the shaft, and its bank."""
+    """Return each cylinder as a separate machine, with the lead of its crank over the shaft and its bank."""
     one = replace(machine, speed_profile=None, arrangement=None)
     if machine.arrangement is None:
         return [(one, 0.0, 0.0)]

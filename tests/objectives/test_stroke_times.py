@@ -61,7 +61,7 @@ def ratio_of(profile: Harmonics | SpeedTable) -> Any:
 
 
 def times_by_integration(machine: Mechanism, design: Array, lead: float = 0.0) -> dict[str, float]:
-    """Return the time from each end of the slider's way to the other, s: the crank is followed over time.
+    """Return the time between the ends of the slider's travel, s, by integrating the crank over time.
 
     theta' = speed p(theta). The slider turns round where its velocity changes sign; the farther end is the outer one.
     lead: of the crank of a cylinder over the shaft's angle, rad.
@@ -173,7 +173,7 @@ def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
 
 
 def test_a_profile_that_moves_with_the_mirror_image_swaps_the_strokes() -> None:
-    """Mirrored about the slider line a machine has offset -e and turns the other way, along p(-theta)."""
+    """Mirrored about the slider line, a machine has offset -e and rotates in the other direction, along p(-theta)."""
     for seed in range(1, 20, 2):
         machine, design = random_case(seed)
         profile = machine.speed_profile
@@ -235,7 +235,7 @@ def test_times_need_a_speed_that_repeats() -> None:
 
 
 def test_a_cycle_of_two_turns_has_the_strokes_of_its_turn() -> None:
-    """The profile repeats with every turn, whatever the gas does."""
+    """The profile repeats every turn, independently of the gas."""
     machine, design = random_case(5)
     gas = FourStroke(
         bore=0.08, low=9e4, high=5e6, clearance=0.11, compression_exponent=1.3, expansion_exponent=1.25, exhaust=1.1e5

@@ -1,4 +1,4 @@
-"""A crank speed that a job states by its speed, by the time of a cycle, or by strokes per minute."""
+"""A crank speed that a job states directly, by the cycle time or by strokes per minute."""
 
 from __future__ import annotations
 

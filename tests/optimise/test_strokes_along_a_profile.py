@@ -1,4 +1,4 @@
-"""Time ratio and slow stroke of jobs whose speed follows a profile: of time, and never of crank angles alone."""
+"""Time ratio and slow stroke of jobs with a speed profile: by time, not by crank angles."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ def test_contradictions_with_a_slow_stroke_are_refused(constraints: dict[str, An
 @pytest.mark.slow
 @pytest.mark.parametrize("wanted", ["outward", "inward"])
 def test_every_one_of_several_cylinders_has_the_slow_stroke_that_is_asked(wanted: str) -> None:
-    """A cylinder stands as a machine by itself whose profile is turned by its phase."""
+    """A cylinder equals a single machine whose profile is shifted by its phase."""
     leads = (0.0, 40.0)
     several = {"cylinders": {"phases": [f"{lead:g} deg" for lead in leads]}}
     geometric = {"time_ratio": None, "crank_angle_ratio": "maximise"}

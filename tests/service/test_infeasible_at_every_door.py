@@ -50,7 +50,7 @@ OF_RUNS = (
 )
 
 
-def changed(**tables: Any) -> dict[str, Any]:
+def changed_job(**tables: Any) -> dict[str, Any]:
     """Return the small job with some of its tables changed, key by key."""
     found = {**SMALL}
     for name, table in tables.items():
@@ -59,38 +59,38 @@ def changed(**tables: Any) -> dict[str, Any]:
 
 
 CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
-    "two requirements": (changed(**WISH), "constraints.time_ratio"),
-    "a requirement beyond the ranges": (changed(constraints={"stroke": {"equals": "2 m"}}), "constraints.stroke"),
-    "ranges in which nothing turns": (changed(variables={"crank": ["700 mm", "800 mm"]}), "variables"),
+    "two requirements": (changed_job(**WISH), "constraints.time_ratio"),
+    "a requirement beyond the ranges": (changed_job(constraints={"stroke": {"equals": "2 m"}}), "constraints.stroke"),
+    "ranges in which nothing turns": (changed_job(variables={"crank": ["700 mm", "800 mm"]}), "variables"),
     "an offset that is needed": (
         {
-            **changed(variables={"offset": "0 mm"}, constraints={"rod_to_offset": {"equals": 3.2}}),
+            **changed_job(variables={"offset": "0 mm"}, constraints={"rod_to_offset": {"equals": 3.2}}),
             "objectives": {"transmission_angle": "maximise"},
         },
         "constraints.rod_to_offset",
     ),
     "linear formulas": (
-        changed(constraints={"rod": {"equals": "3 * crank"}, "rod - 2 * crank": {"min": "250 mm"}}),
+        changed_job(constraints={"rod": {"equals": "3 * crank"}, "rod - 2 * crank": {"min": "250 mm"}}),
         "which exclude each other",
     ),
     "one formula written twice": (
-        changed(constraints={"crank + rod": {"min": "300 mm"}, "crank +  rod": {"max": "200 mm"}}),
+        changed_job(constraints={"crank + rod": {"min": "300 mm"}, "crank +  rod": {"max": "200 mm"}}),
         "requirements on one formula must leave something",
     ),
     "a slow stroke on the other side": (
-        changed(constraints={"slow_stroke": "outward"}, variables={"offset": ["0 mm", "200 mm"]}),
+        changed_job(constraints={"slow_stroke": "outward"}, variables={"offset": ["0 mm", "200 mm"]}),
         "constraints.slow_stroke",
     ),
     "a slow stroke without a time ratio": (
-        changed(
+        changed_job(
             constraints={"slow_stroke": "inward", "time_ratio": {"max": 1.0}},
             variables={"offset": ["-200 mm", "200 mm"]},
         ),
         "constraints.slow_stroke",
     ),
-    "a quantity that is zero": (changed(constraints={"mean_torque": {"min": "1 N m"}}), "excludes zero"),
+    "a quantity that is zero": (changed_job(constraints={"mean_torque": {"min": "1 N m"}}), "excludes zero"),
     "options without a design": (
-        changed(
+        changed_job(
             choice=[
                 {
                     "name": "motor",
@@ -114,7 +114,7 @@ CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
         "motion: no design of the ranges closes",
     ),
     "values of which none fits": (
-        changed(
+        changed_job(
             variables={
                 "crank": {"values": ["50 mm", "60 mm"]},
                 "rod": {"values": ["300 mm", "400 mm"]},
@@ -138,12 +138,12 @@ def test_a_contradiction_is_infeasible_and_no_wrong_input(kind: str) -> None:
 @pytest.mark.parametrize(
     "tables",
     [
-        changed(constraints={"stroke": {"min": "90 mm", "max": "80 mm"}}),
-        changed(constraints={"time_ratio": {"max": 0.9}}),
-        changed(constraints={"peak_torque": {"max": "-5 N m"}}),
-        changed(variables={"crank": ["200 mm", "20 mm"]}),
-        changed(constraints={"strok": {"min": "90 mm"}}),
-        changed(objectives={"stroke": "maximise"}),
+        changed_job(constraints={"stroke": {"min": "90 mm", "max": "80 mm"}}),
+        changed_job(constraints={"time_ratio": {"max": 0.9}}),
+        changed_job(constraints={"peak_torque": {"max": "-5 N m"}}),
+        changed_job(variables={"crank": ["200 mm", "20 mm"]}),
+        changed_job(constraints={"strok": {"min": "90 mm"}}),
+        changed_job(objectives={"stroke": "maximise"}),
     ],
 )
 def test_what_no_design_could_mean_is_wrong_input(tables: dict[str, Any]) -> None:
@@ -153,15 +153,15 @@ def test_what_no_design_could_mean_is_wrong_input(tables: dict[str, Any]) -> Non
 
 
 @pytest.fixture
-def impossible(tmp_path: Path) -> Path:
+def impossible_job(tmp_path: Path) -> Path:
     """Return a valid job file that no design can meet."""
     file = tmp_path / "impossible.json"
-    file.write_text(json.dumps(changed(**WISH)), encoding="utf-8")
+    file.write_text(json.dumps(changed_job(**WISH)), encoding="utf-8")
     return file
 
 
 @pytest.fixture
-def nothing(runs: Path) -> str:
+def run_without_designs(runs: Path) -> str:
     """Return a run that found no design."""
     with RunFolder(runs, "nothing") as run:
         run.keep_result(result_of(fronts.empty_front("infeasible", "nothing meets it"), str(run.path)), {})
@@ -170,17 +170,17 @@ def nothing(runs: Path) -> str:
 
 @pytest.mark.parametrize("arguments", OF_JOBS, ids=lambda arguments: arguments[0])
 def test_commands_that_take_an_impossible_job_end_with_3_and_its_json(
-    arguments: tuple[str, ...], impossible: Path, nothing: str, command: Command
+    arguments: tuple[str, ...], impossible_job: Path, run_without_designs: str, command: Command
 ) -> None:
     """The JSON has the keys of a run that found nothing."""
     name, *rest = arguments
-    done = command(name, impossible, *rest) if name != "inverse" else command(name, *rest, impossible)
+    done = command(name, impossible_job, *rest) if name != "inverse" else command(name, *rest, impossible_job)
     assert (done.exit_code, done.stdout) == (3, "")
     assert SAID in done.stderr
-    done = command(*(name, impossible, *rest) if name != "inverse" else (name, *rest, impossible), "--json")
+    done = command(*(name, impossible_job, *rest) if name != "inverse" else (name, *rest, impossible_job), "--json")
     assert done.exit_code == 3
     record = json.loads(done.stdout)
-    assert record.keys() == json.loads(command("front", nothing, "--json").stdout).keys()
+    assert record.keys() == json.loads(command("front", run_without_designs, "--json").stdout).keys()
     assert (record["status"], record["designs"], record["name"], record["run"]) == ("infeasible", [], SMALL["name"], "")
     assert SAID in record["message"]
     assert [item["quantity"] for item in record["objectives"]] == ["time_ratio", "transmission_angle"]
@@ -189,15 +189,15 @@ def test_commands_that_take_an_impossible_job_end_with_3_and_its_json(
 
 @pytest.mark.parametrize("arguments", OF_RUNS, ids=lambda arguments: arguments[0])
 def test_commands_that_take_a_run_without_designs_end_with_3_and_its_json(
-    arguments: tuple[str, ...], nothing: str, runs: Path, command: Command
+    arguments: tuple[str, ...], run_without_designs: str, runs: Path, command: Command
 ) -> None:
     name, *rest = arguments
     if name == "compare":
         with RunFolder(runs, "some") as run:
             run.keep_result(result_of(fronts.front(), str(run.path)), {})
-        given: tuple[str, ...] = (name, run.path.name, nothing)
+        given: tuple[str, ...] = (name, run.path.name, run_without_designs)
     else:
-        given = (name, *rest, nothing) if name == "inverse" else (name, nothing, *rest)
+        given = (name, *rest, run_without_designs) if name == "inverse" else (name, run_without_designs, *rest)
     done = command(*given)
     assert (done.exit_code, done.stdout) == (3, "")
     assert "nothing meets it" in done.stderr
@@ -208,30 +208,30 @@ def test_commands_that_take_a_run_without_designs_end_with_3_and_its_json(
     assert "nothing meets it" in record["message"]
 
 
-def test_an_impossible_job_leaves_no_run_and_no_job(impossible: Path, runs: Path, command: Command) -> None:
-    command("optimise", impossible, "--json")
-    command("submit", impossible)
+def test_an_impossible_job_leaves_no_run_and_no_job(impossible_job: Path, runs: Path, command: Command) -> None:
+    command("optimise", impossible_job, "--json")
+    command("submit", impossible_job)
     assert not runs.exists()
 
 
 @pytest.mark.parametrize("place", ["jobs", "check"])
 def test_the_api_answers_with_a_problem_of_the_type_infeasible(place: str, store: Store) -> None:
     with client_of(store) as client:
-        response = client.post(f"/{place}", json={"job": changed(**WISH)})
+        response = client.post(f"/{place}", json={"job": changed_job(**WISH)})
         assert SAID in refused(response, 422)
         assert response.json()["type"] == "infeasible"
-        wrong = client.post(f"/{place}", json={"job": changed(constraints={"strok": {"min": "90 mm"}})})
+        wrong = client.post(f"/{place}", json={"job": changed_job(constraints={"strok": {"min": "90 mm"}})})
         assert refused(wrong, 422)
         assert wrong.json()["type"] == "about:blank"
     assert store.jobs() == []
 
 
 def test_the_preview_says_which_mistakes_are_impossible_wishes(shared_preview: httpx.Client) -> None:
-    found = shared_preview.post("/preview", json={"job": changed(**WISH)}).json()["wrong"]
+    found = shared_preview.post("/preview", json={"job": changed_job(**WISH)}).json()["wrong"]
     assert [(one["path"], one["infeasible"]) for one in found] == [("constraints.time_ratio", True)]
     found = shared_preview.post("/preview", json={"job": CONTRADICTIONS["a quantity that is zero"][0]}).json()["wrong"]
     assert [(one["path"], one["infeasible"]) for one in found] == [("constraints.mean_torque", True)]
-    found = shared_preview.post("/preview", json={"job": changed(mechanism={"speed": "fast"})}).json()["wrong"]
+    found = shared_preview.post("/preview", json={"job": changed_job(mechanism={"speed": "fast"})}).json()["wrong"]
     assert [(one["path"], one["infeasible"]) for one in found] == [("mechanism.speed", False)]
 
 
@@ -245,15 +245,15 @@ def shared_preview(store: Store) -> Any:
 def test_the_client_tells_impossible_from_wrong(store: Store) -> None:
     with served(store) as address, Client(address) as client:
         with pytest.raises(InfeasibleError, match=SAID):
-            client.submit(changed(**WISH))
+            client.submit(changed_job(**WISH))
         with pytest.raises(InputError) as told:
-            client.submit(changed(mechanism={"speed": "fast"}))
+            client.submit(changed_job(mechanism={"speed": "fast"}))
         assert not isinstance(told.value, InfeasibleError)
 
 
 def test_a_worker_ends_a_job_that_is_found_impossible_as_infeasible(store: Store) -> None:
     """Jobs are checked when they are submitted; what an earlier release let through is found by its worker."""
-    job = store.submit(changed(**WISH), name="impossible")
+    job = store.submit(changed_job(**WISH), name="impossible")
     assert work(store, drain=True) == 1
     ended = store.job(job.id)
     assert ended.state == "infeasible"

@@ -1,4 +1,4 @@
-"""A machine whose only loads are torques on the crank, at every door."""
+"""A machine whose only loads are torques on the crank, through every interface."""
 
 from __future__ import annotations
 

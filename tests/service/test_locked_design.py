@@ -1,4 +1,4 @@
-"""A design that friction locks: what has no value says why, in Python, on the command line and over the API."""
+"""A design that friction locks: missing values have a reason, in Python, on the command line and in the API."""
 
 from __future__ import annotations
 

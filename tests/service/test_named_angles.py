@@ -1,4 +1,4 @@
-"""Crank angles by which analyses name a greatest value: of equal ones the first, in every place the same."""
+"""Crank angles reported for greatest values: of equal ones the first, the same in every analysis."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from slidercrank.service.topics.motor import analysis as motor
 TURN = 2.0 * math.pi
 
 
-def even(count: int, seed: int) -> tuple[Mechanism, Linkage]:
-    """Return cylinders in line, even crank angles, no gravity: their torque repeats itself and is its own mirror."""
+def even_engine(count: int, seed: int) -> tuple[Mechanism, Linkage]:
+    """Return in-line cylinders with evenly spaced cranks, no gravity: their torque is periodic and symmetric."""
     random = np.random.default_rng(seed)
     machine = Mechanism(
         speed=float(random.uniform(20.0, 200.0)),
@@ -52,7 +52,7 @@ def angle_of_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
 @pytest.mark.parametrize("count", range(1, 7))
 @pytest.mark.parametrize("seed", range(4))
 def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed: int) -> None:
-    machine, linkage = even(count, seed)
+    machine, linkage = even_engine(count, seed)
     size, most, least = (angle_of_greatest(machine, linkage, sign) for sign in (0, 1, -1))
     row = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
     together = cylinders.numbers(machine, linkage)
@@ -73,7 +73,7 @@ def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed:
 
 
 def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
-    machine, linkage = even(1, 3)
+    machine, linkage = even_engine(1, 3)
     expected = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))["peak_torque_angle_deg"][0]
     panel = next(panel for panel in cycle_curves(machine, linkage).panels if "torque" in panel.title)
     assert panel.lines[1].x == pytest.approx([expected], abs=1e-9)

@@ -1,4 +1,4 @@
-"""Names of files that the locale's encoding cannot read, or UTF-8 cannot write, at every door that takes a path."""
+"""File names that the locale cannot decode or UTF-8 cannot encode, in every interface that takes a path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Time of a cycle in place of a speed, at every door; and what else takes a time along a speed profile."""
+"""Cycle time in place of a speed, in every interface; and other times along a speed profile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Loads that change within a hair's breadth: what rounding leaves of a position is then much of the load."""
+"""Loads that change over a tiny distance, where rounding of a position changes the load considerably."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> N
     mean = average_torque(machine, DESIGN, gradients=True)
     several = whole_cycle(replace(machine, arrangement=Arrangement(phases=(0.0, math.pi))), LINKAGE)
     uneven = uneven_cycle(machine, LINKAGE)
-    # They take a quarter of a second; panels halved down to rounding take minutes, or never end.
+    # They take a quarter of a second; halving panels down to rounding takes minutes or never ends.
     assert time.process_time() - before < 10.0
     assert found.useful == pytest.approx(WORK, rel=1e-9)
     assert found.input == pytest.approx(found.useful + found.heat, rel=1e-9)

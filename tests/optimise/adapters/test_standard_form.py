@@ -127,7 +127,7 @@ def test_what_has_no_standard_form_is_refused() -> None:
         sc.standard_form(several(), elimination_branch=0)
 
 
-def both_sides() -> sc.Problem:
+def press_with_offsets_of_both_signs() -> sc.Problem:
     """A press with offsets of either sign. Its least torques are those of 1,000 random designs on each side."""
     tables = {
         "name": "Press",
@@ -141,7 +141,7 @@ def both_sides() -> sc.Problem:
 
 
 def test_equalities_have_a_form_for_each_sign_of_the_offset_as_the_message_says() -> None:
-    stated = both_sides()
+    stated = press_with_offsets_of_both_signs()
     said = r"got None of 2 \(0: offset above 0; 1: offset below 0\); .* elimination_branch=0 to 1"
     with pytest.raises(InputError, match=said):
         sc.standard_form(stated, eliminate=True)
