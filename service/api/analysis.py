@@ -174,7 +174,7 @@ def show_curves(
     design: DesignNumber,
     angles: Annotated[
         int,
-        Query(ge=LEAST, le=MOST, description="how many crank angles, evenly spaced; of a swing times"),
+        Query(ge=LEAST, le=MOST, description="number of evenly spaced crank angles, or of times for a swing"),
         PLAIN_DIGITS,
     ] = 360,
 ) -> CurvesModel:

@@ -195,8 +195,8 @@ def list_designs(
     ] = None,
     reverse: Annotated[bool, Query(description="turn the order round")] = False,
     columns: Columns = None,
-    offset: Annotated[int, Query(ge=0, le=2**31, description="pass over so many designs"), PLAIN_DIGITS] = 0,
-    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most so many designs"), PLAIN_DIGITS] = 100,
+    offset: Annotated[int, Query(ge=0, le=2**31, description="skip this many designs"), PLAIN_DIGITS] = 0,
+    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most this many designs"), PLAIN_DIGITS] = 100,
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = found.result

@@ -81,9 +81,9 @@ def list_jobs(
     state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
     name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
     before: Annotated[
-        int | None, Query(ge=1, le=LARGEST, description="older than the job of this number"), PLAIN_DIGITS
+        int | None, Query(ge=1, le=LARGEST, description="older than the job with this number"), PLAIN_DIGITS
     ] = None,
-    limit: Annotated[int, Query(ge=1, le=1000, description="at most so many"), PLAIN_DIGITS] = 100,
+    limit: Annotated[int, Query(ge=1, le=1000, description="at most this many jobs"), PLAIN_DIGITS] = 100,
 ) -> dict[str, Any]:
     """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)

@@ -294,8 +294,8 @@ def _rule(constraint: Constraint, problem: Problem, *, own: bool = False) -> str
     asked = " and ".join(f"{word} {shown(end)}" for word, end in ends if end is not None)
     if own:
         replaces = of.floor is not None and constraint.lower is not None and constraint.lower < of.floor
-        return f"{of.title} {asked}" + (f" (in place of a default of {shown(of.floor or 0.0)})" if replaces else "")
-    return f"{of.title} {asked} (a default, since the job sets none)"
+        return f"{of.title} {asked}" + (f" (replaces the default of {shown(of.floor or 0.0)})" if replaces else "")
+    return f"{of.title} {asked} (default, as the job sets none)"
 
 
 def _floors(problem: Problem) -> list[dict[str, Any]]:

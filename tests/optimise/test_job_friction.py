@@ -98,7 +98,7 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
     low = job(constraints={"self_locking_margin": {"max": "4 deg"}})
     assert floors(low)[0].lower == pytest.approx(math.radians(2.0))
     rules = summarise(job())["rules"]
-    assert "self-locking margin at least 5 deg (a default, since the job sets none)" in rules
+    assert "self-locking margin at least 5 deg (default, as the job sets none)" in rules
     assert any(
         "friction in the crank pin: radius 10 mm, coefficient 0.08" in line for line in summarise(job())["given"]
     )
@@ -109,7 +109,7 @@ def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_
     assert [c for c in constraints_of(off) if c.quantity == "self_locking_margin"] == list(off.constraints)
     assert off.constraints[0].lower == 0.0
     told = summarise(off)
-    assert "self-locking margin at least 0 deg (in place of a default of 5 deg)" in told["rules"]
+    assert "self-locking margin at least 0 deg (replaces the default of 5 deg)" in told["rules"]
     floors = {item["quantity"]: item for item in told["floors"]}
     assert floors["self_locking_margin"] == {
         "quantity": "self_locking_margin",

@@ -69,7 +69,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         "peak_torque_Nm": f"{one:.6g} of the first alone",
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
         "mean_torque_Nm": "over the crank angle",
-        "rms_torque_Nm": "over time: what heats the motor",
+        "rms_torque_Nm": "over time, heats the motor",
         "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
         "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
         "peak_shaking_force_N": f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone",

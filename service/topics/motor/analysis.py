@@ -79,7 +79,7 @@ def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
     remarks = {
-        "rms_torque_Nm": "over time: what heats the motor",
+        "rms_torque_Nm": "over time, heats the motor",
         "mean_torque_Nm": "over the crank angle",
         "mean_power_W": "over time",
         "mean_reflected_inertia_kg_m2": "over the crank angle",
