@@ -36,13 +36,19 @@ __all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "pa
 
 
 def load_job(
-    path: str | PathLike[str], values: Mapping[str, Any] | None = None, *, allow_user_code: bool = True
+    path: str | PathLike[str],
+    values: Mapping[str, Any] | None = None,
+    *,
+    allow_user_code: bool = True,
+    require_feasible: bool = True,
 ) -> Problem:
     """Return the problem that a job file states, .toml or .json.
 
     values: numbers to put in place of those that the file gives, by their paths ("mechanism.slider.mass").
     allow_user_code: whether a job may name functions of its own ([quantity]); they run when the problem is solved, with
     all that the user may do. Refuse them in jobs of others.
+    require_feasible: whether a job that no design can meet is refused. A search needs that; to look at a given design
+    it does not matter. A least above the greatest value of one formula is always refused.
 
     Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
     schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
@@ -51,7 +57,13 @@ def load_job(
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
     data = read_job(path)
     with _named(path):
-        return parse_job(data, values, folder=path_from_text(path).parent, allow_user_code=allow_user_code)
+        return parse_job(
+            data,
+            values,
+            folder=path_from_text(path).parent,
+            allow_user_code=allow_user_code,
+            require_feasible=require_feasible,
+        )
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
@@ -93,10 +105,11 @@ def parse_job(
     *,
     folder: Path | None = None,
     allow_user_code: bool = True,
+    require_feasible: bool = True,
 ) -> Problem:
     """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`.
 
-    folder: where the modules of its own functions lie, besides the working directory.
+    folder: where the modules of its own functions lie, besides the working directory. The rest is as for `load_job`.
     """
     require_plain(data)
     own = declared(data, allowed=allow_user_code)
@@ -104,7 +117,7 @@ def parse_job(
     try:
         stated = job.model_validate(data)
         stated = with_values(stated, values, "values") if values else stated
-        return problem_of(stated, folder=folder, installed=own.installed)
+        return problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
     except ValidationError as error:
         found = explain(error, _schema() if job is Job else schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
@@ -119,7 +132,7 @@ def parse_job(
 
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
-    load_job(path)  # tells what is wrong with the file, if anything is
+    load_job(path, require_feasible=False)  # tells what is wrong with the file, if anything is
     data = read_job(path)
     part = job_with(declared(data, allowed=True)).model_validate(data).sections
     with _named(path):

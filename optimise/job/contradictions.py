@@ -42,8 +42,8 @@ def require_consistent(problem: Problem) -> None:
         _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
-    require_ranking(problem)
     _require_one_density(problem)
+    require_ranking(problem)
     require_room_for_pins(problem)
     if problem.motion is not None:
         require_swinging(problem)

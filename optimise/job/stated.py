@@ -26,10 +26,13 @@ from .target_motion import require_target
 from .varying import discrete_of, ends_of, is_choice, reach_of, variants_of, varying_machine
 
 
-def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = ()) -> Problem:
-    """Return the problem that a job states. Raises JobError; `InfeasibleError` if no design can meet it.
+def problem_of(
+    job: Job, *, folder: Path | None = None, installed: tuple[Quantity, ...] = (), require_feasible: bool = True
+) -> Problem:
+    """Return the problem that a job states. Raises JobError.
 
-    folder: where the modules of its functions lie. installed: quantities of packages that it names.
+    folder: where the modules of its functions lie. installed: quantities of packages that it names. require_feasible:
+    whether `InfeasibleError` is raised if no design can meet the job; a search needs that, a given design does not.
     """
     variables = job.variables
     require_target(job.target_motion, job.objectives, job.constraints)
@@ -52,6 +55,10 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
     variants, left_out = _possible(variants, constraints, (*own, *formulas.made.values()))
+    if choices and not variants:
+        if require_feasible:
+            raise _no_option(left_out)
+        choices = ()  # what a design is judged by does not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
     problem = Problem(
@@ -77,8 +84,9 @@ def problem_of(job: Job, *, folder: Path | None = None, installed: tuple[Quantit
         require_consistent(problem)
         require_meetable(problem)
     except InfeasibleError as error:
-        error.problem = problem
-        raise
+        if require_feasible:
+            error.problem = problem
+            raise
     require_fit(problem)
     return robustly(problem, job.robust)
 
@@ -118,22 +126,22 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
 def _possible(
     variants: tuple[Variant, ...], constraints: tuple[Constraint, ...], own: Iterable[Quantity]
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
-    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
-
-    Raises `InfeasibleError` if there is none.
-    """
+    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not."""
     known = QUANTITIES | {of.name: of for of in own}
     reasons = [_contradiction(variant, constraints, known) for variant in variants]
     left_out = tuple(
         (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
     )
-    if variants and len(left_out) == len(variants):
-        label, why = left_out[0]
-        raise InfeasibleError(
-            f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
-            "the two"
-        )
     return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
+
+
+def _no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
+    """Return the error for choices whose options all are left out. left_out: labels and reasons."""
+    label, why = left_out[0]
+    return InfeasibleError(
+        f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
+        "the two"
+    )
 
 
 def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:

@@ -17,13 +17,15 @@ from ..problem.problem import Problem
 from . import parse_job, with_files
 
 
-def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None = None) -> Problem:
+def problem(
+    tables: Mapping[str, object], *, folder: str | PathLike[str] | None = None, require_feasible: bool = True
+) -> Problem:
     """Return the problem that the tables of a job file state, given as a dict.
 
     Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays will do. The function of
     a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this
     process, without a time limit. folder: where the files lie that the tables name, such as catalogues, the working
-    directory if left out; modules named by text may lie in either.
+    directory if left out; modules named by text may lie in either. require_feasible: as for `load_job`.
     Raises `JobError`, naming key, rule, value and remedy, like `load_job`.
 
     >>> from slidercrank import problem
@@ -52,7 +54,9 @@ def problem(tables: Mapping[str, object], *, folder: str | PathLike[str] | None 
                 given[name] = part["function"]
                 part["function"] = "given:function"  # in the place of a name, for the validation
     found = parse_job(
-        with_files(data, Path() if folder is None else Path(folder)), folder=None if folder is None else Path(folder)
+        with_files(data, Path() if folder is None else Path(folder)),
+        folder=None if folder is None else Path(folder),
+        require_feasible=require_feasible,
     )
     return replace(found, own=tuple(_with(item, given) for item in found.own)) if given else found
 

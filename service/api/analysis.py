@@ -187,7 +187,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
     topics = chosen_topics(asked.show, job=True)
     with READING:
-        problem = given_problem(asked.job, settings.allowed_quantities, asked.values)
+        problem = given_problem(asked.job, settings.allowed_quantities, asked.values, require_feasible=False)
     require_turning(problem, "an analysis")
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:

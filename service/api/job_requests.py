@@ -158,15 +158,20 @@ def require_no_file(tables: Mapping[str, Any]) -> None:
 
 
 def given_problem(
-    tables: Mapping[str, Any], allowed: Collection[str], values: Mapping[str, Any] | None = None
+    tables: Mapping[str, Any],
+    allowed: Collection[str],
+    values: Mapping[str, Any] | None = None,
+    *,
+    require_feasible: bool = True,
 ) -> Problem:
     """Return the problem that a job states.
 
     allowed: functions, "module:function", that it may name as quantities. values: numbers to put in place of those
-    that it gives, by their paths. Raises `JobError`, also for a job that names a file.
+    that it gives, by their paths. require_feasible: whether a job that no design can meet is refused. Raises
+    `JobError`, also for a job that names a file.
     """
     require_no_file(tables)
-    return bounded(parse_allowed(tables, allowed, values), LONGEST_ANSWER)
+    return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_ANSWER)
 
 
 def merged(value: Any, changes: Any) -> Any:

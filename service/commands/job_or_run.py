@@ -62,16 +62,22 @@ def machine_of(
 
 
 def turning_problem(job: Path, command: str) -> Problem:
-    """Return the problem of a job file. Raises `InputError` for a crank that swings, in the words of a command."""
+    """Return the problem of a job file, to look at a given design, which need not be able to meet the job.
+
+    Raises `InputError` for a crank that swings, in the words of a command.
+    """
     from ...optimise.job import load_job
 
-    problem = load_job(job)
+    problem = load_job(job, require_feasible=False)
     require_turning(problem, command)
     return problem
 
 
 def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
-    """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job."""
+    """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job.
+
+    A given design is looked at, so that some design need not be able to meet the job.
+    """
     if job is None:
         if put:
             raise InputError("--set changes a number of a job; got none; give a JOB")
@@ -87,7 +93,7 @@ def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
             raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
         number = plain_number(value)
         values[path] = value if number is None else number
-    return load_job(job, values)
+    return load_job(job, values, require_feasible=False)
 
 
 def design_of_run(

@@ -26,11 +26,16 @@ LONGEST_ANSWER = 10.0
 
 
 def parse_allowed(
-    tables: Mapping[str, Any], allowed: Collection[str], values: Mapping[str, Any] | None = None
+    tables: Mapping[str, Any],
+    allowed: Collection[str],
+    values: Mapping[str, Any] | None = None,
+    *,
+    require_feasible: bool = True,
 ) -> Problem:
     """Return the problem that a job states whose functions, "module:function", are all of `allowed`; none is called.
 
-    values: numbers to put in place of those that it gives, by their paths. Raises `JobError`.
+    values: numbers to put in place of those that it gives, by their paths. require_feasible: whether a job that no
+    design can meet is refused. Raises `JobError`.
     """
     from ...optimise.job import parse_job
     from ...optimise.job.file import require_plain
@@ -39,7 +44,7 @@ def parse_allowed(
     for name, function in functions_of(tables).items():
         if function not in allowed:
             raise _refused(name, function, allowed)
-    return parse_job(tables, values)
+    return parse_job(tables, values, require_feasible=require_feasible)
 
 
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,12 +12,16 @@ from typing import Any
 import httpx
 import pytest
 
+import slidercrank as sc
 from slidercrank.model.errors import InfeasibleError, InputError, JobError
+from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.client import Client
+from slidercrank.service.designs.requirements import judged
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder
 from slidercrank.service.store import Store
+from slidercrank.service.topics.design_analysis import numbers_of
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.api.fixed_front import served
@@ -28,15 +33,13 @@ SIZE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
 WISH = {"constraints": {"time_ratio": {"min": 1.5}, "transmission_angle": {"min": "40 deg"}}}
 """The two requirements of the README that exclude each other."""
 SAID = "with a least transmission angle of 40 deg"
-OF_JOBS = (
-    ("optimise",),
-    ("check",),
-    ("submit",),
+OF_JOBS = ("optimise", "check", "submit")
+OF_DESIGNS = (
     ("analyse", *SIZE),
     ("sweep", "--over", "offset=0 mm..20 mm:3", "--of", "stroke", *SIZE[:4]),
-    ("balance", *SIZE),
+    pytest.param(("balance", *SIZE), marks=pytest.mark.slow),
     ("allocate", "--limit", "0.1 mm", *SIZE),
-    ("sections", *SIZE),
+    pytest.param(("sections", *SIZE), marks=pytest.mark.slow),
     ("inverse", "--slider-position", "240 mm", *SIZE),
 )
 OF_RUNS = (
@@ -48,6 +51,25 @@ OF_RUNS = (
     ("like", "1", "--where", "peak_torque <= 1 N m"),
     ("compare", "nothing"),
 )
+
+
+OF_TOPICS: dict[str, Any] = {
+    "tolerances": {"crank": "0.02 mm", "rod": "0.05 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
+    "costs": {name: {"cost": 8.0, "at": "0.05 mm"} for name in ("crank", "rod", "offset")}
+    | {"crank_angle": {"cost": 10.0, "at": "0.1 deg"}},
+    "sections": {
+        "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
+        "material": {
+            "density": "7800 kg/m^3",
+            "elasticity": "207 GPa",
+            "yield_strength": "350 MPa",
+            "ultimate_strength": "520 MPa",
+            "endurance": "150 MPa",
+            "bearing_pressure": "20 MPa",
+        },
+    },
+}
+"""What `balance`, `allocate` and `sections` need besides a machine."""
 
 
 def changed_job(**tables: Any) -> dict[str, Any]:
@@ -168,16 +190,15 @@ def run_without_designs(runs: Path) -> str:
     return run.path.name
 
 
-@pytest.mark.parametrize("arguments", OF_JOBS, ids=lambda arguments: arguments[0])
-def test_commands_that_take_an_impossible_job_end_with_3_and_its_json(
-    arguments: tuple[str, ...], impossible_job: Path, run_without_designs: str, command: Command
+@pytest.mark.parametrize("name", OF_JOBS)
+def test_commands_that_search_end_with_3_and_its_json_for_an_impossible_job(
+    name: str, impossible_job: Path, run_without_designs: str, command: Command
 ) -> None:
     """The JSON has the keys of a run that found nothing."""
-    name, *rest = arguments
-    done = command(name, impossible_job, *rest) if name != "inverse" else command(name, *rest, impossible_job)
+    done = command(name, impossible_job)
     assert (done.exit_code, done.stdout) == (3, "")
     assert SAID in done.stderr
-    done = command(*(name, impossible_job, *rest) if name != "inverse" else (name, *rest, impossible_job), "--json")
+    done = command(name, impossible_job, "--json")
     assert done.exit_code == 3
     record = json.loads(done.stdout)
     assert record.keys() == json.loads(command("front", run_without_designs, "--json").stdout).keys()
@@ -185,6 +206,56 @@ def test_commands_that_take_an_impossible_job_end_with_3_and_its_json(
     assert SAID in record["message"]
     assert [item["quantity"] for item in record["objectives"]] == ["time_ratio", "transmission_angle"]
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("arguments", OF_DESIGNS, ids=lambda arguments: arguments[0])
+def test_commands_on_a_given_design_give_the_same_for_a_job_that_no_design_can_meet(
+    arguments: tuple[str, ...], tmp_path: Path, command: Command
+) -> None:
+    """Only the rules that the design misses differ, and they are no part of the comparison."""
+    name, *rest = arguments
+    found = []
+    for title, tables in (("possible", changed_job(**OF_TOPICS)), ("impossible", changed_job(**OF_TOPICS, **WISH))):
+        file = tmp_path / f"{title}.json"
+        file.write_text(json.dumps(tables), encoding="utf-8")
+        done = command(*(name, file, *rest) if name != "inverse" else (name, *rest, file), "--json")
+        record = json.loads(done.stdout) if done.stdout else None
+        found.append((done.exit_code, {**record, "rules": 0} if isinstance(record, dict) else record, done.stderr))
+    assert [(code, record) for code, record, _ in found[1:]] == [found[0][:2]]
+    assert (found[1][0], SAID in found[1][2]) == (0, False)
+
+
+@pytest.mark.parametrize("kind", sorted({*CONTRADICTIONS} - {"one formula written twice"}))
+def test_a_design_of_an_impossible_job_is_analysed(kind: str) -> None:
+    """The job must only say what machine it is. One formula with a least above its greatest value says nothing."""
+    tables, _ = CONTRADICTIONS[kind]
+    if kind == "a swing that no design makes":
+        swing = parse_job(tables, require_feasible=False).swing([0.1, 0.3, 0.0])
+        assert swing.swing_angle == pytest.approx(math.radians(160.0))
+        return
+    problem = parse_job(tables, require_feasible=False)
+    assert problem.parts()[0].analyse([0.14, 0.31, 0.06])["time_ratio"] > 1.0
+    row = numbers_of(problem.mechanism.nominal, Linkage(0.14, 0.31, 0.06), problem.own)
+    assert judged(problem, row)
+
+
+def test_analyse_says_which_requirements_of_an_impossible_job_a_design_misses(
+    impossible_job: Path, command: Command
+) -> None:
+    done = command("analyse", impossible_job, *SIZE)
+    assert done.exit_code == 0
+    assert "Not met:" in done.stdout
+    rules = json.loads(command("analyse", impossible_job, *SIZE, "--json").stdout)["rules"]
+    assert {rule["quantity"] for rule in rules if not rule["met"]} >= {"time_ratio"}
+
+
+def test_python_reads_an_impossible_job_to_look_at_its_designs(impossible_job: Path) -> None:
+    with pytest.raises(InfeasibleError):
+        sc.load_job(impossible_job)
+    from_file = sc.load_job(impossible_job, require_feasible=False)
+    from_tables = sc.problem(changed_job(**WISH), require_feasible=False)
+    size = [0.14, 0.31, 0.06]
+    assert from_file.analyse(size)["time_ratio"] == from_tables.analyse(size)["time_ratio"] > 1.0
 
 
 @pytest.mark.parametrize("arguments", OF_RUNS, ids=lambda arguments: arguments[0])
@@ -208,10 +279,37 @@ def test_commands_that_take_a_run_without_designs_end_with_3_and_its_json(
     assert "nothing meets it" in record["message"]
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("front", "latest", "--where", "stroke <= 100 mm"), {"status": "done", "designs": []}),
+        (("round", "latest", "3", "--to", "50 mm"), {"met": False}),
+        (("like", "latest", "3", "--where", "crank >= 201 mm"), {"status": "infeasible"}),
+    ],
+    ids=lambda part: part[0] if isinstance(part, tuple) else "",
+)
+def test_commands_on_a_finished_run_answer_with_their_own_json_and_3(
+    arguments: tuple[str, ...], said: dict[str, Any], kept: Path, command: Command
+) -> None:
+    done = command(*arguments, "--runs", kept, "--json")
+    assert done.exit_code == 3
+    record = json.loads(done.stdout)
+    assert {key: record[key] for key in said} == said
+    assert done.stderr.startswith("slidercrank: no")
+
+
 def test_an_impossible_job_leaves_no_run_and_no_job(impossible_job: Path, runs: Path, command: Command) -> None:
     command("optimise", impossible_job, "--json")
     command("submit", impossible_job)
     assert not runs.exists()
+
+
+def test_the_api_analyses_a_design_of_an_impossible_job(store: Store) -> None:
+    size = {"crank": "140 mm", "rod": "310 mm", "offset": "60 mm"}
+    with client_of(store) as client:
+        found = [client.post("/analyse", json={"job": job, **size}) for job in (SMALL, changed_job(**WISH))]
+    assert [response.status_code for response in found] == [200, 200]
+    assert found[0].json() == found[1].json()
 
 
 @pytest.mark.parametrize("place", ["jobs", "check"])
