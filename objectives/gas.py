@@ -9,6 +9,7 @@ from typing import Any
 
 from ..model.cycle.gas_cycle import GasCycle, gas_cycle
 from ..model.machine.mechanism import Mechanism
+from .energy import EFFICIENCY
 from .kinds import ENERGY, PRESSURE, RATIO, VOLUME
 from .needs import COMPRESSOR, CYLINDER
 from .quantity import Array, Domain, Group, Quantity, Values, undefined
@@ -66,7 +67,7 @@ INDICATED_WORK = _gas(
     example="-60 J",
     better="high",
     signed=True,
-    instead_of_quotient="efficiency",
+    instead_of_quotient=EFFICIENCY.name,
 )
 MEAN_EFFECTIVE_PRESSURE = _gas(
     name="mean_effective_pressure",

@@ -183,8 +183,8 @@ class Equation:
         inertia = self.inertia(angles) + added
         if not inertia.min() > 1e-6 * inertia.max():
             raise InputError(
-                "forward dynamics needs an inertia at every crank angle, also at the dead centres where the slider "
-                f"stands; got {inertia.min():.3g} kg m^2 at least; give the crank a mass, or the drive a flywheel"
+                "the crank needs inertia at every angle, also at the dead centres where the slider stands; got none "
+                "there; give the crank a mass, or the drive a flywheel"
             )
         if self.rubs:
             left = self.least_inertia(angles) + added

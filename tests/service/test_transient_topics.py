@@ -111,11 +111,11 @@ def test_a_machine_without_inertia_has_a_flywheel_and_the_reason_why_it_has_no_s
     numbers = flywheel.numbers(machine, Linkage(0.06, 0.3, 0.0), fluctuation=0.4)
     assert numbers["flywheel_kgm2"] == pytest.approx(numbers["classical_estimate_kgm2"], rel=0.1)
     assert numbers["fluctuation_without_flywheel"] is numbers["least_speed_without_flywheel_rpm"] is None
-    assert numbers["reason_without_flywheel"].startswith("forward dynamics needs an inertia at every crank angle")
+    assert numbers["reason_without_flywheel"].startswith("the crank needs inertia at every angle")
     json.dumps(numbers, allow_nan=False)
     stream = io.StringIO()
     flywheel.show(Console(file=stream, width=400), numbers)
-    assert "without one no steady running was found: forward dynamics needs an inertia" in stream.getvalue()
+    assert "without one no steady running was found: the crank needs inertia" in stream.getvalue()
 
 
 def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> None:

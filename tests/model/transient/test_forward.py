@@ -243,7 +243,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         simulate(SMOOTH, LINKAGE, duration=1.0)
     with pytest.raises(InputError, match="state must be finite; got angle nan rad"):
         State(angle=math.nan)
-    with pytest.raises(InputError, match="needs an inertia at every crank angle, also at the dead centres"):
+    with pytest.raises(InputError, match="the crank needs inertia at every angle, also at the dead centres"):
         simulate(Mechanism(slider_mass=1.0), LINKAGE, COAST, duration=1.0)
     with pytest.raises(AssemblyError, match="for full rotation"):
         simulate(SMOOTH, Linkage(0.25, 0.3, 0.1), MOTOR, duration=1.0)

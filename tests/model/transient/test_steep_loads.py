@@ -87,7 +87,7 @@ def test_the_flywheel_of_a_press_is_that_of_its_energies_on_few_panels(
 
 def test_without_any_inertia_there_are_no_speeds_and_it_is_said_why() -> None:
     for slider in (0.0, 50.0):  # that stands still at the dead centres
-        with pytest.raises(InputError, match="needs an inertia at every crank angle"):
+        with pytest.raises(InputError, match="the crank needs inertia at every angle"):
             Runner(replace(PRESS, slider_mass=slider), LINKAGE).speeds(0.0)
 
 
