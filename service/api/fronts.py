@@ -11,7 +11,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import to_json
 
-from ...model.errors import InputError, NotFound
+from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
@@ -177,11 +177,11 @@ def pick_design(
     if not (knee or topsis is not None or lexicographic is not None):
         raise InputError("a design is chosen by knee, topsis or lexicographic; got none of them; give one")
     if not result.designs:
-        raise NotFound(result.message)
+        raise InfeasibleError(result.message)
     rows = chosen_rows(result, where)
     row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
-        raise NotFound(none_meets(result, where))
+        raise InfeasibleError(none_meets(result, where))
     return PickedModel(job=found.job.id, number=row + 1, design=json_ready(result.designs[row]))
 
 

@@ -141,7 +141,7 @@ def test_a_pick_is_that_of_the_command_line(
         ("pick?topsis=rod%3D1", ("--topsis", "rod=1"), 422),
         ("pick?knee&topsis=time_ratio%3D1", ("--knee", "--topsis", "time_ratio=1"), 422),
         ("pick?lexicographic=time_ratio:", ("--lexicographic", "time_ratio:"), 422),
-        ("pick?knee&where=time_ratio > 99", ("--knee", "--where", "time_ratio > 99"), 404),
+        ("pick?knee&where=time_ratio > 99", ("--knee", "--where", "time_ratio > 99"), 422),
     ],
 )
 def test_what_is_refused_is_told_in_the_words_of_the_command_line(
@@ -150,6 +150,15 @@ def test_what_is_refused_is_told_in_the_words_of_the_command_line(
     answer = client.get(f"{solved.path}/{path}")
     assert (answer.status_code, answer.headers["content-type"]) == (status, "application/problem+json")
     assert answer.json()["detail"] == refused(solved, *arguments)
+
+
+def test_conditions_that_no_design_meets_are_infeasible_and_wrong_ones_are_not(
+    solved: Solved, client: httpx.Client
+) -> None:
+    """The command line ends with 3 for the first and with 2 for the second."""
+    for where, kind in (("time_ratio > 99", "infeasible"), ("transmission_angle > 45", "about:blank")):
+        answer = client.get(f"{solved.path}/pick?knee&where={where}")
+        assert (answer.status_code, answer.json()["type"]) == (422, kind)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +219,8 @@ def test_a_front_without_designs_says_why(solved: Solved, store: Store, empty: h
     assert client.get(f"{path}/designs?where=crank > 1 mm&sort=rod").json()["designs"] == []
     assert client.get(f"{path}/figures").json()["figures"] == []
     picked = client.get(f"{path}/pick?knee")
-    assert (picked.status_code, picked.json()["detail"]) == (404, "no design meets all")
+    assert (picked.status_code, picked.json()["detail"]) == (422, "no design meets all")
+    assert picked.json()["type"] == "infeasible"
     assert client.get(f"{path}/designs/1").status_code == 404
     assert client.get(f"{path}/export.csv").text == ""
 
