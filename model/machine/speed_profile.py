@@ -96,7 +96,8 @@ class Harmonics:
     @property
     def text(self) -> str:
         """The profile in a few words."""
-        return f"{max(len(self.cosines), len(self.sines))} harmonics of the crank angle"
+        count = len(self.pairs)
+        return f"{count} {'harmonic' if count == 1 else 'harmonics'} of the crank angle"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -255,6 +255,11 @@ def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
     if branch is None and len(found) == 1:
         branch = 0
     if isinstance(branch, bool) or not isinstance(branch, int) or not 0 <= branch < len(found):
+        if len(found) == 1:
+            raise InputError(
+                f"eliminating equalities gives one branch here, 0; got elimination_branch={branch!r}; leave "
+                "elimination_branch out"
+            )
         several = "; ".join(f"{place}: offset {_side(sheet)}" for place, sheet in enumerate(found))
         raise InputError(
             f"eliminating equalities needs one of their branches; got {branch!r} of {len(found)} ({several}); make a "

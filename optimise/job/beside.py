@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Sequence
 from pathlib import Path, PurePath
 
@@ -10,6 +11,8 @@ from ...model.errors import JobError
 from ...model.file_names import path_from_text
 from ...objectives.units import shown
 
+MOST_POINTS = 1000
+"""Points of a curve over the crank angle, in a job or in a file."""
 _LARGEST = 1_000_000  # bytes
 
 
@@ -18,6 +21,15 @@ def beside(folder: Path, key: str, file: str) -> tuple[Path, str]:
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
         raise JobError(f"{key}: must lie beside the job file; got {shown(file)}; copy it there")
     return folder / path_from_text(file), f"{key}: {shown(file)}"
+
+
+def require_few_points(count: int, name: str, of: str = "") -> None:
+    """Raise `JobError` for more points than a job takes. name: of the file, for messages. of: what has the points."""
+    if count > MOST_POINTS:
+        raise JobError(
+            f"{name} must have at most {MOST_POINTS:,} points{of}; got {count:,}; thin it out: keep one line in "
+            f"{math.ceil(count / MOST_POINTS)}, and the last one"
+        )
 
 
 def table_of(path: Path, name: str, headers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], list[list[str]]]:

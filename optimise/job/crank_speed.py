@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, model_validator
+from pydantic import model_validator
 
 from ...model.errors import InputError
 from ...model.machine.speed_profile import SpeedTable
-from ...objectives.kinds import TIME
+from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
+from ...objectives.units import shown
 from .speed_profile import SpeedProfilePart
-from .values import AngularAcceleration, AngularSpeed, Part, StrokeRate, Within, optional
+from .values import AngularAcceleration, Part, Within, optional
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
@@ -21,36 +22,57 @@ TIME_KEYS = SPEED_KEYS[1:]
 _RPM = 30.0 / math.pi
 
 
-_CYCLE_TIME = Within(
-    TIME,
+_FASTEST, _SLOWEST = 2e-5, TIME.limit
+"""s, of a turn: the limits of all three keys."""
+_HINT = "others are beyond any machine; check the unit"
+_ROUNDING = 1e-12  # relative, of a speed in rpm
+_CYCLE_TIME = Within(TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, most=_SLOWEST)
+_STROKES = Within(
+    STROKE_RATE,
     "positive",
-    rule="a time from 20 us to 1e9 s",
-    hint="a shorter one is beyond any machine; check the unit",
-    least=2e-5,
-    most=TIME.limit,
+    rule="a number from 6e-8 to 3e6",
+    hint=_HINT,
+    least=6e-8,
+    most=3e6,
 )
 
 
-def _turning(speed: float) -> float:
-    if speed == 0.0:
-        raise InputError(
-            "must not be 0, because its sign says which way the crank turns; got 0; "
-            'give a very slow machine a small speed, for example "0.1 rpm"'
-        )
-    return speed
+class _CrankSpeed(Within):
+    """Marks a crank speed: either way, within the limits of a turn's time."""
+
+    def read(self, value: object) -> float:
+        """Return the value in rad/s; raises InputError."""
+        found = super().read(value)
+        if found == 0.0:
+            raise InputError(
+                "must not be 0, because its sign says which way the crank turns; got 0; "
+                'give a very slow machine a small speed, for example "0.1 rpm"'
+            )
+        if abs(found) < 2.0 * math.pi / _SLOWEST * (1.0 - _ROUNDING):
+            raise InputError(f"must be {self.rule}; got {shown(value)}; {self.hint}")
+        return found
+
+
+_SPEED = _CrankSpeed(
+    ANGULAR_SPEED,
+    rule="a speed from 6e-8 to 3e6 rpm, either way",
+    hint=_HINT,
+    least=-2.0 * math.pi / _FASTEST * (1.0 + _ROUNDING),
+    most=2.0 * math.pi / _FASTEST * (1.0 + _ROUNDING),
+)
 
 
 class CrankSpeedPart(Part):
     """Crank speed and its variation over the turn."""
 
-    speed: Annotated[AngularSpeed, AfterValidator(_turning)] | None = optional(
+    speed: Annotated[float, _SPEED] | None = optional(
         "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
         "300 rpm",
     )
     cycle_time: Annotated[float, _CYCLE_TIME] | None = optional(
         "instead of speed: time of one cycle, which is one turn, or two if a load has a cycle of 720 deg", "2 s"
     )
-    strokes_per_minute: StrokeRate | None = optional("instead of speed: crank turns per minute", 30)
+    strokes_per_minute: Annotated[float, _STROKES] | None = optional("instead of speed: crank turns per minute", 30)
     direction: Direction | None = optional(
         "of crank rotation, with cycle_time or strokes_per_minute; counter-clockwise if left out", "clockwise"
     )

@@ -7,6 +7,7 @@ from typing import Any
 
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import closest
+from .crank_speed import SPEED_KEYS
 from .values import Part
 
 
@@ -23,7 +24,15 @@ def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[st
 
 
 def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
-    """Return in words that the tables of a job give no number at a path."""
+    """Return in words that the tables of a job give no number at a path, or state the crank speed by another key."""
+    table, _, key = path.partition(".")
+    given = tables.get(table)
+    other = [one for one in SPEED_KEYS if one in given] if isinstance(given, Mapping) and key in SPEED_KEYS else []
+    if table == "mechanism" and other:
+        return (
+            f"must name a number that the job gives; got {path}, but the job gives mechanism.{other[0]}; give {key} in "
+            f"[mechanism] in place of {other[0]}"
+        )
     near = closest(path, [known for known, value in _given(tables, "") if _is_plain(value)])
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"

@@ -57,8 +57,8 @@ class Bounds(Part):
 
 def _crossed(given: Mapping[Any, object]) -> str:
     return (
-        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}, which no design can "
-        "meet; swap the two or leave out one"
+        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}; swap the two or leave "
+        "out one"
     )
 
 

@@ -14,12 +14,11 @@ from pydantic import Field
 from ...model.errors import InputError, JobError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.units import shown
-from .beside import beside, table_of
+from .beside import MOST_POINTS, beside, require_few_points, table_of
 from .values import Angle, AngularSpeed, Checked, Number, optional
 
 HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
 """First line of a file of speeds."""
-_MOST = 1000
 _TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
 
 
@@ -53,12 +52,12 @@ class SpeedProfilePart(Checked[Profile]):
     crank_angles: tuple[Angle, ...] | None = optional(
         "crank angles of points, increasing, spanning less than 360 deg; a periodic cubic spline joins them",
         ["0 deg", "90 deg", "180 deg", "270 deg"],
-        max_length=_MOST,
+        max_length=MOST_POINTS,
     )
     speeds: tuple[AngularSpeed, ...] | None = optional(
         "speed at each point, with the sign of the direction; only the shape counts if a cycle time is given",
         ["300 rpm", "290 rpm", "310 rpm", "300 rpm"],
-        max_length=_MOST,
+        max_length=MOST_POINTS,
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
         f"instead of points: a CSV file beside the job file, with columns {' or '.join(map(' and '.join, HEADERS))}",
@@ -106,6 +105,7 @@ def with_speeds(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         angles, speeds = _points(of, [at for at, _ in values], [speed for _, speed in values])
     except InputError as error:
         raise JobError(f"{name}: {error}") from None
+    require_few_points(len(angles), name, " in a turn")
     profile = {"crank_angles": [f"{angle!r} deg" for angle in angles], "speeds": [f"{speed!r} rpm" for speed in speeds]}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
 

@@ -12,13 +12,12 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.motion_deviation import DEVIATIONS
 from ...objectives.units import shown
-from .beside import beside, table_of
+from .beside import MOST_POINTS, beside, require_few_points, table_of
 from .loads import increasing
 from .values import Angle, Checked, Length, Part, optional
 
 HEADER = ("crank_angle_deg", "position_mm")
 """First line of a file of points."""
-_MOST = 1000
 
 
 class TargetMotionPart(Checked[TargetMotion]):
@@ -30,13 +29,13 @@ class TargetMotionPart(Checked[TargetMotion]):
         "crank angles of the points, increasing, spanning less than 360 deg",
         ["0 deg", "90 deg", "180 deg"],
         min_length=3,
-        max_length=_MOST,
+        max_length=MOST_POINTS,
     )
     positions: tuple[Length, ...] | None = optional(
         "slider position at each point, from the crank pivot outward",
         ["240 mm", "200 mm", "160 mm"],
         min_length=3,
-        max_length=_MOST,
+        max_length=MOST_POINTS,
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
         f"instead of the two: a CSV file beside the job file, with the columns {' and '.join(HEADER)}", "motion.csv"
@@ -88,6 +87,7 @@ def with_points(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     for number, line in enumerate(lines, start=2):
         if len(line) != 2:
             raise JobError(f"{name} must have two values a line; got {len(line)} in line {number}; correct it")
+    require_few_points(len(lines), name)
     points = {
         "crank_angles": [f"{angle} deg" for angle, _ in lines],
         "positions": [f"{position} mm" for _, position in lines],

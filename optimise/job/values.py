@@ -153,6 +153,8 @@ class Within(Physical):
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         found = super().__get_pydantic_json_schema__(schema, handler)
         number = {"type": "number", "minimum": self.least, "maximum": self.most}
+        if "anyOf" not in found:  # of a kind without a unit, which no text has
+            return {key: of for key, of in found.items() if key != "exclusiveMinimum"} | number
         return found | {"anyOf": [number if of.get("type") == "number" else of for of in found["anyOf"]]}
 
 
@@ -317,7 +319,6 @@ Inertia = Annotated[float, Physical(kinds.INERTIA, "zero or more")]
 Density = Annotated[float, Physical(kinds.DENSITY, "positive")]
 Gravity = Annotated[float, Physical(kinds.ACCELERATION, "zero or more")]
 PositiveTime = Annotated[float, Physical(kinds.TIME, "positive")]
-StrokeRate = Annotated[float, Physical(kinds.STROKE_RATE, "positive")]
 Force = Annotated[float, Physical(kinds.FORCE)]
 Resistance = Annotated[float, Physical(kinds.FORCE, "positive")]
 Stiffness = Annotated[float, Physical(kinds.STIFFNESS, "positive")]

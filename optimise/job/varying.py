@@ -28,7 +28,7 @@ from ...objectives.units import shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from .crank_speed import SPEED_KEYS, TIME_KEYS
+from .crank_speed import TIME_KEYS
 from .grids import Grid, read_grid, says_values
 from .messages import explain
 from .model import Job
@@ -301,7 +301,7 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         try:
             data = with_number(data, path, value)
         except LookupError:
-            raise JobError(f"{key}: {_unknown(path, job)}") from None
+            raise JobError(f"{key}: {unknown_path(path, job.model_dump(exclude_unset=True))}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
@@ -310,17 +310,6 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         for path in values:
             sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
         raise JobError(f"{key}: {sentence}") from None
-
-
-def _unknown(path: str, job: Job) -> str:
-    """Return the message that a job gives no number at a path, or states the crank speed by another key."""
-    stated, key = job.mechanism.speed_keys, path.removeprefix("mechanism.")
-    if stated and path.startswith("mechanism.") and key in SPEED_KEYS:
-        return (
-            f"must name a number that the job gives; got {path}, but the job gives mechanism.{stated[0]}; give "
-            f"{key} in [mechanism] in place of {stated[0]}"
-        )
-    return unknown_path(path, job.model_dump(exclude_unset=True))
 
 
 def _number(job: Job, path: str, key: str) -> float:

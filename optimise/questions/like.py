@@ -23,6 +23,7 @@ from ..front.dominance import beating
 from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY
+from ..job.messages import key_of
 from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings
 from ..problem.requirements import Constraint, Range
@@ -115,7 +116,7 @@ def extended(
     """Return the problem with added requirements, merged with its own; what leaves nothing is said, and left out."""
     held = {constraint.quantity: constraint for constraint in problem.constraints}
     dimensions = {name: getattr(problem, name) for name in DIMENSIONS}
-    contradictions = []
+    contradictions, keys = [], []
     for added in constraints:
         own = held.get(added.quantity)
         ends = common((added.lower, added.upper), (own.lower, own.upper) if own else (None, None))
@@ -126,6 +127,7 @@ def extended(
             contradictions.append(
                 f"{of.title} {_words((added.lower, added.upper), of.unit.factor, of.unit.symbol)}, where {both}"
             )
+            keys.append(key_of(["constraints", added.quantity]))
         else:
             held[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
     for name, wanted in ranges.items():
@@ -134,15 +136,17 @@ def extended(
         if ends is None:
             both = f"{_words((own_range.lower, own_range.upper), 1e3, 'mm')} is its range"
             contradictions.append(f"{name} {_words(wanted, 1e3, 'mm')}, where {both}")
+            keys.append(f"variables.{name}")
         else:
             assert ends[0] is not None
             assert ends[1] is not None
             dimensions[name] = Range(lower=ends[0], upper=ends[1])
+    remedy = [f"ask for other values, or change {' and '.join(keys)} in the job and solve it again"] if keys else []
     # The search serves to come near, whatever method made the front.
     settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
     return (
         replace(problem, constraints=tuple(held.values()), settings=settings, **dimensions),
-        "; ".join(contradictions) or None,
+        "; ".join([*contradictions, *remedy]) or None,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,17 @@ def test_a_cycle_of_720_deg_takes_two_turns_and_a_stroke_a_minute_is_a_turn() ->
         ({"speed": "-30 rpm", "direction": "counter-clockwise"}, r'give speed = "30 rpm", or leave out direction'),
         ({"cycle_time": "0 s"}, "cycle_time: must be positive"),
         ({"cycle_time": "1 us"}, r"cycle_time: must be a time from 20 us to 1e9 s; got \"1 us\""),
+        ({"cycle_time": "2e9 s"}, r"must be a time of at most 1e\+09 s"),
+        (
+            {"strokes_per_minute": 5e-8},
+            r"strokes_per_minute: must be a number from 6e-8 to 3e6; got 5e-08; .* the unit",
+        ),
+        ({"strokes_per_minute": 4e6}, "strokes_per_minute: must be a number from 6e-8 to 3e6; got 4000000"),
+        (
+            {"speed": "5e-8 rpm"},
+            r"speed: must be a speed from 6e-8 to 3e6 rpm, either way; got \"5e-8 rpm\"; .* the unit",
+        ),
+        ({"speed": "-4e6 rpm"}, r"speed: must be a speed from 6e-8 to 3e6 rpm, either way; got \"-4e6 rpm\""),
         ({"strokes_per_minute": -30}, "strokes_per_minute: must be positive; got -30"),
         ({"strokes_per_minute": "30 rpm"}, 'must be a number of strokes per minute; got "30 rpm"'),
         ({"cycle_time": 2.0, "direction": "left"}, 'must be "counter-clockwise" or "clockwise"; got "left"'),
@@ -153,6 +165,21 @@ def test_a_time_may_be_chosen_and_a_range_is_refused_with_that_of_the_speed() ->
     assert parse_job(job({"cycle_time": "2 s"}), {"mechanism.cycle_time": "1 s"}).mechanism.speed == pytest.approx(
         2.0 * math.pi, rel=1e-15
     )
+
+
+def test_the_slowest_and_the_fastest_crank_are_accepted_however_they_are_stated() -> None:
+    for least in ({"speed": "6e-8 rpm"}, {"strokes_per_minute": 6e-8}, {"cycle_time": "1e9 s"}):
+        assert machine(least).speed == pytest.approx(2e-9 * math.pi, rel=1e-14)
+    for most in ({"speed": "3e6 rpm"}, {"strokes_per_minute": 3e6}, {"cycle_time": "20 us"}):
+        assert machine(most).speed == pytest.approx(1e5 * math.pi, rel=1e-14)
+
+
+def test_a_catalogue_of_a_speed_that_is_stated_otherwise_says_what_to_give(tmp_path: Path) -> None:
+    stated = job({"cycle_time": "2 s"}) | {"choice": [{"name": "gearmotor", "file": "motors.csv"}]}
+    (tmp_path / "motors.csv").write_text("name,mechanism.strokes_per_minute\na,10\nb,20\n", encoding="utf-8")
+    said = "the job gives mechanism.cycle_time; give strokes_per_minute in .mechanism. in place of cycle_time"
+    with pytest.raises(JobError, match=said):
+        sc.problem(stated, folder=tmp_path)
 
 
 def test_a_front_is_that_of_the_same_speed() -> None:

@@ -92,6 +92,8 @@ def test_what_contradicts_the_problem_outright_is_said() -> None:
     found = like(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
     assert (found.status, len(found)) == ("infeasible", 0)
     assert "stroke at least 250 mm, where exactly 200 mm is asked already" in found.message
+    remedy = "ask for other values, or change constraints.stroke and variables.rod in the job and solve it again"
+    assert found.message.endswith(remedy)
     assert (
         "rod at least 700 mm and at most 800 mm, where at least 60 mm and at most 600 mm is its range" in found.message
     )

@@ -11,6 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job
+from slidercrank.optimise.job.tables import problem
 from slidercrank.optimise.solve import solve
 
 KNOWN = np.array([0.05, 0.16, 0.03])
@@ -114,6 +115,15 @@ def test_a_wrong_file_of_points_is_refused(content: str | None, said: str, tmp_p
         (tmp_path / "motion.csv").write_text(content)
     with pytest.raises(JobError, match=said):
         load_job(tmp_path / "job.toml")
+
+
+def test_a_file_of_too_many_points_is_named_with_what_to_do(tmp_path: Path) -> None:
+    lines = [f"{0.2 * place},100" for place in range(1800)]
+    (tmp_path / "motion.csv").write_text("\n".join(["crank_angle_deg,position_mm", *lines]), encoding="utf-8")
+    given = job({"file": "motion.csv"}, {"motion_deviation": "minimise"})
+    said = r"target_motion\.file: \"motion\.csv\" must have at most 1,000 points; got 1,800; .* keep one line in 2"
+    with pytest.raises(JobError, match=said):
+        problem(given, folder=tmp_path)
 
 
 def test_a_file_elsewhere_is_refused(tmp_path: Path) -> None:

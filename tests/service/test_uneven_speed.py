@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.speed_profile import SpeedTable
+from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 from slidercrank.optimise.job import load_job
 from slidercrank.service.topics.uneven_speed import analysis
 from tests.service.conftest import Command
@@ -110,6 +111,32 @@ def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest
     profile = load_job(job).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
     assert profile.ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
+
+
+@pytest.mark.parametrize("lines", [2001, 2500, 5000])
+def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_as_told(
+    lines: int, pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
+    job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
+    times = np.linspace(0.0, 1.0, lines)
+    _recorded(tmp_path, times, np.full(lines, 60.0), digits=9)
+    said = r"file: \"speed\.csv\" must have at most 1,000 points in a turn; got [\d,]+; thin it out: keep one line in"
+    with pytest.raises(InputError, match=said) as told:
+        load_job(job)
+    assert "crank_angles" not in str(told.value)
+    found = re.search(r"keep one line in (\d+)", str(told.value))
+    assert found is not None
+    kept = np.unique([*range(0, lines, int(found[1])), lines - 1])
+    _recorded(tmp_path, times[kept], np.full(len(kept), 60.0), digits=9)
+    profile = load_job(job).mechanism.speed_profile
+    assert isinstance(profile, SpeedTable)
+    assert 600 < len(profile.angles) <= 1000
+
+
+def test_one_harmonic_is_told_as_one() -> None:
+    assert Harmonics(cosines=(0.05,)).text == "1 harmonic of the crank angle"
+    assert Harmonics(sines=(0.0, 0.05)).text == "2 harmonics of the crank angle"
 
 
 @pytest.mark.parametrize(

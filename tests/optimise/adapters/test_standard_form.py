@@ -127,6 +127,20 @@ def test_what_has_no_standard_form_is_refused() -> None:
         sc.standard_form(several(), elimination_branch=0)
 
 
+def test_a_problem_of_one_branch_says_that_it_is_the_only_one() -> None:
+    stated = sc.problem(
+        {
+            "name": "Press",
+            "mechanism": {"speed": "60 rpm", "slider": {"mass": "3 kg"}},
+            "variables": {"crank": ["20 mm", "80 mm"], "rod": ["60 mm", "400 mm"], "offset": ["5 mm", "80 mm"]},
+            "constraints": {"stroke": {"equals": "100 mm"}},
+            "objectives": {"peak_torque": "minimise"},
+        }
+    )
+    with pytest.raises(InputError, match=r"one branch.*; got elimination_branch=1; leave elimination_branch out"):
+        sc.standard_form(stated, eliminate=True, elimination_branch=1)
+
+
 def press_with_offsets_of_both_signs() -> sc.Problem:
     """A press with offsets of either sign. Its least torques are those of 1,000 random designs on each side."""
     tables = {

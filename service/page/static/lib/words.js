@@ -38,6 +38,7 @@ const SAID = [
   [/\bdirection = "([a-z-]+)"/g, (_, way) => `the direction ${way}`],
   [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
   [/\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g, (whole, table, key) => (PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole)],
+  [/add gravity = "[^"]+", or gravity = 0/g, () => "give the gravity under “Masses and loads”, 0 for none"],
   [/got \[motion\] kind = "swing"/g, "got one that swings"],
   [/write kind = "swing"/g, "let the crank swing"],
   [/must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g, (_, count) => `must have two options or more; got ${count}; paste a table of them`],

@@ -20,6 +20,8 @@ const SAID = [
   ['if it is to be slow, require slow_stroke = "outward" among the constraints; if it is meant so, require slow_stroke = "inward"',
     "if it is to be slow, choose “outward” as the slow stroke, under Motion; if it is meant so, choose “inward” as the slow stroke, under Motion"],
   ['slow_stroke = "inward" leaves only offsets from 0 to 20 mm of the range', "a slow stroke that is the inward one leaves only offsets from 0 to 20 mm of the range"],
+  ['masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0',
+    "masses are given but no gravity, so that nothing weighs; give the gravity under “Masses and loads”, 0 for none"],
   ["position, velocity and acceleration diagrams at --at", "position, velocity and acceleration diagrams at a crank angle"],
   ["flywheel for a speed --fluctuation", "flywheel for a speed fluctuation"],
   ["start from rest under [drive], steady running", "start from rest under “Motor and flywheel”, steady running"],
