@@ -59,6 +59,7 @@ class AllowedModel(BaseModel):
 
     turning_share: of the designs within the ranges that turn fully. stroke_mm, time_ratio, transmission_angle_deg: from
     least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
+    slow_strokes: slow strokes of the designs that meet all requirements which were checked, else of those that turn.
     feasible_share: of the sampled designs that meet all requirements which were checked; equalities are met exactly.
     hardest, hardest_share: the requirement that the fewest of the turning designs meet. unchecked: requirements that
     need more than a moment, or numbers of the machine that are still missing.
@@ -68,6 +69,7 @@ class AllowedModel(BaseModel):
     stroke_mm: Ends | None = Field(examples=[[40.0, 118.0]])
     time_ratio: Ends | None = Field(examples=[[1.0, 1.6]])
     transmission_angle_deg: Ends | None = Field(examples=[[2.0, 71.0]])
+    slow_strokes: list[str] = Field(examples=[["inward", "outward"]])
     feasible_share: float = Field(examples=[0.4])
     sampled: int = Field(examples=[512])
     hardest: str | None = Field(examples=["transmission_angle"])
@@ -224,6 +226,7 @@ def _allowed(look: Look) -> AllowedModel | None:
         stroke_mm=_in(1e3, found.stroke),
         time_ratio=_in(1.0, found.time_ratio),
         transmission_angle_deg=_in(180.0 / math.pi, found.transmission_angle),
+        slow_strokes=list(found.slow_strokes),
         feasible_share=found.feasible,
         sampled=found.sampled,
         hardest=found.hardest[0] if found.hardest else None,

@@ -17,7 +17,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.cycle.stroke_times import massless_machine
+from ...model.cycle.stroke_times import massless_machine, slow_stroke
+from ...model.linkage.linkage import Linkage
 from ...model.linkage.values import DIMENSIONS
 from ...model.swing.ends import start_column
 from ...objectives.registry import QUANTITIES
@@ -57,6 +58,8 @@ class Possible:
 
     stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
     the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
+    slow_strokes: which strokes are the slow ones of the designs that meet every requirement that was checked, else of
+    those that turn fully; "equal" only if neither is in any of them.
     feasible: share of the `sampled` designs that meet every requirement that was checked. hardest: the requirement that
     the fewest designs meet which turn fully, and that share. example: crank, rod and offset, m, near the middle of what
     is feasible, else the nearest to it; None if nothing turns. unchecked: requirements that would have taken longer
@@ -67,6 +70,7 @@ class Possible:
     stroke: Ends | None
     time_ratio: Ends | None
     transmission_angle: Ends | None
+    slow_strokes: tuple[str, ...]
     feasible: float
     sampled: int
     hardest: tuple[str, float] | None
@@ -89,6 +93,7 @@ def possible(problem: Problem) -> Possible:
         stroke=_reach(light, "stroke"),
         time_ratio=_reach(light, "time_ratio"),
         transmission_angle=_reach(light, "transmission_angle"),
+        slow_strokes=_slow_strokes(light, found[feasible] if feasible.any() else box[turning]),
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
         hardest=_hardest(problem, box[turning]),
@@ -121,6 +126,16 @@ def _kept(problem: Problem) -> list[int]:
     """Return the columns of designs that are shown: the three lengths, and where a swing starts if they choose it."""
     column = start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
+
+
+def _slow_strokes(problem: Problem, designs: Array) -> tuple[str, ...]:
+    """Return which strokes are the slow ones of designs (n, 3) that turn fully; equal ones if there are no others."""
+    if not len(designs):
+        return ()
+    machine = problem.mechanism
+    crank, rod, offset = designs.T
+    found = {str(one) for one in slow_stroke(machine, Linkage(crank, rod, offset, machine.branch))}
+    return tuple(sorted(found - {"equal"} or found))
 
 
 def _turns(designs: Array) -> NDArray[np.bool_]:

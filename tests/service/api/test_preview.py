@@ -41,6 +41,30 @@ def test_a_valid_job_is_understood_as_check_understands_it(shared: httpx.Client,
     assert found["allowed"]["unchecked"] == []
 
 
+@pytest.mark.parametrize(
+    ("offset", "asked", "strokes"),
+    [
+        (["-40 mm", "40 mm"], None, ["inward", "outward"]),
+        (["-40 mm", "40 mm"], "inward", ["inward"]),
+        (["15 mm", "40 mm"], None, ["outward"]),
+        (["-40 mm", "-15 mm"], None, ["inward"]),
+        (["0 mm", "40 mm"], None, ["outward"]),
+        ("0 mm", None, ["equal"]),
+    ],
+)
+@pytest.mark.parametrize("profile", [{}, {"speed_profile": {"cosines": [0.0, 1e-3]}}], ids=["constant", "profile"])
+def test_slow_strokes_are_those_of_all_designs_that_meet_the_job_not_of_the_example(
+    offset: Any, asked: str | None, strokes: list[str], profile: Job, shared: httpx.Client
+) -> None:
+    """At constant speed the offset's sign decides, for a clockwise crank a positive one for a slow outward stroke."""
+    job = {
+        "mechanism": {"speed": "-60 rpm", **profile},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["120 mm", "250 mm"], "offset": offset},
+        "constraints": {"slow_stroke": asked} if asked else {},
+    }
+    assert preview(shared, job)["allowed"]["slow_strokes"] == strokes
+
+
 def test_the_example_is_a_linkage_within_the_ranges_that_meets_the_requirements(
     shared: httpx.Client, feeder: Job
 ) -> None:

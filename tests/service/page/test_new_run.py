@@ -559,6 +559,15 @@ def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: O
     assert "slow_stroke" not in text_of(page)["constraints"]
 
 
+def test_what_the_ranges_allow_has_every_slow_stroke(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=feeder")
+    beside = page.get_by_role("complementary")
+    slow = beside.locator("dt", has_text="slow stroke").locator("xpath=following-sibling::dd[1]")
+    expect(slow).to_have_text("outward")
+    page.get_by_label("offset, from").fill("-80")
+    expect(slow).to_have_text("inward or outward")
+
+
 def test_what_nobody_has_typed_yet_is_asked_for_and_blamed_only_at_the_start(form: Open, store: Store) -> None:
     page = form(store, "#/new")
     ready(page)

@@ -6,7 +6,7 @@ import { capital, inWords } from "../lib/words.js";
 import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
-export function showFacts(place, { allowed, example, understood, swing }) {
+export function showFacts(place, { allowed, understood, swing }) {
   if (swing) {
     fill(place, h("dl", { class: "terms" }, row("makes the swing", share(swing.closing_share), "of the ranges"), row("travel of the slider", between(swing.travel_mm, "mm")), row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`)), told(swing.unchecked, understood));
     return;
@@ -25,7 +25,7 @@ export function showFacts(place, { allowed, example, understood, swing }) {
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
-      example ? row("slow stroke", example.slow_stroke) : null,
+      allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
     told(allowed.unchecked, understood, allowed.said),
   );
