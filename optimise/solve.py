@@ -25,7 +25,7 @@ from .methods.registry import method_of, require_eliminated, require_fit, requir
 from .problem.problem import Problem, require_problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
-from .search.checkpoints import Cancelled, Checkpoints, Record
+from .search.checkpoints import Cancelled, Checkpoints, Record, require_own
 from .search.elimination import sheets
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
@@ -71,6 +71,12 @@ def solve(
         told = progress or None
         one = _One(checkpoints, engine, told, stages, fronts, bool(resume))
         return _with_values(problem, one) if problem.discrete else one.solve(problem)
+
+
+def require_own_records(problem: Problem, records: Sequence[Record]) -> None:
+    """Raise `ForeignRecords` unless a search of the problem can resume from the records, before it begins."""
+    if records:
+        require_own(records, identity_of(problem))
 
 
 @dataclass(frozen=True)

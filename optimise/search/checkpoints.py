@@ -90,7 +90,7 @@ class Checkpoints:
         self._cancelled = cancelled
         self._keep = keep
         self._identity = identity() if identity is not None and (keep is not None or past) else None
-        _require_own(past, self._identity)
+        require_own(past, self._identity)
         self.repeated, self.resumed = 0, len(past)
         self.ended: float | None = None
         self._past = _steps(self._gone_through(past))
@@ -216,7 +216,7 @@ def _steps(past: Iterable[Record]) -> Iterator[_Step]:
             raise ForeignRecords(f"the records of a run must be whole; got a damaged one ({error}); {_ANEW}") from error
 
 
-def _require_own(past: Sequence[Record], identity: Identity | None) -> None:
+def require_own(past: Sequence[Record], identity: Identity | None) -> None:
     """Raise `ForeignRecords` unless these are all records of this search so far, in order."""
     for number, record in enumerate(past):
         if identity is None or record.identity.problem != identity.problem:

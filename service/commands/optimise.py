@@ -174,12 +174,17 @@ def _new(
 def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Problem, Claim]]:
     """Enter a run that was stopped."""
     from ...optimise.job import parse_job
-    from ..jobs.own_run import folder_of, stopped_job, take_up
+    from ...optimise.solve import require_own_records
+    from ..jobs.own_run import folder_of, stopped_job, take_up, told
 
     job = stopped_job(store, text, place)
     with folder_of(store, job, place) as folder:
         problem = parse_job(store.tables(job.id), folder=folder.path)
-        yield folder, problem, take_up(store, job)
+        require_own_records(problem, store.records(job.id))
+        claim = take_up(store, job)
+        with told(claim):
+            folder.go_on()
+        yield folder, problem, claim
 
 
 def show_result(result: Result) -> None:

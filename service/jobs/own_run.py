@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import InputError, LeaseLost, RunError, StoreError
+from ...model.errors import InputError, LeaseLost, StoreError
 from ...model.file_names import path_text
 from ..runs.run_folder import RunFolder
-from ..store import Artefact, Claim, Job, Store
+from ..store import RESUMABLE, Artefact, Claim, Job, Store
 from .find_run import find_folder
 
 LEASE = 3600.0
@@ -48,21 +48,25 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
 def stopped_job(store: Store, text: str, place: Path) -> Job:
     """Return the job of a run to be resumed, given by its number or as `find_run` takes it.
 
-    Raises `InputError` for a run that is not in the store.
+    Raises `InputError` for a run that is not in the store, or that cannot be resumed.
     """
     if text.isdecimal():
-        return store.job(int(text))
-    folder = find_folder(text, place)
-    job = store.find(folder.name)
-    if job is None:
-        raise InputError(
-            f"a run goes on from what the store has of it; {folder.name} is not in {store.name}; run its job again"
-        )
+        job = store.job(int(text))
+    else:
+        folder = find_folder(text, place)
+        found = store.find(folder.name)
+        if found is None:
+            raise InputError(
+                f"a run goes on from what the store has of it; {folder.name} is not in {store.name}; run its job again"
+            )
+        job = found
+    if not (job.state in RESUMABLE or _is_left(job)):
+        raise _refused(job)
     return job
 
 
 def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
-    """Return the folder of a job to be resumed; a new one if it has none in this place."""
+    """Return the folder of a job to be resumed, left as it is; a new one if it has none in this place."""
     path = place / job.run
     if path.is_dir():
         return RunFolder.again(path)
@@ -75,18 +79,23 @@ def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
 def take_up(store: Store, job: Job) -> Claim:
     """Claim a job again that was stopped. Its folder is open, so no other process of the command line has it.
 
-    Raises `RunError` for a job that cannot go on.
+    Raises `InputError` for a job that cannot be resumed.
     """
-    alone = (job.worker or "").startswith(_WORKER)
     try:
-        claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=alone)
+        claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=_is_left(job))
     except InputError:
-        state = store.job(job.id).state
-        raise RunError(
-            f"only an interrupted or cancelled run can go on; {job.run} is {state}; run its job anew"
-        ) from None
+        raise _refused(store.job(job.id)) from None
     claim.most_full = _PATIENCE
     return claim
+
+
+def _is_left(job: Job) -> bool:
+    """Whether a job is running by the command line, whose process has ended if the folder of the run is free."""
+    return job.state == "running" and (job.worker or "").startswith(_WORKER)
+
+
+def _refused(job: Job) -> InputError:
+    return InputError(f"only an interrupted or cancelled run can go on; {job.run} is {job.state}; run its job anew")
 
 
 @contextlib.contextmanager

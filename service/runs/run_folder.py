@@ -26,7 +26,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 
-from ...model.errors import InputError, RunError
+from ...model.errors import InputError, MissingExtra, RunError
 from ...model.file_names import path_from_text, path_text
 from ..resources.disk import is_full, room
 from .result import Result, csv_text, json_text
@@ -55,9 +55,10 @@ def run_name(name: str) -> str:
 class RunFolder:
     """A run being written. Every method raises `RunError` when the disk refuses.
 
-    As a context manager it says what became of the run. Leaving without an error finishes it. An `InputError` before
-    there is a result removes the folder: nothing was done. Any other error leaves the run unfinished, with the reason
-    in log.txt, and adds the log's place to the error as a note.
+    As a context manager it says what became of the run. Leaving without an error finishes it. An `InputError` or a
+    `MissingExtra` before there is a result removes the folder: nothing was done. Any other error leaves the run
+    unfinished, with the reason in log.txt, and adds the log's place to the error as a note. A resumed run keeps what it
+    had: before `go_on` nothing changes, and after an error the result of a cancelled run can still be read.
     """
 
     def __init__(self, place: Path, name: str) -> None:
@@ -74,16 +75,15 @@ class RunFolder:
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
-        self._has_result = self._was_whole = False
+        self._has_result = self._was_whole = self._is_as_before = False
         self._lock = _lock(self.path)
         self.log(f"run {self.path.name} started")
 
     @classmethod
     def again(cls, path: Path) -> RunFolder:
-        """Open the folder of a run that was interrupted or cancelled, to go on in it.
+        """Open the folder of a run that was interrupted or cancelled, to go on in it; until `go_on` it stays as it is.
 
-        It is marked unfinished until then. Wrong input leaves it as it was. Raises `InputError` while another process
-        is at work in it.
+        Raises `InputError` while another process is at work in it.
         """
         run = cls.__new__(cls)
         run.started = time.strftime("%Y-%m-%d %H:%M:%S")
@@ -91,9 +91,15 @@ class RunFolder:
         with disk(path):
             run._lock = _lock(path)
             run._was_whole, run._has_result = not (path / MARK).exists(), True
-            _write(path / MARK, f"Taken up {run.started}. The run still goes on, or was interrupted.\n")
-        run.log(f"run {path.name} goes on")
+        run._is_as_before = True
         return run
+
+    def go_on(self) -> None:
+        """Mark a run that was interrupted or cancelled as unfinished again."""
+        self._is_as_before = False
+        with disk(self.path):
+            _write(self.path / MARK, f"Taken up {self.started}. The run still goes on, or was interrupted.\n")
+        self.log(f"run {self.path.name} goes on")
 
     @property
     def figures(self) -> Path:
@@ -123,7 +129,7 @@ class RunFolder:
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""
-        self._has_result = True
+        self._has_result, self._was_whole = True, False
         with disk(self.path):
             _write(self.path / "versions.json", json_text(versions))
             _write(self.path / "front.csv", csv_text(result.designs))
@@ -154,19 +160,27 @@ class RunFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if error is None:
+        if error is None and not self._is_as_before:
             self.finish()
-        elif isinstance(error, InputError) and not self._has_result:
+        elif isinstance(error, (InputError, MissingExtra)) and not self._has_result:
             shutil.rmtree(self.path, ignore_errors=True)
-        elif isinstance(error, InputError) and self._was_whole:
-            self.finish()
-        else:
+        elif error is not None and not self._is_as_before:
             with contextlib.suppress(RunError, OSError):  # the error that is under way matters more
-                self.log("".join(traceback.format_exception(error)).rstrip())
-                reason = str(error) or "interrupted"
-                error.add_note(f"log: {self.path / 'log.txt'}")
-                _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
+                self._stop(error)
         self._release()
+
+    def _stop(self, error: BaseException) -> None:
+        """Log an error. The run is unfinished, unless it was cancelled before and still has that result."""
+        reason = str(error) or "interrupted"
+        if isinstance(error, InputError):
+            self.log(f"stopped: {reason}")
+        else:
+            self.log("".join(traceback.format_exception(error)).rstrip())
+            error.add_note(f"log: {self.path / 'log.txt'}")
+        if self._was_whole:
+            (self.path / MARK).unlink(missing_ok=True)
+        else:
+            _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
 
 
 def write_file(path: Path, content: str | bytes) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .claim import Claim
-from .records import NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, State, Worker
+from .records import NO_LIMITS, NOT_DONE, RESUMABLE, Artefact, Event, Job, Limits, News, State, Worker
 from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "MOST_QUEUED",
     "NOT_DONE",
     "NO_LIMITS",
+    "RESUMABLE",
     "Artefact",
     "Claim",
     "Event",

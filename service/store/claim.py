@@ -19,9 +19,9 @@ from .clock import JUMP, later, now
 from .database import Database, Full, Unavailable
 from .queue import MOST_DELAY, put_files
 from .records import NOT_DONE, Artefact, Job
-from .rows import Told, add_events, state_event
+from .rows import Told, add_events, records_of, state_event
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_of, packed, packed_exact, plain, summary_of, text_of, unpacked
+from .serialisation import cells_of, packed, packed_exact, plain, summary_of, text_of
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress
@@ -70,9 +70,8 @@ class Claim:
 
     def records(self) -> list[Record]:
         """Return the records of the job's evaluations so far, in order."""
-        query = select(records.c.content).where(records.c.job == self.job.id).order_by(records.c.number)
         with self._database.reading() as connection:
-            return [unpacked(content) for content in connection.execute(query).scalars()]
+            return records_of(connection, self.job.id)
 
     def keep(self, record: Record) -> None:
         """Take in the next record; it is written with the next progress, or with the end."""

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection, and_, insert, or_, select, update
 
 from ...model.errors import InputError, NotFound, RunError
 from .clock import now
 from .records import RESUMABLE, SHOWN, Event, Job, News, State
-from .schema import events, jobs
-from .serialisation import text_of
+from .schema import events, jobs, records
+from .serialisation import text_of, unpacked
+
+if TYPE_CHECKING:
+    from ...optimise.search.checkpoints import Record
 
 Told = tuple[str, Mapping[str, Any]]
 """Kind and data of an event."""
@@ -54,6 +57,12 @@ def the_record(connection: Connection, job: Job) -> dict[str, Any]:
     if not isinstance(record, dict):
         raise damaged(job.id, TypeError("no record"))
     return record
+
+
+def records_of(connection: Connection, number: int) -> list[Record]:
+    """Return the records of a job's evaluations so far, in order."""
+    query = select(records.c.content).where(records.c.job == number).order_by(records.c.number)
+    return [unpacked(content) for content in connection.execute(query).scalars()]
 
 
 def damaged(number: int, error: Exception) -> RunError:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection, and_, delete, func, select, update
 
@@ -18,11 +18,14 @@ from . import queue
 from .claim import Claim
 from .clock import Jumps, now
 from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State
-from .rows import add_events, become, damaged, news_of, require_resumable, the_job, the_record
+from .rows import add_events, become, damaged, news_of, records_of, require_resumable, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
 from .serialisation import plain, rows_of, unpacked_exact
 from .workers import Workers
+
+if TYPE_CHECKING:
+    from ...optimise.search.checkpoints import Record
 
 MOST_QUEUED = 10_000
 MOST_ATTEMPTS = 3
@@ -125,6 +128,11 @@ class Store(Workers):
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
         return found
+
+    def records(self, number: int) -> list[Record]:
+        """Return the records of a job's evaluations so far, in order."""
+        with self.reading() as connection:
+            return records_of(connection, number)
 
     def find(self, run: str) -> Job | None:
         """Return the job of a run folder's name, None if there is none."""

@@ -6,15 +6,17 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from slidercrank.model.errors import InputError
+from slidercrank.model.errors import EngineError, InputError, MissingExtra
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import read_job
 from slidercrank.optimise.search.checkpoints import Record
+from slidercrank.optimise.search.fingerprint import identity_of
 from slidercrank.optimise.solve import solve
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import csv_text
@@ -114,9 +116,96 @@ def test_a_stopped_run_goes_on_and_ends_as_if_it_had_not_been(
         *("job.toml", "front.csv", "front.json", "versions.json", "log.txt")
     }
     assert "goes on" in (run / "log.txt").read_text()
-    refused = command("optimise", "--resume", run.name)
-    assert refused.exit_code == 2
-    assert "only an interrupted or cancelled run can go on" in refused.stderr
+
+
+def contents(place: Path) -> dict[Path, bytes]:
+    """Return the files of a place of runs, without those of the store."""
+    return {file: file.read_bytes() for file in place.rglob("*") if file.is_file() and ".db" not in file.name}
+
+
+def test_a_refused_resume_changes_nothing_in_a_run_that_is_done(job: Path, runs: Path, command: Command) -> None:
+    assert command("optimise", job, "--no-figures").exit_code == 0
+    run = only(runs)
+    before = contents(runs)
+    for name in (run.name, run, 1):
+        refused = command("optimise", "--resume", name, "--no-figures")
+        assert refused.exit_code == 2
+        assert f"only an interrupted or cancelled run can go on; {run.name} is done" in refused.stderr
+        assert contents(runs) == before
+    assert command("front", run.name).exit_code == 0
+    elsewhere = runs.parent / "elsewhere"  # where the run has no folder yet
+    store = runs / "slidercrank.db"
+    assert command("optimise", "--resume", 1, "--runs", elsewhere, "--store", store).exit_code == 2
+    assert not elsewhere.exists()
+
+
+@pytest.mark.parametrize("killed", [False, True])
+@pytest.mark.parametrize("reason", ["queued", "running elsewhere", "other versions", "other job"])
+def test_a_refused_resume_changes_nothing_in_a_stopped_run(
+    reason: str,
+    killed: bool,
+    job: Path,
+    runs: Path,
+    stop: Any,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stop(2, killed=killed)
+    if killed:
+        with pytest.raises(Killed):
+            command("optimise", job, "--no-figures")
+    else:
+        command("optimise", job, "--no-figures")
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
+    run = only(runs)
+    with Store(runs / "slidercrank.db") as store:
+        if reason in ("queued", "running elsewhere"):
+            store.resume(1)
+        if reason == "running elsewhere":
+            assert store.claim("another", lease=60.0) is not None
+        stood = (store.job(1).state, store.job(1).events)
+    if reason in ("other versions", "other job"):
+        other = {"versions": "others"} if reason == "other versions" else {"problem": "another"}
+        monkeypatch.setattr(
+            "slidercrank.optimise.solve.identity_of", lambda problem: replace(identity_of(problem), **other)
+        )
+    before = contents(runs)
+    refused = command("optimise", "--resume", run.name, "--no-figures")
+    assert refused.exit_code == 2, refused.output
+    assert contents(runs) == before
+    with Store(runs / "slidercrank.db") as store:
+        assert (store.job(1).state, store.job(1).events) == stood
+
+
+def test_a_cancelled_run_can_still_be_read_after_an_error_of_the_search(
+    job: Path, runs: Path, stop: Any, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stop(2, killed=False)
+    command("optimise", job, "--no-figures")
+    run = only(runs)
+    before = designs(run)
+
+    def fail(*given: object, **options: object) -> None:
+        raise EngineError("the cluster does not answer")
+
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", fail)
+    assert command("optimise", "--resume", "latest").exit_code == 2
+    assert "EngineError: the cluster does not answer" in (run / "log.txt").read_text(encoding="utf-8")
+    assert designs(run) == before
+    assert command("front", run.name).exit_code == 0
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
+    assert command("optimise", "--resume", run.name, "--no-figures").exit_code == 0
+
+
+def test_a_missing_extra_leaves_no_run(
+    job: Path, runs: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*given: object, **options: object) -> None:
+        raise MissingExtra("the method needs the extra")
+
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", fail)
+    assert command("optimise", job).exit_code == 2
+    assert [path for path in runs.iterdir() if path.is_dir()] == []
 
 
 def test_what_cannot_go_on_is_refused_and_left_as_it_is(
@@ -148,6 +237,8 @@ def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
     with RunFolder(tmp_path, "x") as run, pytest.raises(InputError, match="another process is at work on the run"):
         RunFolder.again(run.path)
     with RunFolder.again(run.path) as again:
+        assert not (again.path / MARK).exists()
+        again.go_on()
         assert (again.path / MARK).exists()
     assert not (again.path / MARK).exists()
 
