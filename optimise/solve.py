@@ -22,6 +22,7 @@ from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, searched_by
 from .methods.auto.so_far import so_far
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
+from .problem.impossible import require_possible
 from .problem.problem import Problem, require_problem
 from .problem.zero_objectives import require_ranking
 from .search.assemble import empty
@@ -63,6 +64,7 @@ def solve(
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)
+    require_possible(problem)
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     with ExitStack() as shown:
         if progress is True:

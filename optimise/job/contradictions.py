@@ -16,11 +16,11 @@ from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
-from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import shown
 from ..feasibility.swinging import require_swinging
+from ..problem.impossible import require_longer_slow_stroke
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
 from ..problem.restatement import restate
@@ -185,20 +185,6 @@ def _in_line_value(part: Problem, name: str) -> str:
     return "infinite" if value == math.inf else f"{value:.6g}"
 
 
-def _require_quotients_of_slow_stroke(part: Problem) -> None:
-    """Raise `InfeasibleError` for a bound on a ratio of stroke times that requires the other stroke to be slow."""
-    for stroke, of in STROKE_TIME_RATIOS.items():
-        own = stroke == part.slow_stroke
-        for item in part.constraints:
-            for word, bound in item.sides if item.quantity == of.name else ():
-                if (bound <= 1.0 and word != "min") if own else (bound >= 1.0 and word != "max"):
-                    raise InfeasibleError(
-                        f"constraints.slow_stroke: if the {part.slow_stroke} stroke is slow, {of.name} must be "
-                        f"{'above' if own else 'below'} 1; got constraints.{of.name} with {word} {bound:.6g}; leave "
-                        "out one of the two"
-                    )
-
-
 def require_slow_stroke(problem: Problem) -> None:
     """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the requested slow stroke.
 
@@ -209,14 +195,7 @@ def require_slow_stroke(problem: Problem) -> None:
     if any(part.slow_stroke is None for part in parts):
         return
     ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
-    if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
-        raise InfeasibleError(
-            "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
-            f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
-            "or leave out slow_stroke"
-        )
-    for part in parts:
-        _require_quotients_of_slow_stroke(part)
+    require_longer_slow_stroke(problem)
     if any(part.mechanism.speed_profile is not None for part in parts):
         return  # then neither the sign of the offset nor a closed form decides which stroke is slow
     ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]

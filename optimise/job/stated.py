@@ -13,6 +13,7 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swinging import swing_quantities
 from ..discrete.meetable import require_meetable
 from ..methods.registry import require_fit
+from ..problem.impossible import no_option
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
 from .contradictions import require_consistent
@@ -57,7 +58,7 @@ def problem_of(
     variants, left_out = _possible(variants, constraints, (*own, *formulas.made.values()))
     if choices and not variants:
         if require_feasible:
-            raise _no_option(left_out)
+            raise no_option(left_out)
         choices = ()  # what a design is judged by does not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
@@ -133,15 +134,6 @@ def _possible(
         (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
     )
     return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
-
-
-def _no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
-    """Return the error for choices whose options all are left out. left_out: labels and reasons."""
-    label, why = left_out[0]
-    return InfeasibleError(
-        f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
-        "the two"
-    )
 
 
 def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:

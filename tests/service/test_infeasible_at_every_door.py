@@ -172,6 +172,7 @@ def test_what_no_design_could_mean_is_wrong_input(tables: dict[str, Any]) -> Non
     with pytest.raises(JobError) as told:
         parse_job(tables)
     assert not isinstance(told.value, InfeasibleError)
+    assert "no design" not in str(told.value)
 
 
 @pytest.fixture
@@ -237,6 +238,13 @@ def test_a_design_of_an_impossible_job_is_analysed(kind: str) -> None:
     assert problem.parts()[0].analyse([0.14, 0.31, 0.06])["time_ratio"] > 1.0
     row = numbers_of(problem.mechanism.nominal, Linkage(0.14, 0.31, 0.06), problem.own)
     assert judged(problem, row)
+
+
+@pytest.mark.parametrize("kind", ["a slow stroke without a time ratio", "options without a design"])
+def test_a_search_for_an_impossible_job_finds_nothing_however_it_was_read(kind: str) -> None:
+    tables, said = CONTRADICTIONS[kind]
+    with pytest.raises(InfeasibleError, match=said):
+        sc.solve(parse_job(tables, require_feasible=False))
 
 
 def test_analyse_says_which_requirements_of_an_impossible_job_a_design_misses(

@@ -1,0 +1,55 @@
+"""Problems whose parts exclude each other, which a search would not notice."""
+
+from __future__ import annotations
+
+from ...model.errors import InfeasibleError
+from ...objectives.stroke_times import STROKE_TIME_RATIOS
+from ...objectives.time_ratio import TIME_RATIO
+from .problem import Problem
+
+
+def require_possible(problem: Problem) -> None:
+    """Raise `InfeasibleError` if no option of a choice is left, or a slow stroke must not take longer."""
+    if problem.left_out and not problem.variants:
+        raise no_option(problem.left_out)
+    if all(part.slow_stroke is not None for part in problem.parts()):
+        require_longer_slow_stroke(problem)
+
+
+def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
+    """Return the error for choices whose options all are left out. left_out: labels and reasons."""
+    label, why = left_out[0]
+    return InfeasibleError(
+        f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
+        "the two"
+    )
+
+
+def require_longer_slow_stroke(problem: Problem) -> None:
+    """Raise `InfeasibleError` if bounds on ratios of stroke times exclude that the slow stroke takes longer.
+
+    All parts of the problem must have a slow stroke.
+    """
+    ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
+    if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
+        raise InfeasibleError(
+            "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
+            f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
+            "or leave out slow_stroke"
+        )
+    for part in problem.parts():
+        _require_quotients_of_slow_stroke(part)
+
+
+def _require_quotients_of_slow_stroke(part: Problem) -> None:
+    """Raise `InfeasibleError` for a bound on a ratio of stroke times that requires the other stroke to be slow."""
+    for stroke, of in STROKE_TIME_RATIOS.items():
+        own = stroke == part.slow_stroke
+        for item in part.constraints:
+            for word, bound in item.sides if item.quantity == of.name else ():
+                if (bound <= 1.0 and word != "min") if own else (bound >= 1.0 and word != "max"):
+                    raise InfeasibleError(
+                        f"constraints.slow_stroke: if the {part.slow_stroke} stroke is slow, {of.name} must be "
+                        f"{'above' if own else 'below'} 1; got constraints.{of.name} with {word} {bound:.6g}; leave "
+                        "out one of the two"
+                    )
