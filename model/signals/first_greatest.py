@@ -12,7 +12,13 @@ from ..arrays import Array, Whole
 
 EQUAL = 1e-9
 """Relative difference of peaks that count as equal: peaks are accurate to about 1e-13, near-cancelling sums less."""
-_ZERO = 1e-7  # rad: a flat peak is located no better, so one this close before zero is at zero
+_ZERO = 1e-4
+"""Angle before zero, rad, that counts as zero.
+
+Around an extreme f values are equal, by the rule above, within sqrt(2 EQUAL |f / f''|): 4.5e-5 for a first harmonic,
+1e-4 for one on a mean of four times its size. If that reaches zero, the first of the equal values is there. Rounded to
+0.01 deg, no angle is then that of the end of the cycle: half of it is 8.7e-5 rad.
+"""
 _APART = 1e-3  # rad: an equally high point closer to a peak than this is the same peak
 
 

@@ -36,6 +36,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
+from ..signals.first_greatest import angle_in_cycle
 from .sources import counted_angles, limit_box
 
 _CELLS = 4  # highest samples around which the greatest deviation is searched further
@@ -104,7 +105,7 @@ def worst(mechanism: Mechanism, linkage: Linkage) -> Worst:
             found = minimize_scalar(less, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
             for size, angle in ((sizes[i], angles[i]), (-found.fun, found.x)):
                 if size > best.size:
-                    best = Worst(float(size), float(angle) % _TURN)
+                    best = Worst(float(size), angle_in_cycle(float(angle), _TURN))
     return best
 
 

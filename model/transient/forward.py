@@ -63,7 +63,7 @@ def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
     """Return the drive, the mechanism's own if None. Raises `InputError` if it has none either."""
     found = mechanism.drive if drive is None else drive
     if found is None:
-        raise InputError("forward dynamics needs a motor; got a mechanism without a drive; add a [drive]")
+        raise InputError("a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
     return found
 
 

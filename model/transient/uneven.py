@@ -24,7 +24,8 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import single
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
-from ..signals.panels import Extreme, panels_of
+from ..signals.first_greatest import angle_in_cycle
+from ..signals.panels import Extreme, panels_of, peak_of
 
 _PIECES = 12  # panels of a turn at least
 _SAMPLES = 360
@@ -120,12 +121,12 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
     peaks = {name: _size(found.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
     for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
         top = found.extremes(row)[1]
-        peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), top.angle % (turns * TURN))
+        peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), angle_in_cycle(top.angle, turns * TURN))
     way, torque = mechanism.direction, 3 + _SIZES.index("torque")
     mean = found.mean(torque)
     return UnevenCycle(
-        least_speed=Extreme(least.value, least.angle % TURN),
-        greatest_speed=Extreme(greatest.value, greatest.angle % TURN),
+        least_speed=Extreme(least.value, angle_in_cycle(least.angle, TURN)),
+        greatest_speed=Extreme(greatest.value, angle_in_cycle(greatest.angle, TURN)),
         acceleration=_size(found.extremes(1), 1),
         period=period,
         mean_speed=way * TURN / period,
@@ -139,5 +140,5 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
 
 def _size(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
     """Return the extreme of greatest size, as a size."""
-    top = max(extremes, key=lambda extreme: abs(extreme.value))
-    return Extreme(abs(top.value), top.angle % (turns * TURN))
+    top = peak_of(extremes, turns * TURN)
+    return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))

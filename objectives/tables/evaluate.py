@@ -61,11 +61,12 @@ def evaluate(
 
     The row of a design that does not turn fully, or that has NaN in it, is NaN. What is zero for every design of the
     machine, such as a torque without masses and loads, is 0 here, and undefined in `analyse`. Where friction locks the
-    linkage, what follows from forces is infinite. Peaks come from the vectorised search of `screening`, and from the
-    exact one of `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks
-    the slope is that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a
-    quantity that the machine does not define (a position error without tolerances), for one of a full turn with a
-    swing, and for the gradient of a function that has none.
+    linkage, what follows from forces is the worst there is, as a search needs it: infinite, of a safety zero. `analyse`
+    has no value there, but the reason. Peaks come from the vectorised search of `screening`, and from the exact one of
+    `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks the slope is
+    that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a quantity that the
+    machine does not define (a position error without tolerances), for one of a full turn with a swing, and for the
+    gradient of a function that has none.
 
     >>> from slidercrank import Mechanism, evaluate
     >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)

@@ -1,4 +1,9 @@
-"""Why a design has no value for a quantity that is defined for its machine."""
+"""Why a design has no value for a quantity that is defined for its machine.
+
+`Quantity.evaluate` gives the search the worst value there is where friction locks a linkage: infinite torques, a safety
+of zero. An analysis shows no such stand-in: it shows what is determined, and the reason for the rest. A quantity may be
+infinite by its own definition, such as the ratio of the rod to an offset of zero; that is its value.
+"""
 
 from __future__ import annotations
 
@@ -6,22 +11,91 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.cycle.self_locking import locking_reason
+from ...model.arrays import Mask
+from ...model.cycle.self_locking import locking_margin, locking_reason
 from ...model.linkage.linkage import Linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
-from ..quantity import Quantity
+from ...model.swing.swing import Swing
+from ..formula.quantity import FormulaQuantity
+from ..own.quantity import OwnQuantity
+from ..quantity import Array, Quantity
+from ..robust.quantity import RobustQuantity
+from ..self_locking import SELF_LOCKING_MARGIN
+from .evaluate import running
+
+_LOCKED_SWING = (
+    "a drive must be able to move the slider everywhere on the swing; got a place where none can; lengthen the rod, or "
+    "reduce the swing, the offset or the friction"
+)
+_TOLERANCES = (
+    "it needs every machine within the tolerances to run; got some that do not turn fully, or that friction locks; "
+    "lengthen the rod, or tighten the tolerances"
+)
+_FORMULA = "a formula has a value where it is finite; got an infinite one; change the design or the formula"
 
 
-def missing_value_reason(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> str:
-    """Return why a fully rotating linkage has no value for a quantity that is defined for its machine, variables fixed.
+def missing_value_reason(
+    quantity: Quantity, value: float, mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None
+) -> str:
+    """Return why a design has no value for a quantity that is defined for its machine; empty if it has one.
 
-    Friction is the reason if it locks the linkage and the quantity has a value without friction.
+    value: of `Quantity.evaluate`, in any unit. mechanism: with its variables fixed. swing: in place of a full turn.
     """
-    locks = locking_reason(mechanism.friction, linkage)
-    if locks:
-        design = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
-        without = quantity.evaluate(replace(mechanism, friction=Friction()), design).values[0]
-        if not np.isnan(without):
-            return f"friction locks this design: {locks}"
-    return quantity.blank
+    designs = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
+    (reason,) = missing_value_reasons(quantity, np.array([value]), mechanism, designs, swing)
+    return reason
+
+
+def missing_value_reasons(
+    quantity: Quantity, values: Array, mechanism: Mechanism, designs: Array, swing: Swing | None = None
+) -> list[str]:
+    """Return `missing_value_reason` of designs (n, 3) that all turn fully, or swing. values: (n,)."""
+    reasons = [""] * len(designs)
+    locked = locked_designs(mechanism, designs, swing)
+    rows = np.flatnonzero(locked)
+    undetermined = rows[_undetermined(quantity, mechanism, designs[rows])] if len(rows) else rows
+    for row in undetermined.tolist():
+        reasons[row] = f"friction locks this design: {_locking_reason(mechanism, designs[row], swing)}"
+    for row in np.flatnonzero(~np.isfinite(values)).tolist():
+        reasons[row] = reasons[row] or _own_reason(quantity, float(values[row]), mechanism, designs[row : row + 1])
+    return reasons
+
+
+def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = None) -> Mask:
+    """Return which designs (n, 3) friction locks, or may jam, at some crank angle."""
+    if swing is not None:
+        return ~running(mechanism, swing, designs)
+    return np.asarray(~(locking_margin(mechanism.friction, designs)[0] > 0.0))
+
+
+def _locking_reason(mechanism: Mechanism, design: Array, swing: Swing | None) -> str:
+    return _LOCKED_SWING if swing is not None else locking_reason(mechanism.friction, Linkage(*design.tolist()))
+
+
+def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:
+    """Return for which locked designs (n, 3) friction leaves a quantity, or one that it is made of, undetermined.
+
+    These have the worst value there is, infinite or zero, and another one without friction.
+    """
+    parts = [_undetermined(part, mechanism, designs) for part in quantity.made_of]
+    found = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
+    values = quantity.evaluate(mechanism, designs).values
+    worst = ~np.isfinite(values) | ((values == 0.0) & (quantity.name != SELF_LOCKING_MARGIN.name))
+    rows = np.flatnonzero(worst & ~found)
+    if isinstance(quantity, OwnQuantity):  # a function is not called for locked designs
+        found[rows] = True
+    elif len(rows):
+        without = quantity.evaluate(replace(mechanism, friction=Friction()), designs[rows]).values
+        found[rows] = ~((without == values[rows]) | (np.isnan(without) & np.isnan(values[rows])))
+    return found
+
+
+def _own_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
+    """Return why a design (1, 3) that runs has no finite value; empty for one that is infinite by its definition."""
+    if np.isnan(value):
+        return quantity.blank
+    finite = all(np.isfinite(part.evaluate(mechanism, design).values[0]) for part in quantity.made_of)
+    if finite and isinstance(quantity, RobustQuantity):
+        return _TOLERANCES
+    return _FORMULA if finite and isinstance(quantity, FormulaQuantity) else ""

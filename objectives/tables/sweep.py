@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal, get_args
@@ -17,6 +17,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ..formula.meant import meant
 from ..quantity import Array, Quantity
+from .missing_values import missing_value_reasons
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
 MOST = 1_000_000
@@ -44,7 +45,7 @@ def sweep(
     dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities or
     formulas. own: those that it may name besides those of the registry.
     Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
-    the row has no values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
+    the row lacks values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
     """
     quantities = meant(of, mechanism, own)
@@ -68,17 +69,31 @@ def sweep(
     columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(DIMENSIONS)}
     columns["speed_rpm"] = speeds * 30.0 / math.pi
     turns = np.array([not reason for reason in reasons])
+    missing: dict[int, dict[str, list[str]]] = {}  # by row and reason the quantities that it lacks
     for item in quantities:
         values = np.full(count, np.nan)
         for speed in np.unique(speeds):
-            here = turns & (speeds == speed)
-            if np.any(here):
+            here = np.flatnonzero(turns & (speeds == speed))
+            if len(here):
                 machine = replace(mechanism, speed=float(speed))
-                values[here] = item.unit.factor * item.evaluate(machine, designs[here]).values
+                found = item.unit.factor * item.evaluate(machine, designs[here]).values
+                why = missing_value_reasons(item, found, machine, designs[here])
+                values[here] = np.where([bool(reason) for reason in why], np.nan, found)
+                for row, reason in zip(here.tolist(), why, strict=True):
+                    if reason:
+                        missing.setdefault(row, {}).setdefault(reason, []).append(item.title)
         columns[item.field] = values
+    for row, found_missing in missing.items():
+        reasons[row] = _together(found_missing, len(quantities))
     table = pd.DataFrame(columns)
     table["reason"] = reasons
     return table
+
+
+def _together(missing: Mapping[str, Sequence[str]], count: int) -> str:
+    """Return the reasons of a row. missing: titles by reason, which are left out where one reason is that of all."""
+    whole = any(len(titles) == count for titles in missing.values())
+    return "; ".join(reason if whole else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
 
 
 def _reason(design: Array, mechanism: Mechanism) -> str:

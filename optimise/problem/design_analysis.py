@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -237,8 +236,9 @@ def analyse(
             undefined[item.name] = reason
         else:
             value = float(item.evaluate(mechanism, row).values[0])
-            if math.isnan(value):
-                undefined[item.name] = item.blank if swing else missing_value_reason(item, machine, linkage)
+            reason = missing_value_reason(item, value, machine, linkage, swing)
+            if reason:
+                undefined[item.name] = reason
             else:
                 values[item.name] = value
     return Analysis(machine, linkage, values, undefined, chosen, title, swing)

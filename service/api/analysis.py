@@ -22,9 +22,9 @@ from ..designs.requirements import names_of, ranges_of, requirements_of, speed_r
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_lengths
-from ..runs.result import Row, json_ready
+from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
-from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing, undefined_of
+from ..topics.design_analysis import analysis_of, determined, numbers_of, numbers_of_swing
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, column_models
@@ -135,14 +135,15 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
 class WhatIfModel(OfDesign):
     """A design with other lengths, beside its front.
 
-    design: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: columns
-    of lengths that leave their range. dominated_by: numbers of designs of the front that are as good in every objective
-    and better in one; dominates: of those that it beats so; the greatest difference first, at most 20. cycle: null if
-    no curves were asked for.
+    design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
+    requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
+    designs of the front that are as good in every objective and better in one; dominates: of those that it beats so;
+    the greatest difference first, at most 20. cycle: null if no curves were asked for.
     """
 
     columns: list[ColumnModel]
     design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
+    undefined: dict[str, str] = Field(examples=[{"position_error_mm": "a position error comes from tolerances"}])
     broken: list[str] = Field(examples=[["stroke_mm"]])
     outside: list[str] = Field(examples=[[]])
     dominated_by: list[int] = Field(examples=[[12, 4]])
@@ -160,11 +161,10 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     if stored.part.motion is not None:
         if topics:
             require_turning(stored.part, f"the analysis {', '.join(topics)}")
-        return StoredAnalysisModel(
-            job=found.job.id, number=design, analysis=json_ready(numbers_of_swing(stored)), notes=[]
-        )
-    row = numbers_of(stored.mechanism, stored.linkage, stored.part.own)
-    record, notes = _with_topics(row, stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
+        row, undefined = numbers_of_swing(stored)
+        record = json_ready(row | {"undefined": undefined})
+        return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=[])
+    record, notes = _with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
 
 
@@ -193,8 +193,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))
     linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem)
-    row = numbers_of(mechanism, linkage, problem.own)
-    record, notes = _with_topics(row, mechanism, linkage, topics, problem.own, lenient=ALL in asked.show)
+    record, notes = _with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
 
 
@@ -238,12 +237,14 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     stored = found.design(design)
     stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
     changed = variation_of(stored, found.result, found.minimised)
+    row, undefined = determined(changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion)
     cycle = cycle_model(stored, asked.angles) if asked.angles else None
     return WhatIfModel(
         job=found.job.id,
         number=design,
         columns=column_models(all_columns(changed.row)),
-        design=json_ready(changed.row),
+        design=json_ready(row),
+        undefined=undefined,
         broken=changed.broken,
         outside=changed.outside,
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
@@ -255,10 +256,10 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
 
 
 def _with_topics(
-    row: Row, mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], own: Sequence[Quantity], *, lenient: bool
+    mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], own: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
-    undefined = undefined_of(row, mechanism, linkage, own)
+    row, undefined = numbers_of(mechanism, linkage, own)
     with SIMULATING.turn() if topics else nullcontext():
         analysed = analysis_of(
             row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient, undefined=undefined

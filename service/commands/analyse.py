@@ -32,7 +32,7 @@ from ..text.options import (
 )
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules, show_undefined
-from ..topics.design_analysis import analysis_of, numbers_of, undefined_of
+from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
@@ -89,7 +89,7 @@ def analyse(
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
     own = () if problem is None else problem.own
-    row = numbers_of(mechanism, linkage, own)
+    row, undefined = numbers_of(mechanism, linkage, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
     with Interruption() as interruption:
         found = analysis_of(
@@ -102,7 +102,7 @@ def analyse(
             notes=notes,
             cancelled=interruption.asked,
             lenient=True,
-            undefined=None if problem is None else undefined_of(row, mechanism, linkage, own),
+            undefined=None if problem is None else undefined,
         )
     if cycle is not None:
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)

@@ -49,7 +49,8 @@ def sweep(
 ) -> None:
     """Sweep quantities over one or two of crank, rod, offset and speed.
 
-    Where the linkage does not turn there is no value; the reason is given instead.
+    Where the linkage does not turn there is no value, nor of torques and forces where friction locks it; the reason
+    is given instead.
     """
     import numpy as np
 
@@ -100,7 +101,7 @@ def _show(
     for row in rows:
         at = [row[key_in(key, units)[0]] for key in keys]
         values = [row[key_in(item.field, units)[0]] for item in quantities]
-        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if row["reason"] else f"{cell:.6g}" for cell in values))
+        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if cell != cell else f"{cell:.6g}" for cell in values))
     print_table(screen, shown)
     if stuck := [row["reason"] for row in rows if row["reason"]]:
         say(f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}")

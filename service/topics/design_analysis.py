@@ -15,6 +15,7 @@ from .topic import TopicOfDesign
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...model.swing.swing import Swing
     from ...objectives.quantity import Quantity
     from ..designs.stored_designs import StoredDesign
 
@@ -39,37 +40,48 @@ class Analysis:
         return self.row | self.found | ({} if self.undefined is None else {"undefined": self.undefined})
 
 
-def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> Row:
-    """Return every quantity of one design. own: quantities of its job."""
+def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> tuple[Row, dict[str, str]]:
+    """Return every quantity of one design, and by column why it lacks others. own: quantities of its job."""
     from ...objectives.tables.analysis import columns_of
     from .peaks import row_of
 
-    return rows_of(columns_of(mechanism, row_of(linkage), own=own))[0]
+    return determined(rows_of(columns_of(mechanism, row_of(linkage), own=own))[0], mechanism, linkage, own)
 
 
-def undefined_of(row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> dict[str, str]:
-    """Return by column why a design has no value for a quantity. row: from `numbers_of`. own: quantities of its job."""
+def determined(
+    row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = (), swing: Swing | None = None
+) -> tuple[Row, dict[str, str]]:
+    """Return a row of all quantities with NaN for those that a design lacks, and by column why it lacks them.
+
+    row: of the `columns_of` of a table. own: quantities of the job. swing: in place of a full turn.
+    """
+    from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.missing_values import missing_value_reason
+    from ...objectives.tables.of_a_turn import PEAK_TORQUE_ANGLE
 
-    reasons = {}
+    reasons: dict[str, str] = {}
     for of in (*QUANTITIES.values(), *own):
-        reason = of.undefined_because([mechanism])
         value = row.get(of.field)
-        if reason is None and isinstance(value, float) and math.isnan(value):
-            reason = missing_value_reason(of, mechanism, linkage)
+        if not isinstance(value, float):
+            continue
+        reason = of.undefined_because([mechanism]) or missing_value_reason(of, value, mechanism, linkage, swing)
         if reason:
-            reasons[of.field] = reason
-    return reasons
+            reasons |= {key: reason for key in (of.field, f"slack_{of.field}") if key in row}
+    angle = row.get(PEAK_TORQUE_ANGLE)
+    if isinstance(angle, float) and math.isnan(angle):
+        reasons[PEAK_TORQUE_ANGLE] = reasons.get(PEAK_TORQUE.field, "the torque is the same at every crank angle")
+    return row | dict.fromkeys(reasons, math.nan), reasons
 
 
-def numbers_of_swing(design: StoredDesign) -> Row:
-    """Return every quantity of a design that swings."""
+def numbers_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
+    """Return every quantity of a design that swings, and by column why it lacks others."""
     import numpy as np
 
     from ...objectives.tables.swinging import columns_of
 
-    return rows_of(columns_of(design.part.mechanism, np.array([design.values]), design.part.own))[0]
+    row = rows_of(columns_of(design.part.mechanism, np.array([design.values]), design.part.own))[0]
+    return determined(row, design.mechanism, design.linkage, design.part.own, design.part.motion)
 
 
 def analysis_of(
@@ -87,9 +99,9 @@ def analysis_of(
 ) -> Analysis:
     """Return the analysis of one design.
 
-    row: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these. cancelled: asked
-    now and then; when it says so, the topics left are left out. lenient: a topic that this design does not have is
-    left out, not an error. undefined: of `undefined_of`.
+    row, undefined: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these.
+    cancelled: asked now and then; when it says so, the topics left are left out. lenient: a topic that this design does
+    not have is left out, not an error.
     """
     design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
     design += tuple(more)

@@ -12,12 +12,14 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.first_greatest import angle_in_cycle, first_greatest
 from slidercrank.objectives.tables.analysis import columns_of
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves
 from slidercrank.service.topics.cylinders import analysis as cylinders
 from slidercrank.service.topics.motor import analysis as motor
+from slidercrank.service.topics.uneven_speed import analysis as uneven_speed
 
 TURN = 2.0 * math.pi
 
@@ -88,3 +90,40 @@ def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_b
     # At zero from below.
     assert first_greatest(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
     assert [angle_in_cycle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(40))
+def test_no_extreme_of_a_symmetric_machine_is_named_at_the_end_of_its_cycle(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    profile = Harmonics(cosines=(0.0, float(random.uniform(-0.1, 0.1)))) if seed % 2 else None
+    machine = Mechanism(
+        speed=float(random.uniform(10.0, 200.0)),
+        slider_mass=float(random.uniform(0.2, 5.0)),
+        crank=RigidLink(mass=float(random.uniform(0.0, 1.0)), inertia=float(random.choice([0.0, 0.1, 10.0]))),
+        rod=RigidLink(mass=float(random.uniform(0.0, 2.0))),
+        speed_profile=profile,
+    )
+    crank = float(random.uniform(0.02, 0.08))
+    linkage = Linkage(crank, crank * float(random.uniform(1.2, 5.0)), 0.0)
+    named = dict(motor.numbers(machine, linkage))
+    if profile is not None:
+        named |= uneven_speed.numbers(machine, linkage)
+    angles = {key: angle for key, angle in named.items() if key.endswith("_angle_deg") and angle is not None}
+    for end in curve_extremes(machine, linkage):
+        for side in (end.least, end.greatest):
+            if not math.isnan(side.crank_angle):
+                angles[f"{end.name} {side.value}"] = math.degrees(side.crank_angle)
+    assert len(angles) > 4
+    for key, angle in angles.items():
+        assert 0.0 <= round(angle, 2) < 360.0, (key, angle)
+    inertia = named["least_reflected_inertia_angle_deg"]
+    assert inertia == pytest.approx(0.0, abs=1e-3) or inertia < 180.0 - 1e-3  # dead centres at 0 and 180 deg are alike
+
+
+def test_an_angle_before_zero_is_zero_where_equal_values_reach_it() -> None:
+    # cos(t + d) differs from its greatest value by d^2 / 2 at zero: less than 1e-9 for d below 4.5e-5 rad.
+    for before, expected in ((4e-5, 0.0), (2e-4, TURN - 2e-4)):
+        assert angle_in_cycle(TURN - before, TURN) == pytest.approx(expected, abs=1e-12)
+    assert f"{math.degrees(angle_in_cycle(TURN - 9.9e-5, TURN)):.2f}" == "0.00"
+    assert f"{math.degrees(angle_in_cycle(TURN - 1.1e-4, TURN)):.2f}" == "359.99"

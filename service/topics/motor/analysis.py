@@ -19,8 +19,9 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.members import cylinders_of
-from ....model.machine.two_turns import cycle_turns
+from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
+from ....model.signals.first_greatest import angle_in_cycle, first_greatest
 from ....model.signals.of_shaft import time_share
 from ....model.signals.signals import Signal
 from ...figures.sheets import Line, Sheet, over_turn, turn
@@ -29,6 +30,7 @@ from ...text.tables import plain
 from ..peaks import peak, row_of
 
 _SAMPLES = 2048
+_MOST_DIPS = 64  # more than 24 cylinders have; a constant inertia has as many as samples
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
@@ -42,18 +44,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
     averages = average_torque(mechanism, design)
 
-    def inertia(angle: Any) -> Any:
-        return _inertia(mechanism, linkage, angle)
-
-    around = np.linspace(0.0, 2.0 * math.pi, _SAMPLES, endpoint=False)
-    lowest, step = float(around[np.argmin(inertia(around))]), 2.0 * math.pi / _SAMPLES
-    least = minimize_scalar(
-        lambda angle: float(inertia(angle)[0]),
-        bounds=(lowest - step, lowest + step),
-        method="bounded",
-        options={"xatol": 1e-10},
-    )
-
+    least, least_angle = _least_inertia(mechanism, linkage)
     return {
         "peak_torque_Nm": plain(torque.value),
         "peak_torque_angle_deg": plain(torque.degrees),
@@ -64,10 +55,30 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]),
         "greatest_reflected_inertia_kg_m2": greatest.value,
         "greatest_reflected_inertia_angle_deg": greatest.degrees,
-        "least_reflected_inertia_kg_m2": float(least.fun),
-        "least_reflected_inertia_angle_deg": math.degrees(least.x) % 360.0,
+        "least_reflected_inertia_kg_m2": least,
+        "least_reflected_inertia_angle_deg": math.degrees(least_angle),
         "mean_reflected_inertia_kg_m2": float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
     }
+
+
+def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
+    """Return the least moving inertia and its crank angle, rad; of equal ones the first."""
+    around = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
+    values, step = _inertia(mechanism, linkage, around), TURN / _SAMPLES
+    dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
+    size, rise = values.max(), np.abs(values - np.roll(values, 1)).max()
+    found = [
+        minimize_scalar(
+            lambda angle: float(_inertia(mechanism, linkage, angle)[0]),
+            bounds=(lowest - step, lowest + step),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        for lowest in around[dips[values[dips] <= values.min() + rise]].tolist()[:_MOST_DIPS]
+    ]
+    heights, angles = (np.array(part) for part in zip(*((size - at.fun, at.x) for at in found), strict=True))
+    first = found[int(first_greatest(heights, angles, TURN))]
+    return float(min(at.fun for at in found)), angle_in_cycle(float(first.x), TURN)
 
 
 def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:

@@ -12,7 +12,8 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Bar
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turns import cycle_turns
+from ....model.machine.two_turns import TURN, cycle_turns
+from ....model.signals.first_greatest import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.places import Along
 from ....model.strength.stress_cycle import stress_peaks
@@ -20,6 +21,7 @@ from ....objectives.bars import LINKS, NEAR
 from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
+from ....objectives.tables.missing_values import missing_value_reason
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...text import tables as text
@@ -42,13 +44,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     for of in QUANTITIES.values():
         if of.group is Group.STRENGTH and not (of.lacks(mechanism, "undefined") or of.lacks(mechanism, "zero")):
             value = float(of.unit.factor * of.evaluate(mechanism, design).values[0])
-            found[of.field] = None if math.isnan(value) else value
-    eyes = eye_stresses(mechanism, design)
+            found[of.field] = None if missing_value_reason(of, value, mechanism, linkage) else value
+    eyes, cycle = eye_stresses(mechanism, design), TURN * cycle_turns(mechanism)
     bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
     for name, bar in bars.items():
         for pin, (stress, angle) in eyes[name].items():
-            bar[f"eye_at_{pin}_MPa"] = 1e-6 * stress
-            bar[f"eye_at_{pin}_at_crank_angle_deg"] = plain(math.degrees(angle) % (360.0 * cycle_turns(mechanism)))
+            bar[f"eye_at_{pin}_MPa"] = plain(1e-6 * stress)
+            bar[f"eye_at_{pin}_at_crank_angle_deg"] = plain(math.degrees(angle_in_cycle(angle, cycle)))
     return found | {"bars": bars}
 
 
@@ -64,8 +66,8 @@ def _bars(mechanism: Mechanism) -> list[str]:
 def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
     """Return the greatest stresses along a bar, its eyes apart, and where; None of a sign that it never has."""
     found: dict[str, float | None] = {}
-    cycle = 360.0 * cycle_turns(mechanism)
-    for sign, criterion in zip(_SIGNS, STATIC, strict=True):
+    cycle = TURN * cycle_turns(mechanism)
+    for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
         along = (Along(LINKS[name].part),)
         (peak,) = stress_peaks(mechanism, along, row_of(linkage), np.array([criterion]), kept=1)
         share, _, *angles = peak.places[0, 0]
@@ -75,7 +77,7 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
             value = math.nan
         found |= {
             f"greatest_{sign}_MPa": plain(1e-6 * value),
-            f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angles[_SIGNS.index(sign)]) % cycle),
+            f"greatest_{sign}_at_crank_angle_deg": plain(math.degrees(angle_in_cycle(angles[place], cycle))),
             f"greatest_{sign}_from_crank_pin_mm": plain(1e3 * share * float(getattr(linkage, name))),
         }
     return found

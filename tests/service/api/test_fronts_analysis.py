@@ -210,7 +210,7 @@ def test_stored_designs_have_the_choices_and_the_varying_numbers_of_their_rows()
         stored = design_of(problem, given)
         assert stored.part.rod == front.part(row).rod
         assert stored.mechanism == again.mechanism(row)
-        for key, value in numbers_of(stored.mechanism, stored.linkage).items():
+        for key, value in numbers_of(stored.mechanism, stored.linkage)[0].items():
             expected = (
                 pytest.approx(given[key], rel=1e-9, abs=1e-12, nan_ok=True) if isinstance(value, float) else value
             )

@@ -126,7 +126,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
       fill(results);
       return;
     }
-    fill(verdict, sentences(answer, requirements, job));
+    fill(verdict, sentences(answer, requirements, objectives, job));
     fill(results, comparison(objectives, base, answer.design));
   }
 
@@ -247,14 +247,16 @@ function comparison(objectives, before, after) {
     h("tbody", {}, rows));
 }
 
-/** @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {string} job */
-function sentences(answer, requirements, job) {
-  const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design } = answer;
+/** @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {Api.Objective[]} objectives @param {string} job */
+function sentences(answer, requirements, objectives, job) {
+  const { broken, dominated_by: better, dominated_by_count: count, dominates_count: beaten, design, undefined: missing } = answer;
   const found = broken.map((column) => {
     if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Misses a requirement: neither stroke is the slow one." : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`);
     const asked = requirements.find((one) => one.column === column);
-    return asked ? h("p", { class: "bad" }, `Misses a requirement: ${asked.title} ${text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
+    return asked ? h("p", { class: "bad" }, `Misses a requirement: ${asked.title} ${design[column] === null ? "has no value" : text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
   });
+  const reasons = [...broken, ...objectives.map(({ column }) => column)].map((column) => missing[column]).filter(Boolean);
+  found.push(...[...new Set(reasons)].map((reason) => h("p", { class: "bad" }, `No value: ${reason}.`)));
   if (count) {
     const shown = better.slice(0, 3).map((number, n) => [n ? ", " : "", h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`)]);
     found.push(h("p", {}, `Behind the front: ${count === 1 ? "one design is" : `${count} designs are`} at least as good in every objective: `, shown, count > 3 ? ", …" : ""));
