@@ -236,7 +236,7 @@ def test_a_design_of_an_impossible_job_is_analysed(kind: str) -> None:
         return
     problem = parse_job(tables, require_feasible=False)
     assert problem.parts()[0].analyse([0.14, 0.31, 0.06])["time_ratio"] > 1.0
-    row = numbers_of(problem.mechanism.nominal, Linkage(0.14, 0.31, 0.06), problem.own)
+    row, _ = numbers_of(problem.mechanism.nominal, Linkage(0.14, 0.31, 0.06), problem.own)
     assert judged(problem, row)
 
 
