@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import io
 
-from matplotlib.figure import Figure
+from .extras import NamingExtra
+
+with NamingExtra("figures need"):
+    from matplotlib.figure import Figure
 
 
 class NotebookFigure(Figure):

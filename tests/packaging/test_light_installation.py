@@ -219,6 +219,25 @@ for name in sys.argv[1:]:
     assert re.findall(r'the extra "(\w+)"', done.stdout) == ["figures", "service", "service"]
 
 
+def test_every_plot_names_the_extra_for_figures(script: str, root: Path, tmp_path: Path) -> None:
+    code = f"""
+import slidercrank as sc
+from slidercrank.model.errors import MissingExtra
+linkage = sc.Linkage(crank=0.04, rod=0.1, offset=0.02)
+analysis = sc.analyse(sc.Mechanism(speed=3.0, slider_mass=1.0), (0.04, 0.1, 0.02))
+front = sc.solve(sc.load_job({str(root / "runs/feeder.toml")!r}))
+for plot in (linkage.plot, analysis.plot, front.plot):
+    try:
+        plot()
+    except MissingExtra as error:
+        print(error)
+"""
+    done = run(f"{script}{code}", tmp_path)
+    assert done.returncode == 0, done.stderr
+    line = 'figures need the extra "figures", which is not installed; add it: pip install "slidercrank[figures]"'
+    assert done.stdout.splitlines() == [line] * 3
+
+
 def test_every_package_belongs_to_one_extra_and_all_has_those_of_every_command(project: dict[str, Any]) -> None:
     extras = {name: [Requirement(line) for line in lines] for name, lines in project["optional-dependencies"].items()}
     uses = {name: needs for name, needs in extras.items() if name not in DEVELOPMENT | {"all"}}
