@@ -43,7 +43,8 @@ def runs_place(option: Path | None) -> Path:
 
 def slug(name: str) -> str:
     """Return a name as lower-case letters, digits and hyphens, for a folder."""
-    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    spelt = name.replace("ß", "ss").replace("ẞ", "SS")  # it has no decomposition
+    plain = unicodedata.normalize("NFKD", spelt).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:40].rstrip("-") or "run"
 
 

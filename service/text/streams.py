@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import codecs
+import contextlib
 import io
 import os
 import sys
 from typing import Any
 
 from ...model.errors import OutputLost
+from ...model.file_names import path_text
+
+_AS_SHOWN = "slidercrank.shown"
+"""Name of the error handler for characters that a stream cannot encode."""
 
 
 class Output(io.TextIOWrapper):
@@ -51,6 +57,7 @@ def reader_left() -> bool:
 
 def guard_streams() -> None:
     """Make standard streams that say why they fail, and show "?" for characters that the terminal does not have."""
+    codecs.register_error(_AS_SHOWN, _shown)
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
     if sys.stdout is None:
@@ -59,9 +66,22 @@ def guard_streams() -> None:
         sys.stdout = Output(binary, encoding="utf-8")
     elif isinstance(sys.stdout, io.TextIOWrapper):
         encoding, at_once = sys.stdout.encoding, sys.stdout.line_buffering
-        sys.stdout = Output(sys.stdout.detach(), encoding=encoding, errors="replace", line_buffering=at_once)
+        sys.stdout = Output(sys.stdout.detach(), encoding=encoding, errors=_AS_SHOWN, line_buffering=at_once)
     if isinstance(sys.stderr, io.TextIOWrapper):
-        sys.stderr.reconfigure(errors="replace")
+        sys.stderr.reconfigure(errors=_AS_SHOWN)
+
+
+def _shown(error: UnicodeError) -> tuple[bytes, int]:
+    """Return what a stream shows for characters that it cannot encode, and where it continues.
+
+    Bytes of a path that the locale could not decode are joined to characters first, so that each letter is one.
+    """
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    text = error.object[error.start : error.end]
+    with contextlib.suppress(UnicodeEncodeError):  # a lone surrogate that does not stand for a byte
+        text = path_text(text)
+    return text.encode(error.encoding, "replace"), error.end
 
 
 def give_up_output() -> None:

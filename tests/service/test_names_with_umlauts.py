@@ -94,3 +94,21 @@ def test_umlauts_in_a_locale_of_ascii_are_no_fault(tmp_path: Path) -> None:
     assert run.parent == tmp_path / "Läufe"
     assert {"Größe.csv", "job.toml"} <= {file.name for file in run.iterdir()}
     assert "Förderer.toml" in (run / "log.txt").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("utf8", "shown"), [("0", "F?rder"), ("1", "Förder")])
+def test_a_letter_of_a_path_is_one_character_on_every_screen(tmp_path: Path, utf8: str, shown: str) -> None:
+    """As it is for the same letter of a name; a byte that is not UTF-8 is one character too."""
+    (tmp_path / "Förderer.toml").write_text(fronts.JOB.replace("Short", "Förderer"), encoding="utf-8")
+    (tmp_path / f"{LATIN}.toml").write_text(fronts.JOB, encoding="utf-8")
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": utf8}
+    environment.pop("PYTHONIOENCODING", None)
+    for arguments, words in (
+        (["check", "Förderer.toml"], f"{shown}er.toml is a valid job: {shown}er"),
+        (["check", "Förder.toml"], f"{shown}.toml: no such file"),
+        (["check", f"{LATIN}.toml"], f"F{'?' if utf8 == '0' else chr(0xFFFD)}rderer.toml is a valid job"),
+    ):
+        command = [sys.executable, "-m", "slidercrank", *arguments]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, timeout=300, check=False)
+        assert words in (done.stdout + done.stderr).decode(), arguments

@@ -172,6 +172,8 @@ def test_a_link_stays_one_and_a_pipe_takes_what_is_written(tmp_path: Path) -> No
     [
         ("Feeder with rod = 3.2 offset", "feeder-with-rod-3-2-offset"),
         ("Rüttelsieb Nº 5", "ruttelsieb-no-5"),
+        ("Förderer größer", "forderer-grosser"),
+        ("GROẞE PRESSE", "grosse-presse"),
         ("../../etc/passwd", "etc-passwd"),
         ("振動篩", "run"),
         ("x" * 80, "x" * 40),
