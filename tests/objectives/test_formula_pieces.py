@@ -25,6 +25,7 @@ MIXED = (
     "max(crank, offset) - max(crank, offset / 1.5)",
     "max(crank, offset) / max(stroke, 80 mm)",
     "min(crank, offset) * max(rod_to_crank, 5)",
+    "(crank + -rod) * max(crank, offset)",
 )
 
 
