@@ -16,7 +16,7 @@ from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDE
 from .average_torque import MEAN_TORQUE
 from .bars import Formula
 from .kinds import ENERGY, RATIO
-from .needs import DRIVEN, LOAD_WORK, LOSSES, RUBS, WORK
+from .needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
 from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
@@ -155,7 +155,7 @@ EFFICIENCY = Efficiency(
     example=0.9,
     better="high",
     domain=Domain.share("an efficiency", "0.7 to 0.95"),
-    needs=(LOAD_WORK, LOSSES),
+    needs=(LOAD_WORK, *LOSSES),
 )
 ENERGY_PER_CYCLE = EnergyPerCycle(
     name="energy_per_cycle",
@@ -212,5 +212,5 @@ FRICTION_LOSS = FrictionLoss(
     section=_SECTION,
     picture="torque",
     example="5 J",
-    needs=(RUBS,),
+    needs=HEAT,
 )

@@ -89,10 +89,10 @@ def _pivot_loaded(machine: Mechanism) -> bool:
 _defining = partial(Need, without="undefined")
 _MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
-    "it comes from masses that move or weigh, and from loads; got none; add for example "
+    "it comes from masses that move or weigh, and from loads; got none that is not zero; add for example "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
-_SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;")
+_SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;") + " on the slider"
 _SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
@@ -121,22 +121,36 @@ LOADED = Need(_loaded, _SLIDER_LOADS)
 PIVOT_LOADED = Need(_pivot_loaded, _SLIDER_LOADS)
 WORK = Need(
     works_over_a_turn,
-    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction, no load that "
-    "always resists (viscous, drag) and none that differs between the strokes; use {instead}, or add what the machine "
-    "works against",
+    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction in joints that carry "
+    "a force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, or "
+    "add what the machine works against",
 )
 LOAD_WORK = _defining(
     load_works_over_a_turn,
     "an efficiency needs a load that takes or supplies net work over a cycle; got none; "
     'add for example [[load]] force = "200 N", opposes = "motion"',
 )
-_RUBS = "add for example [friction] guide = 0.1"
-RUBS = _defining(rubs_under_load, f"it comes from friction in loaded joints; got none; {_RUBS}")
-LOSSES = Need(
-    rubs_under_load,
-    f"without friction nothing is lost, and the efficiency of every design is 1; got none; {_RUBS}",
-    without="equal",
+_RUBS = "got none; add for example [friction] guide = 0.1"
+_UNLOADED = (
+    "got no inertia force or weight of rod or slider, nor a load on the slider; add for example "
+    '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]] on the slider'
 )
+_HEAT = "it comes from friction in loaded joints"
+HEAT = (_defining(_friction, f"{_HEAT}; {_RUBS}"), _defining(rubs_under_load, f"{_HEAT}; {_UNLOADED}"))
+"""Friction, and joints that carry a force."""
+LOSSES = (
+    Need(
+        _friction,
+        f"without friction nothing is lost, and the efficiency of every design is 1; {_RUBS}",
+        without="equal",
+    ),
+    Need(
+        rubs_under_load,
+        f"friction in joints without a force takes nothing, and the efficiency of every design is 1; {_UNLOADED}",
+        without="equal",
+    ),
+)
+"""Friction, and joints that carry a force: else an efficiency is 1."""
 CYLINDER = _defining(
     lambda machine: bool(cylinders(machine)),
     "it comes from a cylinder; got none; add for example "

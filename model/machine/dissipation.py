@@ -85,8 +85,8 @@ def drive_loaded(machine: Mechanism) -> bool:
 
 
 def _acting_loads(machine: Mechanism) -> list[Load]:
-    """Return the active loads: all if the crank turns, else those that need no speed."""
-    return [load for load in machine.loads if machine.speed != 0.0 or not load.speed_power]
+    """Return the loads that are not zero throughout; if the crank is at rest, those that need no speed."""
+    return [load for load in machine.loads if load.acts and (machine.speed != 0.0 or not load.speed_power)]
 
 
 def pivot_loaded(machine: Mechanism) -> bool:
@@ -129,7 +129,7 @@ def _works(machine: Mechanism) -> bool:
 
 def _load_works(machine: Mechanism) -> bool:
     sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
-    for load in machine.loads:
+    for load in _acting_loads(machine):
         for key, own in load.turn_work(moving=machine.speed != 0.0).items():
             sizes[key].extend(own)
     return any(map(_adds_up, sizes.values()))

@@ -91,12 +91,12 @@ def _one_way(value: object) -> object:
 
 def _way(value: object) -> str:
     if isinstance(value, Part):
-        return "(section)" if isinstance(value, SectionLink) else "(mass)"
-    return "(section)" if isinstance(value, Mapping) and _SECTION & set(value) else "(mass)"
+        return "(by section)" if isinstance(value, SectionLink) else "(by mass)"
+    return "(by section)" if isinstance(value, Mapping) and _SECTION & set(value) else "(by mass)"
 
 
 AnyLink = Annotated[
-    Annotated[SectionLink, Tag("(section)")] | Annotated[MassLink, Tag("(mass)")],
+    Annotated[SectionLink, Tag("(by section)")] | Annotated[MassLink, Tag("(by mass)")],
     Discriminator(_way),
     BeforeValidator(_one_way),
 ]

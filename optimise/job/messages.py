@@ -58,14 +58,13 @@ def explain(error: ValidationError, schema: Schema) -> list[str]:
     for details in listed:
         if details["type"] == "too_short" and any(_within(other, details) for other in listed):
             continue  # a list that is too short for want of the entries that were refused
-        path = [part for part in details["loc"] if not _is_tag(part)]
         if details["type"] == "extra_forbidden":
-            allowed = list(_properties(schema, path[:-1]))
-            near = closest(str(path[-1]), allowed)
-            meant.add(key_of([*path[:-1], near]) if near else "")
-            unknown.append(_unknown(path, details["input"], allowed, near))
+            sentence, near = _unknown(details["loc"], details["input"], schema)
+            meant.add(near)
+            unknown.append(sentence)
         else:
-            sentence = f"{key_of(path)}: {_sentence(path, details, schema)}"
+            path = _keys(details["loc"])
+            sentence = f"{key_of(path)}: {_sentence(details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
             else:
@@ -78,8 +77,13 @@ def _within(inner: ErrorDetails, outer: ErrorDetails) -> bool:
 
 
 def _is_tag(part: object) -> bool:
-    """Whether a step of a location is the form that a value takes, "(mass)", rather than a key."""
+    """Whether a step of a location is the form that a value takes, "(by mass)", rather than a key."""
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
+
+
+def _keys(loc: Sequence[Any]) -> list[Any]:
+    """Return a location without its tags."""
+    return [part for part in loc if not _is_tag(part)]
 
 
 def key_of(path: Sequence[object]) -> str:
@@ -95,15 +99,40 @@ def key_of(path: Sequence[object]) -> str:
     return text or "the job"
 
 
-def _unknown(path: Sequence[Any], value: object, allowed: list[str], near: str | None) -> str:
+def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, str]:
+    """Return the message on an unknown key, and the key that was probably meant; "" if none is near.
+
+    Of a table that comes in kinds, such as a load, only the keys of its own kind are possible.
+    """
+    table, key = loc[:-1], loc[-1]
+    path = _keys(table)
+    allowed = list(_properties(schema, table))
     more = f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
-    choice = f"did you mean {near}?" if near else f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
-    return f"{key_of(path)}: unknown key; got {shown(value)}; {choice}"
+    possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
+    place = key_of([*path, key])
+    others, kind = _kinds_with(str(key), schema, path), table[-1][1:-1] if table and _is_tag(table[-1]) else ""
+    if others and kind in allowed:
+        noun = path[-2] if isinstance(path[-1], int) else "table"
+        owners = " or ".join(filter(None, (", ".join(others[:-1]), others[-1])))
+        return (
+            f"{place}: a {noun} with {kind} has no such key; got {shown(value)}; a {noun} with {owners} has "
+            f"it; {possible}"
+        ), ""
+    near = closest(str(key), allowed)
+    choice = f"did you mean {near}?" if near else possible
+    return f"{place}: unknown key; got {shown(value)}; {choice}", key_of([*path, near]) if near else ""
 
 
-def _sentence(path: Sequence[Any], details: ErrorDetails, schema: Schema) -> str:
+def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
+    """Return the keys that tell those kinds of a table that have a key."""
+    having = [node for node in _at(schema, path) if key in node.get("properties", {})]
+    told = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
+    return list(dict.fromkeys(filter(None, told)))
+
+
+def _sentence(details: ErrorDetails, schema: Schema) -> str:
     """Return rule, value and remedy of one problem."""
-    kind, value, context = details["type"], details["input"], details.get("ctx", {})
+    kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = _example(schema, path)
     write = f"; write for example {example}" if example else ""
     got = f"got {shown(value)}"
@@ -147,7 +176,7 @@ def _example(schema: Schema, path: Sequence[Any]) -> str:
     """Return an example of the key, written as in a job file; "" if the schema has none."""
     for node in _at(schema, path):
         if node.get("examples"):
-            key = next((str(part) for part in reversed(path) if isinstance(part, str)), "")
+            key = next((str(part) for part in reversed(_keys(path)) if isinstance(part, str)), "")
             return f"{key} = {toml(node['examples'][0])}"
     return ""
 
@@ -177,9 +206,12 @@ def _words(nodes: Sequence[Schema]) -> Iterator[str]:
 
 
 def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
-    """Return every alternative that the schema has at a location."""
+    """Return every alternative that the schema has at a location; of a tag, those of that kind, which have its key."""
     nodes = _alternatives(schema, schema)
     for part in path:
+        if _is_tag(part):
+            nodes = [node for node in nodes if part[1:-1] in node.get("properties", {})] or nodes
+            continue
         below = []
         for node in nodes:
             inner = node.get("items") if isinstance(part, int) else None

@@ -33,6 +33,9 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
             f"must name a number that the job gives; got {path}, but the job gives mechanism.{other[0]}; give {key} in "
             f"[mechanism] in place of {other[0]}"
         )
+    several = _several(path, tables)
+    if several:
+        return several
     near = closest(path, [known for known, value in _given(tables, "") if _is_plain(value)])
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
@@ -40,9 +43,38 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
     return f"must name a number that the job gives; got {path}; {hint}"
 
 
+def _several(path: str, tables: Mapping[str, Any]) -> str:
+    """Return in words that a path names a table, or a list or a value in one; "" if it does not."""
+    part, whole = _reached(path, tables)
+    if isinstance(part, list | tuple) and part and not any(isinstance(item, Mapping) for item in part):
+        return (
+            f"must name a single number; got {path}{',' if whole else ' from'} a list of {len(part)} values; the "
+            "values in a list, such as the points of a table, cannot vary; solve a job for each list"
+        )
+    if whole and isinstance(part, Mapping):
+        number = next((known for known, value in _given(part, path) if _is_number(value)), None)
+        named = f"; did you mean {number}?" if number else " without a number that can vary"
+        return f"must name a number that the job gives; got {path}, a table{named}"
+    return ""
+
+
 def stated(part: Any) -> dict[str, Any]:
     """Return the values that a part of a job states, by key; nested parts stay as read."""
     return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
+
+
+def _reached(path: str, tables: Mapping[str, Any]) -> tuple[Any, bool]:
+    """Return the innermost part of a job that a path leads into, and whether the path ends there."""
+    part: Any = tables
+    steps = path.split(".")
+    for step in steps if steps[0] in ROOTS else ():
+        inner = {str(n + 1): item for n, item in enumerate(part)} if isinstance(part, list | tuple) else part
+        if not isinstance(inner, Mapping) or step not in inner:
+            return part, False
+        if not isinstance(part, Mapping) and not isinstance(inner[step], Mapping):
+            return part, False
+        part = inner[step]
+    return part, steps[0] in ROOTS
 
 
 def _with(part: Any, steps: list[str], value: Any) -> Any:
@@ -68,6 +100,11 @@ def _with(part: Any, steps: list[str], value: Any) -> Any:
 
 def _is_plain(value: object) -> bool:
     return isinstance(value, int | float | str)
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value is a number, or a text that begins like one."""
+    return (isinstance(value, float | int) and not isinstance(value, bool)) or str(value)[:1] in set("+-.0123456789")
 
 
 def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:

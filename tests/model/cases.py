@@ -29,10 +29,10 @@ from slidercrank.objectives.needs import (
     COUPLES,
     CRANK_BAR,
     CYLINDER,
+    HEAT,
     LOSSES,
     REPEATS,
     ROD_BAR,
-    RUBS,
     WEARS,
     Need,
 )
@@ -173,7 +173,7 @@ def _fitted(needs: set[Need], machine: Mechanism) -> Mechanism:
         return replace(machine, acceleration=0.0)
     if COUPLES in needs:
         return replace(machine, arrangement=Arrangement(phases=(0.0, 2.0), places=(-0.05, 0.06)))
-    if {LOSSES, RUBS} & needs:
+    if {*LOSSES, *HEAT} & needs:
         resistance = StrokeForce(outward=-3000.0, inward=3000.0)
         return replace(machine, friction=RUBBING_PIVOT, loads=(*machine.loads, resistance))
     if BARS_OF & needs:

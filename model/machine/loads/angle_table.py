@@ -55,6 +55,7 @@ class AngleTable(Load):
     turn: int = 0
 
     enters: ClassVar = Enters.ANGLE_TABLE
+    sizes: ClassVar = ("forces",)
     tabulated: ClassVar = ("forces", "N")
 
     def __post_init__(self) -> None:

@@ -27,6 +27,7 @@ class CrankTorque(Load):
 
     enters: ClassVar = Enters.CRANK_TORQUE
     on_crank: ClassVar = True
+    sizes: ClassVar = ("torque", "resistance", "crank_stiffness")
     slots: ClassVar = {
         "torque": (2, "N m"),
         "resistance": (3, "N m"),

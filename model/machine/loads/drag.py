@@ -27,6 +27,7 @@ class Drag(Load):
     enters: ClassVar = Enters.FORMULA
     formula: ClassVar = _force
     speed_power: ClassVar = 2
+    sizes: ClassVar = ("drag",)
     slots: ClassVar = {"drag": (2, "N s^2/m^2")}
 
     def __post_init__(self) -> None:

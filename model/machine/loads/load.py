@@ -118,8 +118,9 @@ class Load:
     while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
     `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
     proportional to. on_crank: whether it is a torque on the crank. every_corner: whether its numbers that vary must
-    be possible at every combination of their ends, not only all at the lower and all at the upper. slots: place in the
-    numbers of a load and SI unit of each field that designs can vary. tables: of job files.
+    be possible at every combination of their ends, not only all at the lower and all at the upper. sizes: fields that
+    are all zero if the load is zero throughout; none of a load that never is. slots: place in the numbers of a load and
+    SI unit of each field that designs can vary. tables: of job files.
     """
 
     enters: ClassVar[Enters]
@@ -127,12 +128,18 @@ class Load:
     speed_power: ClassVar[Literal[0, 1, 2]] = 0
     on_crank: ClassVar[bool] = False
     every_corner: ClassVar[bool] = False
+    sizes: ClassVar[tuple[str, ...]] = ()
     slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
     tables: ClassVar[tuple[Table, ...]]
 
     def numbers(self) -> tuple[float, ...]:
         """Return factors in the outward and the inward stroke, and two of the load's own; more of a cylinder."""
         raise NotImplementedError
+
+    @property
+    def acts(self) -> bool:
+        """Whether it is anything but zero throughout."""
+        return not self.sizes or any(np.any(getattr(self, name)) for name in self.sizes)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
         """Return where the load's table has knots, and the forces there; none if it has no table.

@@ -44,6 +44,7 @@ class PositionTable(Load):
     during: During = "cycle"
 
     enters: ClassVar = Enters.POSITION_TABLE
+    sizes: ClassVar = ("forces",)
 
     def __post_init__(self) -> None:
         keep_tuples(self, "positions", "forces")

@@ -22,6 +22,7 @@ class Spring(Load):
     datum: Datum = "crank pivot"
 
     enters: ClassVar = Enters.SPRING
+    sizes: ClassVar = ("stiffness",)
     slots: ClassVar = {"stiffness": (2, "N/m"), "free_position": (3, "m")}
 
     def __post_init__(self) -> None:

@@ -22,6 +22,7 @@ class StrokeForce(Load):
     inward: float
 
     enters: ClassVar = Enters.STROKE_FORCE
+    sizes: ClassVar = ("outward", "inward")
     slots: ClassVar = {"outward": (0, "N"), "inward": (1, "N")}
 
     def __post_init__(self) -> None:

@@ -18,6 +18,7 @@ class Viscous(Load):
 
     enters: ClassVar = Enters.VISCOUS
     speed_power: ClassVar = 1
+    sizes: ClassVar = ("coefficient",)
     slots: ClassVar = {"coefficient": (2, "N s/m")}
 
     def __post_init__(self) -> None:

@@ -12,7 +12,7 @@ const SAID = [
   ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
   ["a quantity that is held at one value cannot be an objective too; got constraints.time_ratio with equals; leave out one of the two",
     "a quantity that is held at one value cannot be an objective too; got “exactly” among the requirements; leave out one of the two"],
-  ['it comes from masses that move or weigh, and from loads; got none; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]', "it comes from masses that move or weigh, and from loads; got none; give it under “Masses and loads”"],
+  ['it comes from masses that move or weigh, and from loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]', "it comes from masses that move or weigh, and from loads; got none that is not zero; give it under “Masses and loads”"],
   ['it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"', "it comes from a turning crank; got speed 0; give it under “Motion”"],
   ["a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle", "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle"],
   ["it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md", "it comes from a material and pins; got none; give it under “Material and pins”"],
