@@ -80,8 +80,9 @@ def analyse(
 
     Without JOB it has no masses, loads and tolerances: motion and proportions only. Without --speed, nothing that
     depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
-    repeated. With --design, a run stands in place of JOB, and the design has its dimensions. Of topics that the design
-    does not have the reason is given once everything else is shown; the exit code is then 2.
+    repeated. With --design, a run stands in place of JOB, and the design has its dimensions. If the design does not
+    have a topic, the reason is given after everything else; the exit code is then 2 if the topic was named, and 0
+    with `--show all`.
     """
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)

@@ -173,3 +173,14 @@ def test_a_quantity_of_the_job_in_an_unusual_unit_has_its_title_and_unit(tmp_pat
     job.write_text(text)
     shown = command("analyse", job, *FEEDER).stdout
     assert "m^2" in next(line for line in shown.splitlines() if line.lstrip().startswith("work"))
+
+
+def test_the_help_says_when_a_missing_topic_is_an_error(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    named = command("analyse", job, *FEEDER, "--show", "tolerances,friction")
+    every = command("analyse", job, *FEEDER, "--show", "all")
+    assert "tolerances" in named.stderr
+    assert "tolerances" in every.stderr
+    assert (named.exit_code, every.exit_code) == (2, 0)
+    text = " ".join(command("analyse", "--help").stdout.split())
+    assert "the exit code is then 2 if the topic was named, and 0 with `--show all`" in text
