@@ -143,7 +143,8 @@ def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[
         alone = first.join(*others)
         best_in = np.concatenate([np.full(len(found), column) for column, found in each])
         held = polished(evaluators[index], alone.u, span, best_in=best_in)
-        lost = (held.values - alone.values)[np.arange(len(alone)), best_in] > SAME
+        own = np.arange(len(alone)), best_in
+        lost = held.values[own] > alone.values[own] + SAME  # no difference: both are infinite without a least value
         yield index, held.join(alone[lost | (held.violation > FEASIBLE)])
 
 
