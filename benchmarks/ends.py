@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.same_fronts import random_machine
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
@@ -58,14 +59,7 @@ def random_job(seed: int) -> Table:
     wanted = random.choice(list(_WANTED), size=random.integers(3, 5), replace=False)
     job: Table = {
         "name": f"ends {seed}",
-        "mechanism": {
-            "speed": f"{random.uniform(30.0, 400.0):.3f} rpm",
-            "crank": {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
-            "rod": {"width": "25 mm", "depth": "15 mm", "density": "7800 kg/m^3"},
-            "slider": {"mass": f"{random.uniform(0.5, 5.0):.3f} kg"},
-        },
-        "load": [{"force": "150 N", "opposes": str(random.choice(["motion", "outward stroke", "inward stroke"]))}],
-        "tolerances": {"crank": "0.05 mm", "rod": "0.1 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
+        **random_machine(random, slowest=30.0),
         "variables": variables,
         "constraints": {"transmission_angle": {"min": f"{random.uniform(10.0, 30.0):.1f} deg"}},
         "objectives": {str(name): _WANTED[str(name)] for name in wanted},

@@ -75,6 +75,20 @@ with open(sys.argv[2], "w", encoding="utf-8") as file:
 """
 
 
+def random_machine(random: np.random.Generator, *, slowest: float) -> Table:
+    """Return the tables of a machine: mechanism, load and tolerances. slowest: least speed, rpm."""
+    return {
+        "mechanism": {
+            "speed": f"{random.uniform(slowest, 400.0):.3f} rpm",
+            "crank": {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
+            "rod": {"width": "25 mm", "depth": "15 mm", "density": "7800 kg/m^3"},
+            "slider": {"mass": f"{random.uniform(0.5, 5.0):.3f} kg"},
+        },
+        "load": [{"force": "150 N", "opposes": str(random.choice(["motion", "outward stroke", "inward stroke"]))}],
+        "tolerances": {"crank": "0.05 mm", "rod": "0.1 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
+    }
+
+
 def random_job(seed: int) -> Table:
     """Return a job around a random linkage: rules that it meets, one to four objectives, any of the methods."""
     random = np.random.default_rng([20_261_122, seed])
@@ -89,14 +103,7 @@ def random_job(seed: int) -> Table:
     method = str(random.choice(ONE if len(wanted) == 1 else SEVERAL))
     job: Table = {
         "name": f"random {seed}",
-        "mechanism": {
-            "speed": f"{random.uniform(60.0, 400.0):.3f} rpm",
-            "crank": {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
-            "rod": {"width": "25 mm", "depth": "15 mm", "density": "7800 kg/m^3"},
-            "slider": {"mass": f"{random.uniform(0.5, 5.0):.3f} kg"},
-        },
-        "load": [{"force": "150 N", "opposes": str(random.choice(["motion", "outward stroke", "inward stroke"]))}],
-        "tolerances": {"crank": "0.05 mm", "rod": "0.1 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
+        **random_machine(random, slowest=60.0),
         "variables": variables,
         "constraints": {"transmission_angle": {"min": "25 deg"}},
         "objectives": {str(name): OBJECTIVES[str(name)] for name in wanted},

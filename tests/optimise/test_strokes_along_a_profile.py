@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -17,31 +16,18 @@ from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.solve import solve
+from tests.optimise.test_slow_stroke import job as steady_job
 
 pytestmark = pytest.mark.usefixtures("little")
 
-JOB: dict[str, Any] = {
-    "name": "Press",
-    "mechanism": {"speed": "120 rpm", "slider": {"mass": "4 kg"}, "speed_profile": {"cosines": [0.0], "sines": [0.2]}},
-    "load": [{"force": "900 N", "opposes": "outward stroke"}],
-    "variables": {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["-200 mm", "200 mm"]},
-    "constraints": {"stroke": {"equals": "150 mm"}, "transmission_angle": {"min": "30 deg"}},
-    "objectives": {"time_ratio": "maximise", "transmission_angle": "maximise"},
-    "optimiser": {"designs": 8, "samples": 500},
-}
+PROFILE: dict[str, Any] = {"cosines": [0.0], "sines": [0.2]}
 """With b sin(theta) the crank is fast above the slider line, where the inward stroke is of a counter-clockwise one."""
 
 
 def job(**changes: Any) -> dict[str, Any]:
-    """Return the job with keys of its tables changed, those with None left out: constraints={...}."""
-    made = deepcopy(JOB)
-    for table, keys in changes.items():
-        made[table] = {**made[table], **keys} if isinstance(keys, dict) else keys
-    for table in made.values():
-        if isinstance(table, dict):
-            for key in [key for key, value in table.items() if value is None]:
-                del table[key]
-    return made
+    """Return the job of a constant speed along the profile, changed as that one is."""
+    mechanism = {"speed_profile": PROFILE, **changes.pop("mechanism", {})}
+    return steady_job(mechanism=mechanism, **changes)
 
 
 def outward_to_inward(problem: Problem, designs: Any, count: int = 200_001) -> list[float]:
