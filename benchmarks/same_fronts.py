@@ -4,7 +4,8 @@ Each checkout solves the shipped jobs and 50 random ones with the Python of its 
 are dimensions, objectives, every number of the table of designs and the hypervolume, or the message of a refusal.
 Columns that one checkout alone has are named and left out. A front that differs is no worse where none of its designs
 is dominated by one of the other front by more than 1e-9 of that one's range, and its hypervolume in the box of both
-together is lower by 1e-6 at most. Prints a line for each job that differs and a summary; ends with 1 where one differs,
+together is lower by 1e-6 at most, once its own ends are those of the other front where they are better: as many designs
+with better ends enclose less. Prints a line for each job that differs and a summary; ends with 1 where one differs,
 and with `--no-worse` only where one is worse.
 """
 
@@ -163,6 +164,9 @@ def worse(ours: Table, theirs: Table) -> str:
     if beaten.any():
         return f"{beaten.sum()} of {len(our)} designs dominated"
     box = scaling(np.concatenate(fronts))
+    ends = our[our.argmin(axis=0)]
+    for column in np.flatnonzero(ends.min(axis=0) < their.min(axis=0)).tolist():
+        their[their[:, column].argmin()] = ends[column]
     lost = hypervolume(their, *box) - hypervolume(our, *box)
     return f"hypervolume lower by {lost:.2g}" if lost > LOWER else ""
 

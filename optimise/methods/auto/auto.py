@@ -130,7 +130,8 @@ def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[
     """Yield the ends of the front by sheet: designs best in one objective, and in the others as far as that allows.
 
     Each begins from several designs that lead in the objective, and is improved in it alone, then in all with that one
-    held firmly. Where even so it loses what shows, the best in the objective alone is an end too. None: on the way.
+    held firmly. Where even so it loses what shows, the best in the objective alone is an end too. Held less firmly, it
+    moves to where the others gain much for little, if its slope vanishes at the end. None: on the way.
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
@@ -145,7 +146,8 @@ def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[
         held = polished(evaluators[index], alone.u, span, best_in=best_in)
         own = np.arange(len(alone)), best_in
         lost = held.values[own] > alone.values[own] + SAME  # no difference: both are infinite without a least value
-        yield index, held.join(alone[lost | (held.violation > FEASIBLE)])
+        beside = polished(evaluators[index], alone.u, span)
+        yield index, held.join(alone[lost | (held.violation > FEASIBLE)], beside)
 
 
 def _differing(u: Array) -> Whole:
@@ -159,7 +161,7 @@ def challengers(
 ) -> list[tuple[int, Array]]:
     """Return points by sheet for further polish; none if the front is as good and full as asked.
 
-    First those that dominate a polished design. Then, where designs are wanting, those that no polished design
+    First those that dominate a polished design. Then, where candidates are wanting, those that no polished design
     dominates, and points half-way between neighbours. stand: called many times a second.
     """
     best = finished[finished.best(stand)]
@@ -171,7 +173,7 @@ def challengers(
     stand(0, 1)
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(better & archive.met)[:_FILLING]
-    wanting = problem.settings.designs - len(front) if front.shape[1] > 1 else 0
+    wanting = _candidates(problem) - len(front) if front.shape[1] > 1 else 0
     starts = archive[_few(screened, rows, front, max(wanting, 32), stand)].by_sheet(evaluators)
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~better)
