@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
@@ -30,6 +30,7 @@ from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
 from .rounding import ranges_or_sizes, rounded
+from .rounding_search import Stage
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -230,17 +231,28 @@ class ParetoFront:
                 raise InputError(f"the table has no column {name!r}; see front.designs.columns") from None
         return found
 
-    def rounded(self, row: int, to: float | Mapping[str, float], *, count: int = 5) -> Rounded:
-        """Return the best designs of round numbers near a design that keep every requirement, and what each costs.
+    def rounded(
+        self,
+        row: int,
+        to: float | Mapping[str, float],
+        *,
+        count: int = 5,
+        allow: Mapping[str, float | str] | None = None,
+        progress: Callable[[Stage], None] | None = None,
+    ) -> Rounded:
+        """Return the best designs of round numbers near a design that meet every requirement, and what each costs.
 
         to: a step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod": 1e-3})`.
-        Where no rounded design within 32 steps keeps all, the nearest are given, `met` is False. See `Rounded`.
+        allow: how far requirements may be missed, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. Where no rounded
+        design within 32 steps meets all within that, the nearest are given, `met` is False; `misses` has the amounts.
+        progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounded`.
         """
         part = self.part(row)
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = [f"{name} stays {label}" for name, label in zip(self.problem.choices, labels, strict=True)]
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
-        return rounded(part, self.dimensions[row], span, to, count=count, notes=stay)
+        given = self.dimensions[row]
+        return rounded(part, given, span, to, count=count, allow=allow, progress=progress, notes=stay)
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.

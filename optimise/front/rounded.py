@@ -1,11 +1,11 @@
-"""Designs of round numbers with what they cost, and which requirement is tightest or missed."""
+"""Designs of round numbers with what they cost, which requirement is tightest, and by how much each is missed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -23,23 +23,43 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Miss:
+    """Distance of a value beyond a bound of a requirement.
+
+    quantity: its name in the job. kind: of the value, "length". amount: above zero, in `unit`, which is that of the
+    column of the quantity. side: where the value lies. allowed: amount that was allowed, in `unit`.
+    """
+
+    quantity: str
+    title: str
+    kind: str
+    amount: float
+    unit: str
+    side: Literal["above", "below"]
+    allowed: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Rounded:
     """Designs of round numbers near a design of a front, the best first.
 
-    Those that keep every requirement, the least loss first, none dominated by another; where `met` is False those that
-    come nearest: that of the least relative violation first, then those that miss more but lose clearly less.
+    Those that meet every requirement within what is allowed, the least loss first, none dominated by another; where
+    `met` is False the nearest: that of the least relative violation beyond what is allowed first, then those that miss
+    more but lose clearly less. See `rounding.rounded`.
 
     problem: that they answer, its choices in place. given: (3 + v,), the design. steps: of the numbers that were
-    rounded, SI. dimensions: (n, 3 + v). before: (m,), the
+    rounded, SI. allowed: how far requirements may be missed, SI, by quantity. dimensions: (n, 3 + v). before: (m,), the
     design's objectives, SI. values: (n, m). losses: (n, m), by how much each objective is worse, as a share of its
     range over the front; below zero where it is better. constraints: c of them, floors included. held: (n, c), their
     values. reach: multiples of a step looked at on either side. judged: how many combinations turned fully and were
-    judged. kept: how many of them keep every requirement. notes: what stayed as it was, in words.
+    judged. kept: how many of them meet every requirement within what is allowed. notes: what stayed as it was, in
+    words.
     """
 
     problem: Problem
     given: Array
     steps: Mapping[str, float]
+    allowed: Mapping[str, float]
     dimensions: Array
     before: Array
     values: Array
@@ -59,7 +79,7 @@ class Rounded:
 
     @property
     def met(self) -> bool:
-        """Whether the designs keep every requirement."""
+        """Whether the designs meet every requirement within what is allowed."""
         return self.kept > 0
 
     @property
@@ -70,18 +90,18 @@ class Rounded:
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
-            return f"{self.kept} of {near} {keep} every requirement"
+            within = f" within {self._allowed_in_words}" if self.allowed else ""
+            return f"{self.kept} of {near} {keep} every requirement{within}"
         none = f"none of {near}"
         if not len(self):
-            return f"{none} has every quantity that is required; give smaller steps"
-        asked = {item.quantity for item in self.constraints if item.equality} & set(self.missed(0))
-        exact = " and ".join(sorted(self.problem.quantity(name).title for name in asked))
-        remedy = f"; {exact} must have one value: ask for a range instead" if asked else ""
-        return f"{none} keeps every requirement; the nearest are told{remedy}"
+            return f"{none} has a value of everything that is required; give smaller steps"
+        beyond = [self.problem.quantity(name).title for name in self._beyond(0)]
+        more = "a greater miss" if set(self._beyond(0)) & set(self.allowed) else "a miss"
+        return f"{none} keeps every requirement; these are the nearest; allow {more} of {' and '.join(beyond)}"
 
     @cached_property
     def violations(self) -> Array:
-        """Relative violation (n, c) of every constraint, zero or less where it is kept."""
+        """Relative violation (n, c) of every constraint, zero or less where it is met."""
         columns = [violated_by(constraint, self.held[:, j]) for j, constraint in enumerate(self.constraints)]
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
@@ -92,10 +112,45 @@ class Rounded:
         ]
         return max(rest)[1] if rest else None
 
+    def misses(self, row: int) -> list[Miss]:
+        """Return by how much a design misses each requirement that it does not meet, the worst first, relative.
+
+        What is allowed counts as a miss too.
+        """
+        found = []
+        for place in np.argsort(-self.violations[row], kind="stable").tolist():
+            if self.violations[row, place] <= FEASIBLE:
+                break
+            constraint, value = self.constraints[place], self.held[row, place]
+            of = self.problem.quantity(constraint.quantity)
+            slack = slack_of(constraint, self.held[row : row + 1, place])[0]
+            found.append(
+                Miss(
+                    quantity=constraint.quantity,
+                    title=of.title,
+                    kind=of.kind.plain,
+                    amount=float(-slack * of.unit.factor),
+                    unit=of.unit.symbol,
+                    side="below" if constraint.lower is not None and value < constraint.lower else "above",
+                    allowed=self.allowed.get(constraint.quantity, 0.0) * of.unit.factor,
+                )
+            )
+        return found
+
     def missed(self, row: int) -> list[str]:
         """Return the quantities whose requirement a design misses, the worst first."""
-        found = [(-self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
-        return [name for short, name in sorted(found) if -short > FEASIBLE]
+        return [miss.quantity for miss in self.misses(row)]
+
+    @property
+    def _allowed_in_words(self) -> str:
+        """What may be missed: "0.1 mm of stroke"."""
+        of = {name: self.problem.quantity(name) for name in self.allowed}
+        texts = [(value * of[name].unit.factor, of[name]) for name, value in self.allowed.items()]
+        return " and ".join(f"{value:.4g} {item.unit.symbol}".rstrip() + f" of {item.title}" for value, item in texts)
+
+    def _beyond(self, row: int) -> list[str]:
+        """Return the quantities whose requirement a design misses by more than is allowed."""
+        return [miss.quantity for miss in self.misses(row) if miss.amount > miss.allowed * (1.0 + FEASIBLE)]
 
     @property
     def names(self) -> dict[str, tuple[str, float]]:

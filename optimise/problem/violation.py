@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -102,21 +102,30 @@ def sides(constraint: Constraint) -> list[Side]:
     return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
 
 
-def violated_by(constraint: Constraint, values: Array) -> Array:
-    """Return the relative violation (n,), zero or less where the constraint holds; infinite without a value."""
+def violated_by(constraint: Constraint, values: Array, *, allowed: float = 0.0) -> Array:
+    """Return the relative violation (n,), zero or less where the constraint holds; infinite without a value.
+
+    allowed: how far beyond a bound values may lie, SI.
+    """
     violation = np.full(len(values), -np.inf)
-    for side in sides(constraint):
-        violation = np.maximum(violation, excess(values, *side))
+    for side, bound, scale in sides(constraint):
+        violation = np.maximum(violation, excess(values, side, bound, scale) - allowed / scale)
     return np.where(np.isnan(values), np.inf, violation)
 
 
-def greatest_violation(problem: Problem, designs: Array, constraints: Sequence[Constraint]) -> Array:
-    """Return the greatest relative violation (n,) of some constraints by designs (n, 3 + v), zero where all hold."""
+def greatest_violation(
+    problem: Problem, designs: Array, constraints: Sequence[Constraint], *, allowed: Mapping[str, float] | None = None
+) -> Array:
+    """Return the greatest relative violation (n,) of some constraints by designs (n, 3 + v), zero where all hold.
+
+    allowed: how far beyond its bounds a quantity may lie, SI, by name.
+    """
     worst = np.zeros(len(designs))
     if len(designs) and constraints:
         held = problem.evaluate(designs, [item.quantity for item in constraints])
         for column, item in enumerate(constraints):
-            worst = np.maximum(worst, violated_by(item, held[:, column]))
+            beyond = (allowed or {}).get(item.quantity, 0.0)
+            worst = np.maximum(worst, violated_by(item, held[:, column], allowed=beyond))
     return worst
 
 

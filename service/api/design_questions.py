@@ -163,8 +163,9 @@ def compare_measured(
 _MOST_STEPS, _MOST_TOLD = 50, 100
 _ROUNDED_EXAMPLE = {
     "met": True,
-    "message": "311 of 2016 rounded designs within 16 steps keep every requirement",
+    "message": "311 of 2016 rounded designs within 16 steps keep every requirement within 0.1 mm of stroke",
     "steps": {"crank_mm": 0.5},
+    "allowed": {"stroke_mm": 0.1},
     "within_steps": 16,
     "judged": 2016,
     "kept": 311,
@@ -177,7 +178,18 @@ _ROUNDED_EXAMPLE = {
             "change_peak_torque_percent": 0.17,
             "loss_percent": 0.2,
             "tightest": "transmission_angle",
-            "missed": [],
+            "missed": ["stroke"],
+            "misses": [
+                {
+                    "quantity": "stroke",
+                    "title": "stroke",
+                    "kind": "length",
+                    "amount": 0.03,
+                    "unit": "mm",
+                    "side": "below",
+                    "allowed": 0.1,
+                }
+            ],
         }
     ],
     "notes": ["rod has no step and stays as it is"],

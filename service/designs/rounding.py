@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.kinds import LENGTH, Kind, System
+from ...objectives.kinds import LENGTH, Kind, System, shown_in
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _EXAMPLE = '"0.5 mm" or "rod=1 mm"'
+_ALLOWED_EXAMPLE = '"stroke=0.1 mm"'
 
 
 def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
@@ -47,6 +48,26 @@ def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
     return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
 
 
+def allowed_of(allow: Sequence[str], *, key: str) -> dict[str, float | str]:
+    """Return how far requirements may be missed, by quantity, of texts such as "stroke=0.1 mm".
+
+    key: what gives them, for messages. Raises `InputError`.
+    """
+    found: dict[str, float | str] = {}
+    for text in allow:
+        name, equals, value = (piece.strip() for piece in text.rpartition("="))
+        name = metric_key(name)
+        if not (equals and name and value):
+            raise InputError(
+                f"{key} is a requirement, =, and by how much it may be missed; got {text!r}; write it like "
+                f"{_ALLOWED_EXAMPLE}"
+            )
+        if name in found:
+            raise InputError(f"{key} gives each requirement once; got {name} twice; leave out one")
+        found[name] = value
+    return found
+
+
 def _step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, read as in a job."""
     from ...optimise.job.grids import step_of
@@ -64,15 +85,21 @@ def rounded_record(found: Rounded) -> dict[str, Any]:
     for wanted, value in zip(part.objectives, found.before.tolist(), strict=True):
         of = part.quantity(wanted.quantity)
         given[of.field] = value * of.unit.factor
+    allowed = {part.quantity(name): value for name, value in found.allowed.items()}
     rows = [
         {name: values[row].item() for name, values in found.columns.items()}
-        | {"tightest": found.tightest(row), "missed": found.missed(row)}
+        | {
+            "tightest": found.tightest(row),
+            "missed": found.missed(row),
+            "misses": [vars(miss) for miss in found.misses(row)],
+        }
         for row in range(len(found))
     ]
     return {
         "met": found.met,
         "message": found.message,
         "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
+        "allowed": {of.field: value * of.unit.factor for of, value in allowed.items()},
         "within_steps": found.reach,
         "judged": found.judged,
         "kept": found.kept,
@@ -90,4 +117,11 @@ def rounded_record_in(units: System, record: dict[str, Any], found: Rounded) -> 
     keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
     for row in (told["steps"], *told["designs"]):
         row.update({key: written(row[key]) for key in keys})
+    for row in told["designs"]:
+        row["misses"] = [_miss_in(units, miss) for miss in row["misses"]]
     return told
+
+
+def _miss_in(units: System, miss: dict[str, Any]) -> dict[str, Any]:
+    unit, factor = shown_in(miss["unit"], units)
+    return miss | {"unit": unit} | {key: factor * miss[key] for key in ("amount", "allowed")}

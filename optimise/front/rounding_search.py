@@ -1,0 +1,237 @@
+"""Search among the combinations of round numbers around a design, in blocks, so that it reports and can be ended."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+import numpy as np
+
+from ...model.arrays import Array, Whole
+from ...model.errors import InputError
+from ...objectives.tables.evaluate import running
+from ...objectives.tables.varying_column import columns_of_numbers
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint
+from ..problem.robust import asks_robust
+from ..problem.violation import (
+    FEASIBLE,
+    all_minimised,
+    clearly_turning,
+    constraints_of,
+    costly,
+    greatest_violation,
+    minimised,
+)
+from .dominance import nondominated
+
+REACHES = (16, 32)
+"""Multiples of a step on either side of the design that are looked at, the next ones where none before met all."""
+_MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
+_NEAREST = 8192  # designs whose cycle is computed at most, for those that miss more but lose less
+_BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; of those whose cycle is computed
+_CLEARLY = 0.75  # of the loss before: what is worth to miss more for
+_TIE = 9  # decimals of a share of a range: nearer together is rounding
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Progress of the search. stage: what is done. step, steps: how many designs so far, and of how many."""
+
+    stage: str
+    step: int
+    steps: int
+
+
+class RoundingSearch:
+    """Search among the combinations of round numbers around a design."""
+
+    def __init__(
+        self,
+        part: Problem,
+        given: Array,
+        span: Array,
+        steps: Mapping[str, float],
+        allowed: Mapping[str, float],
+        report: Callable[[Stage], None],
+    ) -> None:
+        """Begin; see `rounding.rounded`. Raises `InputError` for steps without a multiple."""
+        self.part, self.given, self.span, self.steps, self.ranges = part, given, span, steps, part.ranges
+        self.allowed, self.report = allowed, report
+        self.constraints = constraints_of(part)
+        self.quick = [item for item in self.constraints if not costly(part.quantity(item.quantity))]
+        self.slow = [item for item in self.constraints if item not in self.quick]
+        self.most = _MOST_ROBUST if asks_robust(part) else _MOST
+        self.before = all_minimised(part, self.values(given[None]))[0]
+        self.reach, self.judged, self.kept = 0, 0, 0
+        self._ladders(1)
+
+    def best(self, count: int) -> Array:
+        """Return the best designs (n, 3 + v) of the least window where some meet all; else the nearest."""
+        for reach in self._reaches():
+            designs, self.reach = self._window(reach), reach
+            misses = self._in_blocks("screening combinations", designs, self._screened, _BLOCK)
+            rows = np.flatnonzero(misses <= FEASIBLE)
+            misses[rows] = np.maximum(
+                misses[rows], self._in_blocks("judging combinations", designs[rows], self._judged)
+            )
+            kept = rows[misses[rows] <= FEASIBLE]
+            values = self._in_blocks("ranking combinations", designs[kept], self.values)
+            had = ~np.isnan(values).any(axis=1)
+            if had.any():
+                break
+            misses[kept] = np.inf  # without a value of an objective
+        self.judged, self.kept = len(designs), int(had.sum())
+        if had.any():
+            return self._ranked(designs[kept[had]], values[had])[:count]
+        return self._nearest(designs, misses, rows, count)
+
+    def values(self, designs: Array) -> Array:
+        """Return the objectives (n, m) of designs, SI."""
+        return self.part.evaluate(designs) if len(designs) else np.zeros((0, len(self.part.objectives)))
+
+    def losses(self, values: Array) -> Array:
+        """Return by how much objectives (n, m) are worse than the design's, in units of `span`."""
+        now = all_minimised(self.part, values)
+        with np.errstate(invalid="ignore"):
+            lost = np.where(now == self.before, 0.0, now - self.before) / self.span
+        return np.asarray(np.where(np.isnan(lost), np.inf, lost))
+
+    def held(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
+        """Return the values (n, c) of what is constrained."""
+        if not (len(designs) and len(constraints)):
+            return np.zeros((len(designs), len(constraints)))
+        return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
+
+    def _screened(self, designs: Array) -> Array:
+        return greatest_violation(self.part, designs, self.quick, allowed=self.allowed)
+
+    def _judged(self, designs: Array) -> Array:
+        return greatest_violation(self.part, designs, self.slow, allowed=self.allowed)
+
+    def _in_blocks(self, stage: str, designs: Array, of: Callable[[Array], Array], size: int = _SLOW_BLOCK) -> Array:
+        """Return what a function gives of designs, with a report before each block."""
+        found = []
+        for begin in range(0, max(1, len(designs)), size):
+            self.report(Stage(stage, begin, len(designs)))
+            found.append(of(designs[begin : begin + size]))
+        return np.concatenate(found)
+
+    def _ladders(self, reach: int) -> list[list[float]]:
+        """Return for each number of a design the values that it may take."""
+        ladders = [[float(value)] for value in self.given]
+        for place, name in enumerate(self.ranges):
+            if name in self.steps:
+                ladders[place] = self._multiples(name, float(self.given[place]), reach)
+        return ladders
+
+    def _multiples(self, name: str, value: float, reach: int) -> list[float]:
+        step, lower, upper = self.steps[name], self.ranges[name].lower, self.ranges[name].upper
+        place = value / step
+        on = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
+        low, high = (round(place), round(place)) if on else (math.floor(place), math.ceil(place))
+        room = FEASIBLE * max(abs(lower), abs(upper))
+        exact, side = Decimal(repr(step)), self.part.slow_side() if name == "offset" else None
+        # A multiple as it is written: the step's decimals times a whole number, rounded once.
+        every = [float(exact * k) for k in range(low - reach + 1, high + reach)]
+        found = [x for x in every if lower - room <= x <= upper + room and (side is None or side * x > 0.0)]
+        if not found and reach == 1:
+            raise InputError(
+                f"the step of {name} must have a multiple within its range, {self._told(name, lower)} to "
+                f"{self._told(name, upper)}{'' if side is None else ', on the side that slow_stroke asks for'}; got "
+                f"{self._told(name, step)}; give a smaller one, or none, so that it stays"
+            )
+        return found
+
+    def _told(self, name: str, value: float) -> str:
+        """Return a number of a design in its shown unit."""
+        unit = columns_of_numbers(self.part.mechanism.varying)[name][1]
+        return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
+
+    def _reaches(self) -> list[int]:
+        """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""
+        fitting = [reach for reach in (*range(1, REACHES[0]), *REACHES) if self._size(reach) <= self.most]
+        if not fitting:
+            raise InputError(
+                f"at most {int(math.log2(self.most))} numbers are rounded together; got {len(self.steps)}; leave some "
+                "without a step"
+            )
+        return [reach for reach in fitting if reach >= REACHES[0]] or fitting[-1:]
+
+    def _size(self, reach: int) -> int:
+        return math.prod(len(ladder) for ladder in self._ladders(reach))
+
+    def _window(self, reach: int) -> Array:
+        """Return the combinations (n, 3 + v) of the multiples around the design that turn fully or make the swing."""
+        grid = np.meshgrid(*self._ladders(reach), indexing="ij")
+        designs = np.stack([values.ravel() for values in grid], axis=1)
+        if self.part.motion is not None:
+            return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
+        return np.asarray(designs[clearly_turning(designs)])
+
+    def _way(self, designs: Array) -> Array:
+        """Return the greatest distance (n,) of designs from the given one in steps."""
+        steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
+        return np.asarray((np.abs(designs - self.given) / steps).max(axis=1))
+
+    def _ranked(self, designs: Array, values: Array) -> Array:
+        """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
+        losses = self.losses(values)
+        total = np.clip(losses, 0.0, None).sum(axis=1)
+        order = np.lexsort((self._way(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
+        if losses.shape[1] == 1:  # one dominates all others: the next best are worth to be known
+            return designs[order]
+        free = nondominated(all_minimised(self.part, values)[order])
+        return np.asarray(designs[order[free]])
+
+    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int) -> Array:
+        """Return the nearest designs, see `rounding.rounded`.
+
+        misses: (n,), exact in the rows `exact`; elsewhere what closed forms give, which is never more. So designs are
+        judged in that order, and one is placed once all that may miss less or as much are judged.
+        """
+        known = np.zeros(len(designs), dtype=bool)
+        known[exact] = True
+        least = self._in_blocks("screening combinations", designs, self._least_losses, _BLOCK)
+        losses, found = np.full(len(designs), np.nan), np.zeros(0, dtype=np.int64)
+        ahead, judged = np.argsort(misses, kind="stable"), np.zeros(0, dtype=np.int64)
+        while len(ahead) and not (len(found) and len(judged) >= _NEAREST):
+            self.report(Stage("looking for the nearest", len(judged), max(_NEAREST, len(judged))))
+            rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
+            judged = np.append(judged, rows)
+            rows = rows[~known[rows]]
+            misses[rows] = np.maximum(misses[rows], self._judged(designs[rows]))
+            bar = np.round(misses[ahead[0]], _TIE) if len(ahead) else np.inf
+            placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
+            fresh = placed[np.isnan(losses[placed])]
+            losses[fresh] = self.losses(self.values(designs[fresh])).max(axis=1)
+            found = self._staircase(designs, placed, misses[placed], losses[placed])[:count]
+            if len(found) == count or (len(found) and losses[found[-1]] <= 0.0):
+                break
+            if len(found):
+                ahead = ahead[least[ahead] <= _CLEARLY * losses[found[-1]]]
+        return np.asarray(designs[found])
+
+    def _least_losses(self, designs: Array) -> Array:
+        """Return the greatest loss (n,) of the objectives that closed forms give."""
+        losses = np.full(len(designs), -np.inf)
+        for place, wanted in enumerate(self.part.objectives):
+            if not costly(self.part.quantity(wanted.quantity)):
+                now = minimised(wanted, self.part.evaluate(designs, [wanted.quantity])[:, 0])
+                losses = np.fmax(losses, (now - self.before[place]) / self.span[place])
+        return losses
+
+    def _staircase(self, designs: Array, rows: Whole, misses: Array, losses: Array) -> Whole:
+        """Return of rows the one that misses least, then those that miss more but lose clearly less."""
+        order = np.lexsort((self._way(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
+        found: list[int] = []
+        least = np.inf
+        for row, loss in zip(rows[order].tolist(), losses[order].tolist(), strict=True):
+            if not found or loss <= _CLEARLY * least:
+                found.append(row)
+                least = loss
+            if least <= 0.0:
+                break  # nothing is lost: there is no reason to miss more
+        return np.array(found, dtype=np.int64)
