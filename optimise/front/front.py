@@ -29,8 +29,8 @@ from .picking import Normalisation, Priority, by_range, knee, lexicographic, top
 from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
-from .rounding import ranges_or_sizes, rounded
-from .rounding_search import Stage
+from .rounding import ranges_or_sizes, rounding
+from .rounding_search import Stage, Steps
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -245,14 +245,32 @@ class ParetoFront:
         to: a step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod": 1e-3})`.
         allow: how far requirements may be missed, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. Where no rounded
         design within 32 steps meets all within that, the nearest are given, `met` is False; `misses` has the amounts.
-        progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounded`.
+        progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounding`.
         """
-        part = self.part(row)
+        search = self.rounding(row, to, count=count, allow=allow)
+        while True:
+            try:
+                at = next(search)
+            except StopIteration as end:
+                found: Rounded = end.value
+                return found
+            if progress is not None:
+                progress(at)
+
+    def rounding(
+        self,
+        row: int,
+        to: float | Mapping[str, float],
+        *,
+        count: int = 5,
+        allow: Mapping[str, float | str] | None = None,
+    ) -> Steps[Rounded]:
+        """Return the search of `rounded` as a generator: it yields where it is, and returns the answer."""
+        part, given = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = [f"{name} stays {label}" for name, label in zip(self.problem.choices, labels, strict=True)]
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
-        given = self.dimensions[row]
-        return rounded(part, given, span, to, count=count, allow=allow, progress=progress, notes=stay)
+        return rounding(part, given, span, to, count=count, allow=allow, notes=stay)
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...objectives.counted import counted
+from ...objectives.kinds import System, shown_in
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -85,12 +86,16 @@ class Rounded:
     @property
     def message(self) -> str:
         """Result of the search, in words."""
+        return self.message_in("metric")
+
+    def message_in(self, system: System) -> str:
+        """Return the result of the search in words. system: of its units."""
         if not self.judged:
             return f"no rounded design within {counted(self.reach, 'step')} turns fully; give smaller steps"
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
-            within = f" within {self._allowed_in_words}" if self.allowed else ""
+            within = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             return f"{self.kept} of {near} {keep} every requirement{within}"
         none = f"none of {near}"
         if not len(self):
@@ -132,7 +137,7 @@ class Rounded:
                     amount=float(-slack * of.unit.factor),
                     unit=of.unit.symbol,
                     side="below" if constraint.lower is not None and value < constraint.lower else "above",
-                    allowed=self.allowed.get(constraint.quantity, 0.0) * of.unit.factor,
+                    allowed=written(self.allowed.get(constraint.quantity, 0.0) * of.unit.factor),
                 )
             )
         return found
@@ -141,12 +146,14 @@ class Rounded:
         """Return the quantities whose requirement a design misses, the worst first."""
         return [miss.quantity for miss in self.misses(row)]
 
-    @property
-    def _allowed_in_words(self) -> str:
-        """What may be missed: "0.1 mm of stroke"."""
-        of = {name: self.problem.quantity(name) for name in self.allowed}
-        texts = [(value * of[name].unit.factor, of[name]) for name, value in self.allowed.items()]
-        return " and ".join(f"{value:.4g} {item.unit.symbol}".rstrip() + f" of {item.title}" for value, item in texts)
+    def _allowed_in_words(self, system: System) -> str:
+        """Return what may be missed: "0.1 mm of stroke"."""
+        texts = []
+        for name, value in self.allowed.items():
+            of = self.problem.quantity(name)
+            unit, factor = shown_in(of.unit.symbol, system)
+            texts.append(f"{value * of.unit.factor * factor:.4g} {unit}".rstrip() + f" of {of.title}")
+        return " and ".join(texts)
 
     def _beyond(self, row: int) -> list[str]:
         """Return the quantities whose requirement a design misses by more than is allowed."""

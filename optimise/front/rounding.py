@@ -8,7 +8,7 @@ objective, in units of its range over the front; those that another one dominate
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral, Real
 
 import numpy as np
@@ -22,12 +22,12 @@ from ..problem.requirements import Range
 from ..problem.violation import FEASIBLE, constraints_of
 from .constant import spread
 from .rounded import Rounded
-from .rounding_search import RoundingSearch, Stage
+from .rounding_search import RoundingSearch, Steps
 
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
 
 
-def rounded(
+def rounding(
     part: Problem,
     given: Array,
     span: Array,
@@ -35,9 +35,8 @@ def rounded(
     *,
     count: int = 5,
     allow: Mapping[str, float | str] | None = None,
-    progress: Callable[[Stage], None] | None = None,
     notes: Sequence[str],
-) -> Rounded:
+) -> Steps[Rounded]:
     """Return the best designs of round numbers near a given one; where none meets all requirements, the nearest.
 
     The nearest: first the design whose greatest relative miss is least; a miss is the distance of a value beyond a
@@ -48,7 +47,7 @@ def rounded(
     part: a problem without choices. given: (3 + v,), its design. span: (m,), what the loss of each objective is counted
     in. to: a step for crank, rod and offset, m, or steps by name, of varying numbers too, SI; what has no step, or is
     fixed, stays as it is. allow: how far designs may miss requirements, by quantity: a number in SI, or "0.1 mm".
-    progress: called several times a second; what it raises ends the search. notes: to add to those of the answer.
+    notes: to add to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
 
     Raises `InputError` for a step that is not above zero, one without a multiple in the range, an unknown name, what
     may not be allowed, and a count below one.
@@ -68,8 +67,8 @@ def rounded(
             f"a step is for a number that varies; got {', '.join(steps)}, fixed in this job or with values of its own; "
             "name another"
         )
-    search = RoundingSearch(part, given, span, moved, allowed, progress or (lambda _: None))
-    best = search.best(int(count))
+    search = RoundingSearch(part, given, span, moved, allowed)
+    best = yield from search.best(int(count))
     return Rounded(
         problem=part,
         given=given,
@@ -108,7 +107,7 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
     for name, value in given.items():
         if name not in names:
             raise InputError(
-                f"a requirement of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
+                f"only requirements of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
                 f"{shown(name)}; name one of them"
             )
         if names[name] in found:

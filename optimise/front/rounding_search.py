@@ -1,11 +1,12 @@
-"""Search among the combinations of round numbers around a design, in blocks, so that it reports and can be ended."""
+"""Search among the combinations of round numbers around a design, step by step, so that it reports and can be ended."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from typing import TypeVar
 
 import numpy as np
 
@@ -45,6 +46,11 @@ class Stage:
     steps: int
 
 
+T = TypeVar("T")
+Steps = Generator[Stage, None, T]
+"""A search that yields where it is and returns what it finds; closing it ends it."""
+
+
 class RoundingSearch:
     """Search among the combinations of round numbers around a design."""
 
@@ -55,11 +61,10 @@ class RoundingSearch:
         span: Array,
         steps: Mapping[str, float],
         allowed: Mapping[str, float],
-        report: Callable[[Stage], None],
     ) -> None:
-        """Begin; see `rounding.rounded`. Raises `InputError` for steps without a multiple."""
+        """Prepare; see `rounding.rounding`. Raises `InputError` for steps without a multiple."""
         self.part, self.given, self.span, self.steps, self.ranges = part, given, span, steps, part.ranges
-        self.allowed, self.report = allowed, report
+        self.allowed = allowed
         self.constraints = constraints_of(part)
         self.quick = [item for item in self.constraints if not costly(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
@@ -68,17 +73,19 @@ class RoundingSearch:
         self.reach, self.judged, self.kept = 0, 0, 0
         self._ladders(1)
 
-    def best(self, count: int) -> Array:
-        """Return the best designs (n, 3 + v) of the least window where some meet all; else the nearest."""
+    def best(self, count: int) -> Steps[Array]:
+        """Return the best designs (n, 3 + v) of the least window where some meet all; else the nearest.
+
+        Yields a `Stage` before every block of designs.
+        """
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
-            misses = self._in_blocks("screening combinations", designs, self._screened, _BLOCK)
+            misses = yield from self._in_blocks("screening combinations", designs, self._screened, _BLOCK)
             rows = np.flatnonzero(misses <= FEASIBLE)
-            misses[rows] = np.maximum(
-                misses[rows], self._in_blocks("judging combinations", designs[rows], self._judged)
-            )
+            judged = yield from self._in_blocks("judging combinations", designs[rows], self._judged)
+            misses[rows] = np.maximum(misses[rows], judged)
             kept = rows[misses[rows] <= FEASIBLE]
-            values = self._in_blocks("ranking combinations", designs[kept], self.values)
+            values = yield from self._in_blocks("ranking combinations", designs[kept], self.values)
             had = ~np.isnan(values).any(axis=1)
             if had.any():
                 break
@@ -86,7 +93,7 @@ class RoundingSearch:
         self.judged, self.kept = len(designs), int(had.sum())
         if had.any():
             return self._ranked(designs[kept[had]], values[had])[:count]
-        return self._nearest(designs, misses, rows, count)
+        return (yield from self._nearest(designs, misses, rows, count))
 
     def values(self, designs: Array) -> Array:
         """Return the objectives (n, m) of designs, SI."""
@@ -111,11 +118,13 @@ class RoundingSearch:
     def _judged(self, designs: Array) -> Array:
         return greatest_violation(self.part, designs, self.slow, allowed=self.allowed)
 
-    def _in_blocks(self, stage: str, designs: Array, of: Callable[[Array], Array], size: int = _SLOW_BLOCK) -> Array:
-        """Return what a function gives of designs, with a report before each block."""
+    def _in_blocks(
+        self, stage: str, designs: Array, of: Callable[[Array], Array], size: int = _SLOW_BLOCK
+    ) -> Steps[Array]:
+        """Return what a function gives of designs, block by block."""
         found = []
         for begin in range(0, max(1, len(designs)), size):
-            self.report(Stage(stage, begin, len(designs)))
+            yield Stage(stage, begin, len(designs))
             found.append(of(designs[begin : begin + size]))
         return np.concatenate(found)
 
@@ -186,19 +195,19 @@ class RoundingSearch:
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
-    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int) -> Array:
-        """Return the nearest designs, see `rounding.rounded`.
+    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int) -> Steps[Array]:
+        """Return the nearest designs, see `rounding.rounding`.
 
         misses: (n,), exact in the rows `exact`; elsewhere what closed forms give, which is never more. So designs are
         judged in that order, and one is placed once all that may miss less or as much are judged.
         """
         known = np.zeros(len(designs), dtype=bool)
         known[exact] = True
-        least = self._in_blocks("screening combinations", designs, self._least_losses, _BLOCK)
+        least = yield from self._in_blocks("screening combinations", designs, self._least_losses, _BLOCK)
         losses, found = np.full(len(designs), np.nan), np.zeros(0, dtype=np.int64)
         ahead, judged = np.argsort(misses, kind="stable"), np.zeros(0, dtype=np.int64)
         while len(ahead) and not (len(found) and len(judged) >= _NEAREST):
-            self.report(Stage("looking for the nearest", len(judged), max(_NEAREST, len(judged))))
+            yield Stage("looking for the nearest", len(judged), max(_NEAREST, len(judged)))
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
             rows = rows[~known[rows]]

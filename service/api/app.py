@@ -28,7 +28,18 @@ from .throttle import RateLimit
 PREFIX = "/api/v1"
 _PARTS = (
     *("jobs", "job_files", "preview", "events", "fronts", "binding", "comparison", "analysis", "design_questions"),
-    *("topics", "certificate", "wish", "kept", "design_files", "figures", "exports", "quantities", "health"),
+    *(
+        "rounding",
+        "topics",
+        "certificate",
+        "wish",
+        "kept",
+        "design_files",
+        "figures",
+        "exports",
+        "quantities",
+        "health",
+    ),
 )
 """Modules of the endpoints, in the order of their description."""
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)

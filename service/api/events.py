@@ -32,6 +32,8 @@ router = APIRouter(tags=["jobs"])
 HEARTBEAT = 15.0
 """Seconds without an event after which a comment is sent, so that nothing on the way takes the stream for dead."""
 STREAM = "text/event-stream"
+STREAM_HEADERS = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
+"""So that nothing on the way keeps a stream back."""
 _FIRST = b"retry: 2000\n\n"
 _EXAMPLE = (
     'event: state\ndata: {"number":1,"at":1795375800.0,"kind":"state","data":{"state":"queued","reason":""}}\nid: 1\n\n'
@@ -193,8 +195,7 @@ async def list_events(
         return Response(status_code=204)
     feed: Feed = request.app.state.feed
     followed = feed.follow(number, position, last=job.events, heartbeat=HEARTBEAT)
-    headers = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
-    return StreamingResponse(_lines(followed), headers=headers, media_type=STREAM)
+    return StreamingResponse(_lines(followed), headers=STREAM_HEADERS, media_type=STREAM)
 
 
 def _page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:

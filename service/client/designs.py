@@ -115,13 +115,22 @@ class Designs:
         return self._asked(number, design, "measured", body={"csv": text})
 
     def rounded(
-        self, number: int, design: int, to: str | Collection[str], *, count: int = 5, units: System = "metric"
+        self,
+        number: int,
+        design: int,
+        to: str | Collection[str],
+        *,
+        allow: str | Collection[str] = (),
+        count: int = 5,
+        units: System = "metric",
     ) -> Record:
         """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
 
-        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"].
+        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: by how much designs
+        may miss requirements, "stroke=0.1 mm".
         """
-        body = {"to": [to] if isinstance(to, str) else list(to), "count": count}
+        steps, allowed = ([texts] if isinstance(texts, str) else list(texts) for texts in (to, allow))
+        body = {"to": steps, "allow": allowed, "count": count}
         return self._asked(number, design, "rounded", {"units": units}, body)
 
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:

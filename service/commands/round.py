@@ -61,14 +61,13 @@ def round(
                 status.update(standing(vars(at)))
 
         found = front.rounded(number - 1, steps, count=count, allow=allowed, progress=tell)
-    record = {"run": path_text(folder), "number": number} | rounded_record(found)
-    record = rounded_record_in(units, record, found)
+    record = rounded_record_in(units, {"run": path_text(folder), "number": number} | rounded_record(found), found)
     if json:
         give(json_text(record))
     elif len(found):
         _show(f"{result.name}: design {number}", record, found, units)
     if not found.met:
-        end_without_design(found.message + _remedy(record["designs"]))
+        end_without_design(record["message"] + _remedy(record["designs"]))
 
 
 def _remedy(designs: list[dict[str, Any]]) -> str:
@@ -119,7 +118,7 @@ def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> 
     for number, row in enumerate(designs, 1):
         screen.print(f"{number}: {_requirements(row, found, units)}", soft_wrap=True)
     if found.met:
-        screen.print(f"\n{found.message}", soft_wrap=True)
+        screen.print(f"\n{record['message']}", soft_wrap=True)
     for note in found.notes:
         say(f"note: {note}")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, Kind, System, shown_in
+from ...optimise.front.rounded import written
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
@@ -99,7 +100,7 @@ def rounded_record(found: Rounded) -> dict[str, Any]:
         "met": found.met,
         "message": found.message,
         "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
-        "allowed": {of.field: value * of.unit.factor for of, value in allowed.items()},
+        "allowed": {of.field: written(value * of.unit.factor) for of, value in allowed.items()},
         "within_steps": found.reach,
         "judged": found.judged,
         "kept": found.kept,
@@ -111,12 +112,11 @@ def rounded_record(found: Rounded) -> dict[str, Any]:
 
 def rounded_record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
     """Return the answer in a system of units, its round numbers as they are written there."""
-    from ...optimise.front.rounded import written
-
-    told: dict[str, Any] = record_in(record, units)
+    told: dict[str, Any] = record_in(record, units) | {"message": found.message_in(units)}
     keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
     for row in (told["steps"], *told["designs"]):
         row.update({key: written(row[key]) for key in keys})
+    told["allowed"] = {key: written(value) for key, value in told["allowed"].items()}
     for row in told["designs"]:
         row["misses"] = [_miss_in(units, miss) for miss in row["misses"]]
     return told
@@ -124,4 +124,4 @@ def rounded_record_in(units: System, record: dict[str, Any], found: Rounded) -> 
 
 def _miss_in(units: System, miss: dict[str, Any]) -> dict[str, Any]:
     unit, factor = shown_in(miss["unit"], units)
-    return miss | {"unit": unit} | {key: factor * miss[key] for key in ("amount", "allowed")}
+    return miss | {"unit": unit, "amount": factor * miss["amount"], "allowed": written(factor * miss["allowed"])}

@@ -58,7 +58,7 @@ def test_json_has_the_numbers_of_python(banded: Path, command: Command) -> None:
     rows = expected.designs.to_dict("records")
     assert len(rows) == len(found["designs"]) == 3
     for row, one in zip(rows, found["designs"], strict=True):
-        assert one.pop("missed") == []
+        assert (one.pop("missed"), one.pop("misses")) == ([], [])
         assert one == {key: value if isinstance(value, str) else pytest.approx(value) for key, value in row.items()}
         assert (one["crank_mm"] % 0.5, one["rod_mm"] % 1.0, round(one["slider_mass_kg"] * 10.0, 9) % 1.0) == (0, 0, 0)
         assert 280.0 <= one["slack_stroke_mm"] + 280.0 <= 281.0
@@ -91,16 +91,57 @@ def test_inches_are_given_and_shown(banded: Path, command: Command) -> None:
     assert "lbf in" in shown
 
 
-def test_an_equality_that_cannot_be_met_is_exit_code_3_with_the_nearest(kept: Path, command: Command) -> None:
+def test_an_equality_that_cannot_be_met_is_exit_code_3_with_the_nearest_and_their_misses(
+    kept: Path, command: Command
+) -> None:
     found = answer(command, kept, 3, "--to", "0.5 mm", code=3)
-    assert found["met"] is False
-    first = found["designs"][0]
-    assert first["missed"] == ["stroke"]
-    assert -0.5 < first["slack_stroke_mm"] < 0.0
+    assert (found["met"], found["allowed"]) == (False, {})
+    for row in found["designs"]:
+        assert row["missed"] == ["stroke"]
+        (miss,) = row["misses"]
+        assert miss["amount"] == -row["slack_stroke_mm"] > 0.0
+        assert (miss["quantity"], miss["kind"], miss["unit"], miss["allowed"]) == ("stroke", "length", "mm", 0.0)
+        assert miss["side"] in ("below", "above")
     done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
     assert done.exit_code == 3
-    assert f"1: misses stroke by {-first['slack_stroke_mm']:.4g} mm" in done.stdout
-    assert "keeps every requirement; the nearest are told; stroke must have one value: ask for a range" in done.stderr
+    for number, row in enumerate(found["designs"], 1):
+        assert (
+            f"{number}: misses stroke by {-row['slack_stroke_mm']:.4g} mm ({row['misses'][0]['side']})" in done.stdout
+        )
+    assert "keeps every requirement; these are the nearest; allow a miss of stroke, such as --allow" in done.stderr
+
+
+def test_the_option_that_is_suggested_makes_the_nearest_designs_do(kept: Path, command: Command) -> None:
+    for units in ("metric", "inch"):
+        nearest = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm", "--units", units)
+        option = nearest.stderr.partition('--allow "')[2].rstrip('"\n')
+        assert option.startswith("stroke=")
+        found = answer(command, kept, 3, "--to", "0.5 mm", "--units", units, "--allow", option)
+        assert found["met"]
+        for row in found["designs"]:
+            (miss,) = row["misses"]
+            assert 0.0 < miss["amount"] <= miss["allowed"] == float(option.split("=")[1].split()[0])
+            assert miss["unit"] == option.split()[1]
+        assert list(found["allowed"]) == ["stroke_mm" if units == "metric" else "stroke_in"]
+        done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm", "--units", units, "--allow", option)
+        assert done.exit_code == 0
+        amount = f"{found['designs'][0]['misses'][0]['amount']:.4g} {option.split()[1]}"
+        assert f"1: misses stroke by {amount} (" in done.stdout
+        assert f"{option.removeprefix('stroke=')} is allowed)" in done.stdout
+        assert f"keep every requirement within {option.removeprefix('stroke=')} of stroke" in done.stdout
+
+
+def test_a_search_that_is_interrupted_ends_with_exit_code_130(
+    kept: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from slidercrank.optimise.front import rounding_search
+
+    def interrupt(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(rounding_search, "nondominated", interrupt)
+    done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm", "--allow", "stroke=1 mm")
+    assert (done.exit_code, done.stdout) == (130, "")
 
 
 @pytest.mark.parametrize(
@@ -131,6 +172,27 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
     assert done.stderr.startswith("slidercrank: ")
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("allow", "words"),
+    [
+        (["strok=0.1 mm"], 'may be missed: stroke, transmission_angle; got "strok"; name one of them'),
+        (["stroke=0.1"], "the allowed miss of stroke must be a length with its unit"),
+        (["stroke=1 deg"], "the allowed miss of stroke must be a length"),
+        (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
+        (["0.1 mm"], "--allow is a requirement, =, and by how much it may be missed; got '0.1 mm'"),
+        (["stroke=1 mm", "stroke=2 mm"], "--allow gives each requirement once; got stroke twice"),
+        (["stroke_in=1 mm", "stroke=2 mm"], "got two for stroke"),
+    ],
+)
+def test_a_wrong_allowance_is_one_sentence_and_exit_code_2(
+    allow: list[str], words: str, banded: Path, command: Command
+) -> None:
+    done = command("round", "latest", 1, "--runs", banded, "--to", "1 mm", *(f"--allow={text}" for text in allow))
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
     assert done.stderr.count("\n") == 1
 
 

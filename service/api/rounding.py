@@ -1,0 +1,150 @@
+"""Rounded neighbours of a design of a front: the answer of `slidercrank round --json`, with progress where streamed."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+from collections.abc import AsyncIterator, Generator
+from typing import TYPE_CHECKING, Annotated, Any
+
+from anyio.to_thread import run_sync
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import StreamingResponse
+from fastapi.sse import format_sse_event
+from pydantic import BaseModel, Field
+
+from ..designs.rounding import allowed_of, rounded_record, rounded_record_in, steps_of
+from ..runs.result import json_ready
+from .events import STREAM, STREAM_HEADERS
+from .fronts import OfDesign
+from .models import UnitsAsked
+from .problems import problem_responses
+from .stored_fronts import DesignNumber, FrontDep
+from .throttle import SIMULATING
+
+if TYPE_CHECKING:
+    from ...optimise.front.rounded import Rounded
+    from ...optimise.front.rounding_search import Stage
+
+router = APIRouter(tags=["designs"], responses=problem_responses(409))
+
+_MOST_STEPS, _MOST_TOLD = 50, 100
+_ROUNDED_EXAMPLE = {
+    "met": True,
+    "message": "311 of 2016 rounded designs within 16 steps keep every requirement within 0.1 mm of stroke",
+    "steps": {"crank_mm": 0.5},
+    "allowed": {"stroke_mm": 0.1},
+    "within_steps": 16,
+    "judged": 2016,
+    "kept": 311,
+    "given": {"crank_mm": 73.33253, "peak_torque_Nm": 12.1},
+    "designs": [
+        {
+            "crank_mm": 73.5,
+            "peak_torque_Nm": 12.12,
+            "change_peak_torque_Nm": 0.02,
+            "change_peak_torque_percent": 0.17,
+            "loss_percent": 0.2,
+            "tightest": "transmission_angle",
+            "missed": ["stroke"],
+            "misses": [
+                {
+                    "quantity": "stroke",
+                    "title": "stroke",
+                    "kind": "length",
+                    "amount": 0.03,
+                    "unit": "mm",
+                    "side": "below",
+                    "allowed": 0.1,
+                }
+            ],
+        }
+    ],
+    "notes": ["rod has no step and stays as it is"],
+}
+
+
+_ROUNDED_STREAM = (
+    'event: progress\ndata: {"stage":"screening combinations","step":32768,"steps":262144}\n\n'
+    'event: rounded\ndata: {"job":7,"number":3,"rounded":{"met":true}}\n\n'
+)
+_Event = tuple[str, str]
+"""Kind and data of an event."""
+_Events = Generator[_Event, None, None]
+_Texts = Annotated[list[Annotated[str, Field(max_length=500)]], Field(max_length=_MOST_STEPS)]
+
+
+class Steps(BaseModel, extra="forbid", strict=True):
+    """Steps that a design is to be rounded to, and by how much it may miss requirements."""
+
+    to: Annotated[_Texts, Field(min_length=1)] = Field(
+        description='step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one number: "rod=1 mm"',
+        examples=[["0.5 mm", "rod=1 mm"]],
+    )
+    allow: _Texts = Field(
+        [], description="requirement, =, and by how much designs may miss it", examples=[["stroke=0.1 mm"]]
+    )
+    count: int = Field(5, ge=1, le=_MOST_TOLD, description="designs to list at most", examples=[5])
+
+
+class RoundedModel(OfDesign):
+    """Rounded neighbours of a design of a front. rounded: what `slidercrank round --json` prints."""
+
+    rounded: dict[str, Any] = Field(examples=[_ROUNDED_EXAMPLE])
+
+
+_ROUNDED_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "The answer; streamed, events of its progress before it",
+        "content": {STREAM: {"schema": {"type": "string"}, "example": _ROUNDED_STREAM}},
+    }
+}
+
+
+@router.post("/jobs/{number}/designs/{design}/rounded", response_model=RoundedModel, responses=_ROUNDED_RESPONSES)
+def round_design(
+    request: Request, found: FrontDep, design: DesignNumber, given: Steps, units: UnitsAsked = "metric"
+) -> Response:
+    """Find the best designs of round numbers near a design that meet every requirement, and what each costs.
+
+    Where none meets all within what is allowed, the nearest are listed, with each miss as a number; `met` is then
+    false. With `Accept: text/event-stream` the progress is streamed; closing the connection then ends the search.
+    """
+    found.row(design)
+    steps = steps_of(given.to, found.front.part(design - 1), key="to")
+    allowed = allowed_of(given.allow, key="allow")
+
+    def search() -> _Events:
+        """Yield kind and data of the events."""
+        with SIMULATING.turn():
+            rounded = yield from _told(found.front.rounding(design - 1, steps, count=given.count, allow=allowed))
+            record = json_ready(rounded_record_in(units, rounded_record(rounded), rounded))
+        yield "rounded", RoundedModel(job=found.job.id, number=design, rounded=record).model_dump_json()
+
+    events = search()
+    first = next(events)  # a wrong request is refused before anything is sent
+    if STREAM not in request.headers.get("accept", ""):
+        *_, (_, data) = itertools.chain([first], events)
+        return Response(data, media_type="application/json")
+    return StreamingResponse(_lines(first, events), headers=STREAM_HEADERS, media_type=STREAM)
+
+
+def _told(search: Generator[Stage, None, Rounded]) -> Generator[_Event, None, Rounded]:
+    """Return what a search returns, its stages as events."""
+    while True:
+        try:
+            at = next(search)
+        except StopIteration as end:
+            found: Rounded = end.value
+            return found
+        yield "progress", json.dumps(vars(at))
+
+
+async def _lines(first: _Event, events: _Events) -> AsyncIterator[bytes]:
+    """Return events as a stream, and end the search where nobody reads on."""
+    with contextlib.closing(events):
+        event: _Event | None = first
+        while event is not None:
+            yield format_sse_event(data_str=event[1], event=event[0])
+            event = await run_sync(next, events, None)
