@@ -178,7 +178,10 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
 @pytest.mark.parametrize(
     ("allow", "words"),
     [
-        (["strok=0.1 mm"], 'may be missed: stroke, transmission_angle; got "strok"; name one of them'),
+        (
+            ["strok=0.1 mm"],
+            'only requirements of this job may be missed: transmission_angle, stroke; got "strok"; name one of them',
+        ),
         (["stroke=0.1"], "the allowed miss of stroke must be a length with its unit"),
         (["stroke=1 deg"], "the allowed miss of stroke must be a length"),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
