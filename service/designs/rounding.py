@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, Kind, System, shown_in
-from ...optimise.front.rounded import written
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
@@ -78,6 +77,8 @@ def _step(text: str, kind: Kind, key: str) -> float:
 
 def rounded_record(found: Rounded) -> dict[str, Any]:
     """Return the answer as JSON has it, metric."""
+    from ...optimise.front.rounded import written
+
     part = found.problem
     given: dict[str, Any] = {
         column: factor * value
@@ -92,7 +93,7 @@ def rounded_record(found: Rounded) -> dict[str, Any]:
         | {
             "tightest": found.tightest(row),
             "missed": found.missed(row),
-            "misses": [vars(miss) for miss in found.misses(row)],
+            "misses": [dict(vars(miss)) for miss in found.misses(row)],
         }
         for row in range(len(found))
     ]
@@ -112,16 +113,14 @@ def rounded_record(found: Rounded) -> dict[str, Any]:
 
 def rounded_record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
     """Return the answer in a system of units, its round numbers as they are written there."""
+    from ...optimise.front.rounded import written
+
     told: dict[str, Any] = record_in(record, units) | {"message": found.message_in(units)}
     keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
     for row in (told["steps"], *told["designs"]):
         row.update({key: written(row[key]) for key in keys})
     told["allowed"] = {key: written(value) for key, value in told["allowed"].items()}
-    for row in told["designs"]:
-        row["misses"] = [_miss_in(units, miss) for miss in row["misses"]]
+    for miss in (miss for row in told["designs"] for miss in row["misses"]):
+        miss["unit"], factor = shown_in(miss["unit"], units)
+        miss.update(amount=factor * miss["amount"], allowed=written(factor * miss["allowed"]))
     return told
-
-
-def _miss_in(units: System, miss: dict[str, Any]) -> dict[str, Any]:
-    unit, factor = shown_in(miss["unit"], units)
-    return miss | {"unit": unit, "amount": factor * miss["amount"], "allowed": written(factor * miss["allowed"])}
