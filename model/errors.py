@@ -16,7 +16,8 @@
         |-- QueueFull       as many jobs wait as may wait
         `-- ServiceError    a service elsewhere refuses, or does not answer
 
-Every message says the rule, the value and the remedy.
+Every message says the rule, the value and the remedy. `InputWarning` is the warning for a valid input that is probably
+not meant.
 """
 
 from __future__ import annotations
@@ -87,3 +88,7 @@ class QueueFull(RunError):
 
 class ServiceError(RunError):
     """A service elsewhere refuses, or does not answer."""
+
+
+class InputWarning(UserWarning):
+    """A valid input that probably describes another machine than the one meant."""

@@ -47,6 +47,7 @@ class Kind:
     mistaken unit (80 Mm for 80 mm), and products of several values stay far from the ends of a double.
     metric, inch: how it is shown; inch is None where both systems use the same unit.
     typed: units that a form offers, the SI unit first; usual: the one that it begins with, the metric one if left out.
+    believed: the least and the greatest magnitude in SI that a number without a unit is believed to mean; None for any.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Kind:
     inch: Face | None = None
     typed: tuple[str, ...] = ()
     usual: str = ""
+    believed: tuple[float, float] | None = None
 
     @property
     def plain(self) -> str:
@@ -78,17 +80,21 @@ def _kind(
     inch: Face | None = None,
     metric: Face | None = None,
     usual: str = "",
+    believed: tuple[float, float] | None = None,
 ) -> Kind:
     """Return a kind by the units of a form, separated by commas; shown in the first, SI, unless said."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
-    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual)
+    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual, believed)
 
 
-LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, face("in", _PER_INCH), face("mm", 1e3))
+_MM = face("in", _PER_INCH), face("mm", 1e3)
+LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, 10.0))
 AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1.0 / _INCH**2))
-ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=face("deg", 57.29577951308232))
-ANGULAR_SPEED = _kind("an angular speed", "rad/s, rpm, rev/s", "300 rpm", 1e6, metric=face("rpm", 9.549296585513721))
+_DEG = face("deg", 57.29577951308232)
+ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
+_RPM = face("rpm", 9.549296585513721)
+ANGULAR_SPEED = _kind("an angular speed", "rad/s, rpm, rev/s", "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0))
 ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
 MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, face("lb", 1.0 / _POUND))
 _INERTIA = face("lb in^2", 1.0 / (_POUND * _INCH**2))

@@ -9,19 +9,22 @@ modules: `--help`, which names all, stays quick.
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import gc
 import os
 import sys
 import tempfile
 import traceback
+import warnings
+from collections.abc import Iterator
 from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from ..model.errors import InfeasibleError, OutputLost, SlidercrankError
+from ..model.errors import InfeasibleError, InputWarning, OutputLost, SlidercrankError
 from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, with_infeasible_json
 from .resources.disk import full_places, is_full
 from .text.options import for_typer
@@ -67,7 +70,8 @@ class Commands(TyperGroup):
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
         """Run the command that was named."""
         try:
-            return super().invoke(ctx)
+            with _input_warnings_said():
+                return super().invoke(ctx)
         except SlidercrankError as error:
             if os.environ.get(_DEBUG):
                 raise
@@ -92,6 +96,23 @@ class Commands(TyperGroup):
                 f"input; see {_log_of(error)}"
             )
             raise typer.Exit(FAULT) from None
+
+
+@contextlib.contextmanager
+def _input_warnings_said() -> Iterator[None]:
+    """Say each warning about an input on a line of its own, without file and line of the program."""
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if issubclass(category, InputWarning):
+                say(f"warning: {message}")
+            else:
+                others(message, category, *place, **more)
+
+        warnings.showwarning = show
+        warnings.simplefilter("always", InputWarning)
+        yield
 
 
 def _short_of_memory(error: BaseException | None) -> bool:

@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import contextlib
+import warnings
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
+from dataclasses import replace
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -15,7 +17,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ...model.errors import InputError, JobError
+from ...model.errors import InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
 from ...model.machine.strength import Material
 from ...objectives.units import shown
@@ -26,6 +28,7 @@ from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
+from .plain_numbers import plain_numbers
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
@@ -50,20 +53,29 @@ def load_job(
     require_feasible: whether a job that no design can meet is refused. A search needs that; to look at a given design
     it does not matter. A least above the greatest value of one formula is always refused.
 
-    Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, does not follow the
-    schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
+    Warns by `InputWarning` of what the job probably does not mean, such as a number without a unit; the `warnings` of
+    the problem are its sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be
+    read, does not follow the schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
     data = read_job(path)
     with _named(path):
-        return parse_job(
+        problem = parse_job(
             data,
             values,
             folder=path_from_text(path).parent,
             allow_user_code=allow_user_code,
             require_feasible=require_feasible,
         )
+    warn_of(problem)
+    return problem
+
+
+def warn_of(problem: Problem) -> None:
+    """Raise a warning of Python for each warning of a problem, in the name of whoever calls the caller."""
+    for sentence in problem.warnings:
+        warnings.warn(sentence, InputWarning, stacklevel=3)
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
@@ -114,20 +126,25 @@ def parse_job(
     require_plain(data)
     own = declared(data, allowed=allow_user_code)
     job = job_with(own)
+    doubts: list[str] = []
     try:
         stated = job.model_validate(data)
         stated = with_values(stated, values, "values") if values else stated
-        return problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
+        doubts = [item.warning for item in plain_numbers(job, data, values or {}) if item.warning]
+        problem = problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
+        return replace(problem, warnings=tuple(doubts)) if doubts else problem
     except ValidationError as error:
         found = explain(error, _schema() if job is Job else schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []
         raise JobError("\n  ".join([*heading, *found[:MOST], *more])) from None
-    except JobError:
+    except InputError as error:  # a number that means another unit is a likely cause
+        text = "; ".join((str(error), *doubts))
+        if not isinstance(error, JobError):
+            raise JobError(text) from None
+        error.args = (text,)
         raise
-    except InputError as error:
-        raise JobError(str(error)) from None
 
 
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:

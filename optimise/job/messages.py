@@ -63,7 +63,7 @@ def explain(error: ValidationError, schema: Schema) -> list[str]:
             meant.add(near)
             unknown.append(sentence)
         else:
-            path = _keys(details["loc"])
+            path = keys_of(details["loc"])
             sentence = f"{key_of(path)}: {_sentence(details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
@@ -81,8 +81,8 @@ def _is_tag(part: object) -> bool:
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
 
 
-def _keys(loc: Sequence[Any]) -> list[Any]:
-    """Return a location without its tags."""
+def keys_of(loc: Sequence[Any]) -> list[Any]:
+    """Return a location in the tables of a job, without the tags of a validator's location."""
     return [part for part in loc if not _is_tag(part)]
 
 
@@ -105,7 +105,7 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
     Of a table that comes in kinds, such as a load, only the keys of its own kind are possible.
     """
     table, key = loc[:-1], loc[-1]
-    path = _keys(table)
+    path = keys_of(table)
     allowed = list(_properties(schema, table))
     more = f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
     possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
@@ -176,7 +176,7 @@ def _example(schema: Schema, path: Sequence[Any]) -> str:
     """Return an example of the key, written as in a job file; "" if the schema has none."""
     for node in _at(schema, path):
         if node.get("examples"):
-            key = next((str(part) for part in reversed(_keys(path)) if isinstance(part, str)), "")
+            key = next((str(part) for part in reversed(keys_of(path)) if isinstance(part, str)), "")
             return f"{key} = {toml(node['examples'][0])}"
     return ""
 

@@ -6,25 +6,24 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...objectives.kinds import ANGLE, ANGULAR_SPEED, LENGTH, Kind
-from ...objectives.units import per_si
 from .model import Job, job_with
 from .own import declared
+from .plain_numbers import plain_numbers
 
 _MOST = 6  # plain numbers that are told one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
 _SPEED_WORDS = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
-_USUAL = {LENGTH: "mm", ANGLE: "deg", ANGULAR_SPEED: "rpm"}
 
 
 def notes_of(data: Mapping[str, Any]) -> list[str]:
     """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening.
 
-    And on a speed and tables that a swing does not have, and exponents of a liquid.
+    And on a speed and tables that a swing does not have, and exponents of a liquid. What probably is another machine
+    than the one meant is among the warnings of the problem instead.
     """
-    plain: list[tuple[str | None, float, Kind]] = []
-    job = job_with(declared(data, allowed=True)).model_validate(data, context=plain)
-    told = [_told(*found) for found in dict.fromkeys(plain) if found[1]]
+    model = job_with(declared(data, allowed=True))
+    job = model.model_validate(data)
+    told = [item.note for item in plain_numbers(model, data) if not item.warning]
     notes = []
     if told:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
@@ -79,9 +78,3 @@ def _pins(job: Job) -> list[str]:
                 "is half of that"
             )
     return notes
-
-
-def _told(name: str | None, value: float, kind: Kind) -> str:
-    usual = _USUAL.get(kind)
-    also = f" ({value * per_si(usual):.6g} {usual})" if usual else ""
-    return f"{f'{name} = ' if name else ''}{value:g} is {value:g} {kind.unit}{also}"

@@ -14,7 +14,7 @@ from ...objectives.own.apply import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
-from . import parse_job, with_files
+from . import parse_job, warn_of, with_files
 
 
 def problem(
@@ -26,7 +26,7 @@ def problem(
     a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this
     process, without a time limit. folder: where the files lie that the tables name, such as catalogues, the working
     directory if left out; modules named by text may lie in either. require_feasible: as for `load_job`.
-    Raises `JobError`, naming key, rule, value and remedy, like `load_job`.
+    Warns, and raises `JobError`, naming key, rule, value and remedy, like `load_job`.
 
     >>> from slidercrank import problem
     >>> found = problem(
@@ -58,6 +58,7 @@ def problem(
         folder=None if folder is None else Path(folder),
         require_feasible=require_feasible,
     )
+    warn_of(found)
     return replace(found, own=tuple(_with(item, given) for item in found.own)) if given else found
 
 

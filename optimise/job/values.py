@@ -6,7 +6,7 @@ Each says in the JSON Schema what it accepts, and writes back what it reads: SI 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
 from pydantic import (
@@ -18,7 +18,7 @@ from pydantic import (
     create_model,
     model_validator,
 )
-from pydantic_core import CoreSchema, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Tolerance
@@ -82,6 +82,21 @@ def retyped(part: type[Table], **types: Any) -> type[Table]:
     return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
 
 
+PLAIN = "plain_number"
+"""Validation context, and type of its errors, that finds numbers without a unit: their places and kinds."""
+
+
+def values_in(value: object) -> list[object]:
+    """Return the values of a list, or of a table of values and lists; a single value as a list."""
+    given = list(value.values()) if isinstance(value, Mapping) else [value]
+    return [one for item in given for one in (item if isinstance(item, list | tuple) else [item])]
+
+
+def plain_in(value: object) -> list[float]:
+    """Return the numbers without a unit in a value, a list, or a table of values. Zero needs no unit."""
+    return [x for x in values_in(value) if isinstance(x, int | float) and not isinstance(x, bool) and x]
+
+
 class _Read:
     """Marks a value that `read` turns into SI. kind: of numbers without a unit."""
 
@@ -91,13 +106,10 @@ class _Read:
         raise NotImplementedError
 
     def _noted(self, value: object, info: core_schema.ValidationInfo) -> object:
-        """Add numbers without a unit to the validation context if that is a list: name, number, kind."""
+        """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
         found = self.read(value)
-        if isinstance(info.context, list) and self.kind.unit:
-            given = list(value.values()) if isinstance(value, Mapping) else [value]
-            for one in [one for item in given for one in (item if isinstance(item, list | tuple) else [item])]:
-                if isinstance(one, int | float):
-                    info.context.append((info.field_name, one, self.kind))
+        if info.context == PLAIN and self.kind.unit and plain_in(value):
+            raise PydanticCustomError(PLAIN, "has no unit", {"kind": self.kind})
         return found
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
@@ -230,10 +242,11 @@ class RangeOf(_Read):
             )
         lower, upper = (self._length(end) for end in ends)
         if lower > upper:
-            raise InputError(
-                f"must run from its lower to its upper end; got {shown(ends[0])} to "
-                f"{shown(ends[1])}, an empty range; swap the two"
-            )
+            what = f"must run from its lower to its upper end; got {shown(ends[0])} to {shown(ends[1])}"
+            plain = plain_in(value)
+            if len(plain) == 1:
+                raise InputError(f'{what}; {plain[0]:g} without a unit is {plain[0]:g} m; write "{plain[0]:g} mm"')
+            raise InputError(f"{what}, an empty range; swap the two")
         return lower, upper
 
     def _length(self, value: object) -> float:
@@ -265,10 +278,14 @@ class RangeOf(_Read):
         return {"anyOf": [pair, *one, choices, *grid_schema(one)], "examples": [["20 mm", "200 mm"], "140 mm"]}
 
 
+_FIT = replace(kinds.LENGTH, believed=(1e-8, 1e-2))
+"""Tolerances and clearances, which are smaller than links."""
+
+
 class ToleranceOf(_Read):
     """Marks a value as the tolerance of a length: "0.05 mm", or a share of the length, "0.1 %"."""
 
-    kind = kinds.LENGTH
+    kind = _FIT
 
     @staticmethod
     def share(value: object) -> float | None:
@@ -308,7 +325,7 @@ class ToleranceOf(_Read):
 Length = Annotated[float, Physical(kinds.LENGTH)]
 PositiveLength = Annotated[float, Physical(kinds.LENGTH, "positive")]
 Radius = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
-Clearance = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
+Clearance = Annotated[float, Physical(_FIT, "zero or more")]
 Angle = Annotated[float, Physical(kinds.ANGLE)]
 AngleTolerance = Annotated[float, Physical(kinds.ANGLE, "zero or more")]
 AngularSpeed = Annotated[float, Physical(kinds.ANGULAR_SPEED)]

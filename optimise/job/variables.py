@@ -68,7 +68,7 @@ class VariablesPart(Part):
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that vary besides the dimensions: path and what is given for it."""
-        return {path: leaf for root in ROOTS for path, leaf in _leaves(getattr(self, root), root)}
+        return {path: leaf for root in ROOTS for path, leaf in leaves_of(getattr(self, root), root)}
 
 
 class OptionPart(Part):
@@ -91,7 +91,7 @@ class OptionPart(Part):
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that come with it: path and value."""
-        return dict(_leaves(self.values, ""))
+        return dict(leaves_of(self.values, ""))
 
 
 def _apart(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
@@ -150,7 +150,7 @@ def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, value in given.items() if isinstance(given, Mapping) else ():
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
-            found |= dict(_leaves({key: value}, ""))
+            found |= dict(leaves_of({key: value}, ""))
     return found
 
 
@@ -170,11 +170,11 @@ def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> Non
         table[steps[-1]] = value
 
 
-def _leaves(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
+def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of what is no table in tables within tables; { choices } counts as a value."""
     for key, value in table.items():
         path = f"{root}.{key}" if root else key
         if isinstance(value, Mapping) and set(value) != {"choices"} and value and not says_values(value):
-            yield from _leaves(value, path)
+            yield from leaves_of(value, path)
         else:
             yield path, value

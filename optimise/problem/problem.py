@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from html import escape
 from numbers import Integral
 from typing import TYPE_CHECKING, Literal, overload
@@ -109,7 +109,7 @@ class Problem:
     `violation.constraints_of`. discrete:
     which of a design's numbers have one of some values only; their ranges are the hulls of these. motion: a swing
     of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
-    refused.
+    refused. warnings: sentences on what the job says and probably does not mean.
     """
 
     name: str
@@ -128,9 +128,10 @@ class Problem:
     slow_stroke: SlowStroke | None = None
     discrete: tuple[Discrete, ...] = ()
     motion: Swing | None = None
+    warnings: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out", "discrete")
+        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out", "discrete", "warnings")
         require_kinds(self, _KINDS, _CHANGE)
         require_kinds(self, _EACH, _CHANGE, each=True)
         require_known(self.discrete, [*self.ranges])

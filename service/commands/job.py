@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Annotated
 
+from ...model.errors import InputWarning
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
 from ..text.screen import console, give
@@ -19,7 +21,9 @@ def check(
     from ...optimise.job.notes import notes_of
     from ..text.summary import freedom_in_words, summarise
 
-    problem = load_job(job)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)  # among the answer
+        problem = load_job(job)
     for own in problem.own:
         if isinstance(own, OwnQuantity):
             own.require_function()
@@ -35,9 +39,10 @@ def check(
         "objectives": summary["objectives"],
         "freedom": [freedom_in_words(summary)],
         "search": [summary["search"]],
-        "warning": summary["warnings"],
         "note": summary["notes"],
     }
+    for line in summary["warnings"]:
+        screen.print(f"  {'warning':<14}{line}", style="yellow", soft_wrap=True)
     for title, lines in parts.items():
         for index, line in enumerate(lines):
             screen.print(f"  {title if index == 0 else '':<14}{line}", soft_wrap=True)

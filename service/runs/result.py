@@ -147,7 +147,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
-        warnings=(*front_warnings(front), *idle_rules(front.problem)),
+        warnings=(*front.problem.warnings, *front_warnings(front), *idle_rules(front.problem)),
         discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )

@@ -59,7 +59,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
-        "warnings": [*expected_warnings(problem), *idle_rules(problem), *idle_options(problem)],
+        "warnings": [*problem.warnings, *expected_warnings(problem), *idle_rules(problem), *idle_options(problem)],
         "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
     }
 

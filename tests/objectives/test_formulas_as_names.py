@@ -21,7 +21,7 @@ NAMES = sorted({name for kind in random_formulas.NAMES.values() for name in kind
 PROBLEM = sc.problem(
     {
         "name": "named",
-        "mechanism": {"speed": 10.0, "rod": {"mass": 0.5}, "slider": {"mass": 0.8}},
+        "mechanism": {"speed": "10 rad/s", "rod": {"mass": 0.5}, "slider": {"mass": 0.8}},
         "load": [{"force": "200 N", "opposes": "outward stroke"}],
         "variables": {"crank": [0.02, 0.06], "rod": [0.15, 0.3], "offset": [-0.05, 0.08]},
         "objectives": {"peak_torque": "minimise", "stroke": "maximise"},

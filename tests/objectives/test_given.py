@@ -17,7 +17,7 @@ NAMES = ["time_ratio", "peak_torque"]
 PROBLEM = sc.problem(
     {
         "name": "Feeder",
-        "mechanism": {"speed": 30.0, "slider": {"mass": 0.8}},
+        "mechanism": {"speed": "30 rad/s", "slider": {"mass": 0.8}},
         "variables": {"crank": [0.02, 0.06], "rod": [0.05, 0.25], "offset": [0.0, 0.08]},
         "objectives": {"peak_torque": "minimise", "time_ratio": "maximise"},
     }

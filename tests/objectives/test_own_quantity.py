@@ -266,7 +266,7 @@ def test_quantity_can_be_copied_and_sent() -> None:
 )
 def test_motion_of_a_function_follows_a_speed_profile(profile: dict[str, list[Any]]) -> None:
     if "crank_angles" in profile:
-        profile = profile | {"speeds": [60.0, 62.0, 58.0, 59.0]}
+        profile = profile | {"speeds": ["60 rad/s", "62 rad/s", "58 rad/s", "59 rad/s"]}
     functions: dict[str, tuple[Callable[[Designs], Any], str]] = {
         "peak_slider_speed": (lambda designs: designs.peaks(lambda t: magnitude(designs.velocity(t))), "m/s"),
         "peak_slider_acceleration": (
@@ -277,7 +277,7 @@ def test_motion_of_a_function_follows_a_speed_profile(profile: dict[str, list[An
     }
     tables: dict[str, Any] = {
         "name": "Uneven",
-        "mechanism": {"speed": 60.0, "slider": {"mass": "1 kg"}, "speed_profile": profile},
+        "mechanism": {"speed": "60 rad/s", "slider": {"mass": "1 kg"}, "speed_profile": profile},
         "quantity": {f"own_{name}": {"function": f, "unit": unit} for name, (f, unit) in functions.items()},
         "variables": {"crank": ["20 mm", "60 mm"], "rod": ["90 mm", "250 mm"], "offset": ["-20 mm", "20 mm"]},
         "objectives": {"time_ratio": "maximise"},
@@ -297,7 +297,7 @@ def test_motion_of_a_function_follows_a_speed_profile(profile: dict[str, list[An
 
 @pytest.mark.parametrize("machine", ["a profile", "two turns"])
 def test_forces_that_a_function_cannot_have_are_refused_without_blame(machine: str) -> None:
-    mechanism: dict[str, Any] = {"speed": 60.0, "slider": {"mass": "1 kg"}}
+    mechanism: dict[str, Any] = {"speed": "60 rad/s", "slider": {"mass": "1 kg"}}
     load: list[dict[str, Any]] = []
     if machine == "a profile":
         mechanism["speed_profile"] = {"cosines": [0.05]}
@@ -326,7 +326,7 @@ def test_forces_that_a_function_cannot_have_are_refused_without_blame(machine: s
 def test_with_other_variables_a_function_is_refused_before_anything_runs(asked: str, table: str) -> None:
     tables: dict[str, Any] = {
         "name": "Others vary",
-        "mechanism": {"speed": 60.0, "slider": {"mass": "1 kg"}},
+        "mechanism": {"speed": "60 rad/s", "slider": {"mass": "1 kg"}},
         "quantity": {"links": {"function": lambda designs: designs.crank + designs.rod, "unit": "mm"}},
         "variables": {
             "crank": "30 mm",

@@ -21,7 +21,7 @@ from tests import random_formulas
 TABLES: dict[str, Any] = {
     "name": "geared",
     "mechanism": {
-        "speed": 10.0,
+        "speed": "10 rad/s",
         "crank": {"mass": 0.2},
         "rod": {"mass": 0.5},
         "slider": {"mass": 0.8},

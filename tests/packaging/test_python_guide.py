@@ -72,7 +72,7 @@ def test_a_framework_that_is_missing_is_named_with_its_extra(tmp_path: Path) -> 
     code = (
         "import sys; sys.modules.update(dict.fromkeys(['jax', 'torch', 'openmdao', 'openmdao.api', 'pymoo']))\n"
         "import slidercrank as sc\n"
-        "p = sc.problem({'name': 'a', 'mechanism': {'speed': 1.0}, 'objectives': {'stroke': 'maximise'},\n"
+        "p = sc.problem({'name': 'a', 'mechanism': {'speed': '10 rpm'}, 'objectives': {'stroke': 'maximise'},\n"
         "    'variables': {'crank': 0.04, 'rod': [0.1, 0.2], 'offset': 0.0}})\n"
         "for make in (sc.jax_function, sc.torch_function, sc.openmdao_component, sc.pymoo_problem):\n"
         "    try: make(p)\n"

@@ -57,11 +57,34 @@ def test_schema_is_that_of_job_files(command: Command) -> None:
 
 def test_a_number_without_a_unit_is_told_as_it_is_read(tmp_path: Path, command: Command) -> None:
     job = fronts.job_file(tmp_path)
-    text = job.read_text().replace('"300 rpm"', "60").replace('["20 mm", "200 mm"]', "[0.02, 0.2]")
+    job.write_text(job.read_text().replace('["20 mm", "200 mm"]', "[0.02, 0.2]"))
+    assert "a number without a unit is in SI: variables.crank = 0.02 is 0.02 m = 20 mm" in command("check", job).stdout
+
+
+def test_doubtful_numbers_come_first_in_a_check_and_are_said_by_every_command(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text().replace('"300 rpm"', "120").replace('rod = ["60 mm", "600 mm"]', 'rod = ["60 mm", 0.6]')
     job.write_text(text)
-    found = command("check", job).stdout
-    assert "speed = 60 is 60 rad/s (572.958 rpm)" in found
-    assert "crank = 0.2 is 0.2 m (200 mm)" in found
+    speed = "mechanism.speed = 120 has no unit: 120 is 120 rad/s = 1145.92 rpm; write "
+    done = command("check", job)
+    assert [line[:72] for line in done.stdout.splitlines()[1:3]] == [
+        f"  warning       {speed}"[:72],
+        '  warning       variables.rod = ["60 mm", 0.6] mixes numbers with and without a unit'[:72],
+    ]
+    assert done.stderr == ""
+    assert json.loads(command("check", job, "--json").stdout)["warnings"][0].startswith(speed)
+    done = command("analyse", job, "--crank", "50 mm", "--rod", "300 mm", "--offset", "0 mm", "--json")
+    assert json.loads(done.stdout)
+    assert [line.startswith("warning: ") for line in done.stderr.splitlines()] == [True, True]
+    assert f"warning: {speed}" in done.stderr
+
+
+def test_a_number_of_another_unit_is_said_before_a_search(tmp_path: Path, runs: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text().replace('"300 rpm"', "30"))
+    done = command("submit", job, "--store", tmp_path / "store.db", "--json")
+    assert json.loads(done.stdout)["state"] == "queued"
+    assert "warning: mechanism.speed = 30 has no unit: 30 is 30 rad/s = 286.479 rpm" in done.stderr
 
 
 @pytest.mark.parametrize(("gravity", "told"), [(None, True), ("0", False), ('"9.81 m/s^2"', False)])

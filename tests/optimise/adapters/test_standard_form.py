@@ -102,7 +102,7 @@ def test_the_start_turns_fully_where_any_design_does() -> None:
             sc.problem(
                 {
                     "name": "Any",
-                    "mechanism": {"speed": 1.0},
+                    "mechanism": {"speed": "1 rad/s"},
                     "variables": dict(zip(("crank", "rod", "offset"), np.stack([low, high], axis=1), strict=True)),
                     "constraints": {"transmission_angle": {"min": "12 deg"}},
                     "objectives": {"stroke": "maximise"},
@@ -227,7 +227,7 @@ def test_offsets_of_both_signs_need_no_elimination_where_there_are_no_equalities
     x = np.random.default_rng(6).uniform(form.lower, form.upper, (50, 3))
     np.testing.assert_array_equal(form.designs(x), x)
     np.testing.assert_array_equal(form.arrays(x).F, sc.standard_form(support).arrays(x).F)
-    tables = {"name": "both", "mechanism": {"speed": 3.0}, "objectives": {"time_ratio": "maximise"}}
+    tables = {"name": "both", "mechanism": {"speed": "3 rad/s"}, "objectives": {"time_ratio": "maximise"}}
     tables |= {"variables": {"crank": [0.02, 0.06], "rod": [0.1, 0.3], "offset": [-0.05, 0.05]}}
     with pytest.raises(InputError, match="elimination_branch=0 to 1, or keep the equalities, with eliminate=False"):
         sc.standard_form(sc.problem(tables | {"constraints": {"stroke": {"equals": 0.08}}}), eliminate=True)

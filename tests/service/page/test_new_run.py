@@ -540,6 +540,22 @@ def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: O
     expect(page.get_by_role("button", name="Start the search")).to_be_in_viewport(ratio=1)
 
 
+@pytest.mark.slow
+def test_a_number_without_its_unit_is_warned_of_first_and_apart_from_notes(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    job = text_of(page)
+    job["mechanism"] |= {"speed": 120}
+    job["mechanism"].pop("gravity", None)
+    content = json.dumps(job).encode()
+    page.locator("#job-import").set_input_files({"name": "own.json", "mimeType": "application/json", "buffer": content})
+    facts = page.get_by_role("complementary")
+    warning = facts.locator(".warning").first
+    expect(warning).to_contain_text("120 is 120 rad/s = 1145.92 rpm", timeout=30_000)
+    assert warning.evaluate("node => node.previousElementSibling === null")
+    expect(facts.locator(".note")).to_contain_text("Masses are given but no gravity")
+
+
 def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=feeder")
     ready(page)

@@ -7,8 +7,9 @@ import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, understood, swing }) {
+  const warnings = (understood?.warnings ?? []).map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`));
   if (swing) {
-    fill(place, h("dl", { class: "terms" }, row("makes the swing", share(swing.closing_share), "of the ranges"), row("travel of the slider", between(swing.travel_mm, "mm")), row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`)), told(swing.unchecked, understood));
+    fill(place, warnings, h("dl", { class: "terms" }, row("makes the swing", share(swing.closing_share), "of the ranges"), row("travel of the slider", between(swing.travel_mm, "mm")), row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`)), told(swing.unchecked, understood));
     return;
   }
   if (!allowed) {
@@ -17,6 +18,7 @@ export function showFacts(place, { allowed, understood, swing }) {
   }
   fill(
     place,
+    warnings,
     h(
       "dl",
       { class: "terms" },
@@ -40,7 +42,7 @@ function row(title, value, note = null) {
 function told(unchecked, understood, said = []) {
   return [
     unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
-    [...(understood?.warnings ?? []), ...(understood?.notes ?? [])].map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
+    (understood?.notes ?? []).map((sentence) => h("p", { class: "note" }, `${capital(inWords(sentence))}.`)),
     said.map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
     understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
   ];

@@ -1,0 +1,116 @@
+"""Numbers of a job without a unit, which are in SI: where they stand, and which ones probably mean another unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from operator import getitem
+from typing import Any
+
+from pydantic import ValidationError
+
+from ...model.linkage.values import DIMENSIONS
+from ...objectives.kinds import Kind
+from ...objectives.units import shown
+from .messages import key_of, keys_of, toml
+from .paths import with_number
+from .values import PLAIN, Part, plain_in, values_in
+from .variables import leaves_of, varying_in
+
+_LONGEST = 60  # of a value that a warning repeats
+
+
+@dataclass(frozen=True)
+class PlainNumbers:
+    """A value of a job with numbers without a unit. key: where it stands. kind: of the numbers."""
+
+    key: str
+    value: Any
+    kind: Kind
+
+    @property
+    def note(self) -> str:
+        """The first of the numbers as it is read."""
+        number = plain_in(self.value)[0]
+        return f"{self.key} = {number:g} is {self._reading(number)}"
+
+    @property
+    def warning(self) -> str | None:
+        """Warning for numbers of a size that is not believed, or beside others with a unit; None for others."""
+        numbers = plain_in(self.value)
+        doubtful = [number for number in numbers if not self._is_believed(number)]
+        mixed = any(isinstance(value, str) for value in values_in(self.value))
+        if not doubtful and not mixed:
+            return None
+        number = (doubtful or numbers)[0]
+        text = toml(self.value)
+        given = text if len(text) <= _LONGEST else shown(self.value)
+        what = "mixes numbers with and without a unit" if mixed else "has no unit"
+        return (
+            f'{self.key} = {given} {what}: {number:g} is {self._reading(number)}; write "{number:g} '
+            f'{self.kind.metric.symbol}" if that is meant, or "{number:g} {self.kind.unit}"'
+        )
+
+    def _is_believed(self, number: float) -> bool:
+        return self.kind.believed is None or self.kind.believed[0] <= abs(number) <= self.kind.believed[1]
+
+    def _reading(self, number: float) -> str:
+        usual = self.kind.metric
+        also = f" = {usual.factor * number:.6g} {usual.symbol}" if usual.symbol != self.kind.unit else ""
+        return f"{number:g} {self.kind.unit}{also}"
+
+
+def plain_numbers(
+    job: type[Part], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
+) -> list[PlainNumbers]:
+    """Return the numbers without a unit in the tables of a job, those of ratios and counts aside.
+
+    job: reads it. values: put in place of numbers of the job, by their paths.
+    """
+    placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in _placed(job, data)}
+    for path in values or ():
+        placed.pop(path, None)
+    given = [(path, path, value) for path, value in (values or {}).items()]
+    varying = [item for item in (*given, *_varying(data)) if plain_in(item[2])]
+    if not varying:
+        return list(placed.values())
+    tried: Mapping[str, Any] = data
+    for _, path, value in varying:
+        try:
+            tried = _with(tried, path, plain_in(value)[0])
+        except LookupError:  # a word of the table, such as the name of a series
+            continue
+    kinds = {path: kind for path, _, _, kind in _placed(job, tried)}
+    more = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
+    return [*placed.values(), *more]
+
+
+def _placed(job: type[Part], data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, Kind]]:
+    """Yield dotted path, key, value and kind of each value with a number without a unit that has a place of its own."""
+    try:
+        job.model_validate(data, context=PLAIN)
+    except ValidationError as error:
+        for details in error.errors(include_url=False):
+            if details["type"] == PLAIN:
+                keys = keys_of(details["loc"])
+                keys = keys[:-1] if isinstance(keys[-1], int) else keys  # of a list, as a whole
+                value = reduce(getitem, keys, data)
+                path = ".".join(str(key + 1) if isinstance(key, int) else key for key in keys)
+                yield path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]
+
+
+def _varying(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
+    """Yield key, path and value of what variables and options say of numbers that have their places elsewhere."""
+    for path, value in varying_in(data).items():
+        yield f"variables.{path}", path, value
+    for part in data.get("choice", ()):
+        for option in part.get("option", ()):
+            for path, value in leaves_of(option.get("values", {}), ""):
+                yield f"choice {shown(part['name'])}, option {shown(option['name'])}: {path}", path, value
+
+
+def _with(data: Mapping[str, Any], path: str, number: float) -> dict[str, Any]:
+    if path in DIMENSIONS:
+        return {**data, "variables": {**data["variables"], path: number}}
+    return with_number(data, path, number)
