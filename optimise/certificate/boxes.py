@@ -38,9 +38,9 @@ _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range 
 def covered(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
-    Bounded are all closed forms, and from below the peaks over the cycle of machines without friction; of several
-    cylinders those of one alone, and with a speed profile those that do not depend on the speed. A time ratio along a
-    speed profile is not a closed form.
+    Bounded are closed forms of the three dimensions (`ClosedFormQuantity`), and from below the peaks over the cycle of
+    machines without friction; of several cylinders those of one alone, and with a speed profile those that do not
+    depend on the speed. A time ratio along a speed profile is not a closed form.
     """
     quantity = problem.quantity(objective.quantity)
     if _is_closed(problem, quantity):

@@ -42,9 +42,7 @@ def certify_designs(
     dimensions: (n, 3), crank, rod, offset, m, that meet the job's requirements. epsilon: to be proven, of the
     objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
     rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
-    dimensions varies, and for objectives that cannot be bounded over a range of designs: averages over the cycle,
-    forces under friction, peaks that are not minimised, sums of several cylinders, and with a speed profile all that
-    the speed matters to; and for a swing.
+    dimensions varies, for objectives that cannot be bounded over a range of designs (`boxes.covered`), and for a swing.
     """
     if problem.motion is not None:
         raise InputError(

@@ -1,18 +1,24 @@
 """The documentation: its links lead somewhere, its formulas can be shown, its numbers are those of the code."""
 
+import json
 import math
 import re
+import shlex
 import tomllib
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from typer.testing import CliRunner
 
+from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job, with_files
 from slidercrank.optimise.questions.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
+from slidercrank.service.api.preview import AllowedModel, PreviewModel
+from slidercrank.service.cli import app
 from tests.packaging.feeder import numbers
 
 LINK = re.compile(r"\[[^\]\n]*\]\(([^)\s]+)\)")
@@ -207,6 +213,47 @@ def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str],
         if "cycle_time" in job["mechanism"]:
             del job["mechanism"]["speed"]
         assert parse_job(with_files(job, tmp_path)).name == "Press feed"
+
+
+def test_a_job_has_room_for_as_many_tables_of_loads_as_the_page_says(pages: dict[Path, str], root: Path) -> None:
+    said = re.search(r"enough\s+for (\w+) tables of loads with ([\d,]+) points", pages[root / "docs" / "jobs.md"])
+    assert said is not None
+    count, points = ["none", "one", "two", "three", "four", "five"].index(said[1]), int(said[2].replace(",", ""))
+    (whole,) = _tables(pages[root / "README.md"])
+    table = {"positions": [1e-4 * place for place in range(points)], "forces": [-1.0] * points}
+    assert len(parse_job({**whole, "load": [table] * count}).mechanism.loads) == count
+    with pytest.raises(JobError, match="at most 10000 values"):
+        parse_job({**whole, "load": [table] * (count + 1)})
+
+
+@pytest.mark.parametrize("page", ["optimisers.md", "sizing.md"])
+@pytest.mark.slow
+def test_convex_programmes_of_the_pages_run(page: str, pages: dict[Path, str], root: Path, tmp_path: Path) -> None:
+    """On the job of the README with the costs and sections of docs/jobs.md."""
+    costs = next(part for part in _tables(pages[root / "docs" / "jobs.md"]) if "costs" in part)
+    (whole,) = _tables(pages[root / "README.md"])
+    (tmp_path / "job.json").write_text(json.dumps({**whole, **costs}))
+    lines = re.findall(r"slidercrank ((?:allocate|balance|sections) JOB [^#`\n]*)", pages[root / "docs" / page])
+    assert lines
+    for line in lines:
+        words = (str(tmp_path / "job.json") if word == "JOB" else word for word in shlex.split(line))
+        done = CliRunner().invoke(app, [*words])
+        assert done.exit_code == 0, f"{line}: {done.output}"
+
+
+def test_the_tree_of_the_architecture_has_every_folder(pages: dict[Path, str], root: Path) -> None:
+    tree = pages[root / "docs" / "architecture.md"].split("```text\n")[1].split("```")[0]
+    named = {folder for folders in re.findall(r"^ *((?:[a-z_]+/ )+)", tree, re.MULTILINE) for folder in folders.split()}
+    tops = ("model", "objectives", "optimise", "service")
+    folders = {f"{file.parent.name}/" for top in tops for file in (root / top).glob("*/__init__.py")}
+    assert len(folders) > 40
+    assert folders - named == set()
+
+
+def test_the_parts_of_a_preview_are_those_that_the_page_lists(pages: dict[Path, str], root: Path) -> None:
+    section = pages[root / "docs" / "api.md"].split("## Write a job")[1].split("\n## ")[0]
+    fields = {*PreviewModel.model_fields, *AllowedModel.model_fields}
+    assert {field for field in fields if f"`{field}`" not in section} == set()
 
 
 def test_the_press_of_the_readme_presses_slowly(pages: dict[Path, str], root: Path) -> None:
