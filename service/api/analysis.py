@@ -21,7 +21,7 @@ from ..designs.holding import held
 from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
-from ..designs.variation import variation_of, with_lengths
+from ..designs.variation import variation_of, with_numbers
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, determined, numbers_of, numbers_of_swing
@@ -96,7 +96,8 @@ class RequirementModel(BaseModel):
 class RequirementsModel(OfDesign):
     """The requirements of a job on a design, with the choices that the design made.
 
-    ranges: least and greatest of crank, rod and offset, by column. speed_rpm: of its crank, positive counter-clockwise.
+    ranges: least and greatest of crank, rod, offset and the numbers that vary besides, by column. speed_rpm: of its
+    crank, positive counter-clockwise.
     names: of quantities, as in job files, by column. tolerances: whether the machine has any.
     """
 
@@ -119,7 +120,9 @@ class TradeOffsModel(OfDesign):
 
 
 class OtherLengths(BaseModel, extra="forbid", strict=True):
-    """Lengths for a design of a front. angles: of its curves, evenly spaced; 0 for none.
+    """Lengths for a design of a front. values: other numbers that vary, by column, within their ranges.
+
+    angles: of its curves, evenly spaced; 0 for none.
 
     hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
     to take the lengths as they are.
@@ -128,6 +131,9 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
     offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
+    values: dict[Annotated[str, Field(max_length=500)], Annotated[float, Field(allow_inf_nan=False)]] = Field(
+        {}, max_length=200, examples=[{}]
+    )
     angles: int = Field(180, ge=0, le=MOST)
     hold: Literal["crank", "rod", "offset"] | None = None
 
@@ -228,14 +234,15 @@ def show_trade_offs(found: FrontDep, design: DesignNumber, units: UnitsAsked = "
 
 @router.post("/jobs/{number}/designs/{design}/what-if")
 def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -> WhatIfModel:
-    """Analyse a design with other lengths, its choices and varying numbers kept; what if?"""
+    """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
     if 0 < asked.angles < LEAST:
         raise InputError(
             f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
         )
     lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
     stored = found.design(design)
-    stored = with_lengths(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
+    stored = with_numbers(stored, stored.values[:3], asked.values)
+    stored = with_numbers(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
     changed = variation_of(stored, found.result, found.minimised)
     row, undefined = determined(changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion)
     cycle = cycle_model(stored, asked.angles) if asked.angles else None

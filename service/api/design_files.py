@@ -1,4 +1,4 @@
-"""Files of a single design, as found or with other lengths: linkage for CAD, motion, report for a review."""
+"""Files of a single design, as found or with other numbers: linkage for CAD, motion, report for a review."""
 
 from __future__ import annotations
 

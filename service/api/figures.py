@@ -16,7 +16,7 @@ from .exports import SEALED, of_type
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import SettingsDep
-from .stored_fronts import FrontDep, Lengths, LengthsDep, ShownDesign, StoredFront, shown_design
+from .stored_fronts import FrontDep, Numbers, NumbersDep, ShownDesign, StoredFront, shown_design
 from .throttle import DRAWING
 
 if TYPE_CHECKING:
@@ -73,26 +73,26 @@ def list_figures(found: FrontDep) -> FiguresModel:
 
 
 @router.get("/jobs/{number}/figures/{name}.png", **of_type("image/png"))
-def draw_png(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
-    """Draw a figure; the sheet of a design also with other lengths."""
-    return _image(found, name, "png", lengths, units)
+def draw_png(found: FrontDep, name: Name, numbers: NumbersDep, units: UnitsAsked = "metric") -> Response:
+    """Draw a figure; the sheet of a design also with other numbers."""
+    return _image(found, name, "png", numbers, units)
 
 
 @router.get("/jobs/{number}/figures/{name}.svg", **of_type("image/svg+xml"))
-def draw_svg(found: FrontDep, name: Name, lengths: LengthsDep, units: UnitsAsked = "metric") -> Response:
-    """Draw a figure; the sheet of a design also with other lengths."""
-    return _image(found, name, "svg", lengths, units)
+def draw_svg(found: FrontDep, name: Name, numbers: NumbersDep, units: UnitsAsked = "metric") -> Response:
+    """Draw a figure; the sheet of a design also with other numbers."""
+    return _image(found, name, "svg", numbers, units)
 
 
-def _image(found: StoredFront, name: str, kind: Kind, lengths: Lengths | None, units: System) -> Response:
+def _image(found: StoredFront, name: str, kind: Kind, numbers: Numbers | None, units: System) -> Response:
     """Return a figure; the sheet of a design has the name of its file. Drawn ones are kept."""
     from ..figures.style import image
 
     single = _DESIGN.fullmatch(name)
-    if single is None and lengths is not None:
-        rule = "other lengths are those of a single design"
+    if single is None and numbers is not None:
+        rule = "other numbers are those of a single design"
         raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-    shown = None if single is None else shown_design(found, int(single[1]), lengths)
+    shown = None if single is None else shown_design(found, int(single[1]), numbers)
     key, headers = shown.key if shown else name, dict[str, str]()
 
     def draw() -> tuple[Sequence[str], bytes]:

@@ -9,12 +9,13 @@ from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
+from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.table_columns import choice_field
 from ..designs.columns import all_columns
 from ..designs.requirements import ranges_of
 from ..designs.shown_units import rows_in
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
-from ..designs.variation import Variation, variation_of, with_lengths
+from ..designs.variation import Variation, variation_of, with_numbers
 from ..runs.result import csv_text, json_ready
 from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
 from .exports import download, of_type
@@ -167,7 +168,9 @@ def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:
     if missing:
         raise InputError(f"a design without a number has all dimensions; got none for {', '.join(missing)}; give them")
     design = design_of(found.problem, {**own, **asked.dimensions})
-    return with_lengths(design, (design.values[0], design.values[1], design.values[2]))
+    varying = {varying_column(item)[0] for item in design.part.mechanism.varying}
+    values = {key: value for key, value in asked.dimensions.items() if key in varying and isinstance(value, float)}
+    return with_numbers(design, design.values[:3], values)
 
 
 def _design(found: StoredFront, one: Kept) -> StoredDesign:

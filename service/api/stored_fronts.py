@@ -1,13 +1,14 @@
-"""Fronts of ended jobs, and their designs, each with its own lengths or with others given in an address.
+"""Fronts of ended jobs, and their designs, each with its own numbers or with others given in an address.
 
 Fronts are kept in memory: they never change, and reading 10,000 designs takes a while.
 """
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,7 +23,7 @@ from ...optimise.problem.problem import Problem
 from ..designs.columns import Column, all_columns
 from ..designs.picking_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.variation import Variation, variation_of, with_lengths
+from ..designs.variation import Variation, variation_of, with_numbers
 from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..store import Job, Store
@@ -166,79 +167,96 @@ SHORTEST = 1e-4  # mm
 _SAME = 1e-9  # of a length: an address has the design's own
 
 Length = Annotated[float, Field(ge=SHORTEST, le=LONGEST, allow_inf_nan=False)]
-Lengths = tuple[float, float, float]
-"""Crank, rod, offset, mm."""
+Numbers = Mapping[str, float]
+"""Numbers of a design by column, in its unit."""
+_LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 
 _OTHER = "mm, instead of that of the design; crank_mm, rod_mm and offset_mm come together"
+_VALUE = "another number that varies, by column, such as slider_mass_kg=1.2; repeatable"
 
 
-def _lengths(
+def _numbers(
     crank_mm: Annotated[Length | None, Query(description=_OTHER, examples=[40.0])] = None,
     rod_mm: Annotated[Length | None, Query(description=_OTHER, examples=[64.0])] = None,
     offset_mm: Annotated[
         float | None, Query(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, description=_OTHER, examples=[20.0])
     ] = None,
-) -> Lengths | None:
-    given = {"crank_mm": crank_mm, "rod_mm": rod_mm, "offset_mm": offset_mm}
-    if crank_mm is not None and rod_mm is not None and offset_mm is not None:
-        return crank_mm, rod_mm, offset_mm
-    missing = [name for name, value in given.items() if value is None]
-    if len(missing) == 3:
-        return None
+    value: Annotated[list[Annotated[str, Field(max_length=500)]], Query(max_length=200, description=_VALUE)] = [],  # noqa: B006
+) -> Numbers | None:
+    lengths = dict(zip(_LENGTHS, (crank_mm, rod_mm, offset_mm), strict=True))
+    given = {name: length for name, length in lengths.items() if length is not None}
+    missing = [name for name in lengths if name not in given]
+    if len(missing) in (0, 3):
+        return given | dict(map(_value, value)) or None
     raise InputError(
         f"other lengths come together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
         "give all three, or none for the design as it is"
     )
 
 
-LengthsDep = Annotated[Lengths | None, Depends(_lengths)]
-"""Lengths that an address gives a design, None for its own. Raises `InputError` for some of them."""
+def _value(text: str) -> tuple[str, float]:
+    """Return column and number of a text such as "slider_mass_kg=1.2"."""
+    column, _, number = text.partition("=")
+    try:
+        value = float(number)
+    except ValueError:
+        value = math.nan
+    if not (column and math.isfinite(value)):
+        raise InputError(f"a value is a column, =, and a number; got {text!r}; write it like slider_mass_kg=1.2")
+    return column, value
+
+
+NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
+"""Numbers that an address gives a design, None for its own. Raises `InputError` for one or two lengths."""
 
 
 @dataclass(frozen=True)
 class ShownDesign:
-    """A design of a front, or what became of it. lengths: m, if they are others than its own."""
+    """A design of a front, or what became of it. changed: whether its numbers are others than its own."""
 
     found: StoredFront
     number: int
     design: StoredDesign
-    lengths: Lengths | None
+    changed: bool
 
     @property
     def words(self) -> str:
         """The design in titles."""
-        return f"design {self.number}" + (", changed" if self.lengths else "")
+        return f"design {self.number}" + (", changed" if self.changed else "")
 
     @property
     def stem(self) -> str:
         """The design in the names of files."""
-        return f"design-{self.number}" + ("-changed" if self.lengths else "")
+        return f"design-{self.number}" + ("-changed" if self.changed else "")
 
     @property
     def key(self) -> str:
         """The design among what is kept with the front."""
-        return f"design_{self.number}" + (f" {self.lengths}" if self.lengths else "")
+        return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
 
     def variation(self) -> Variation | None:
-        """Return all about other lengths; None for the design as it is."""
-        return variation_of(self.design, self.found.result, self.found.minimised) if self.lengths else None
+        """Return all about other numbers; None for the design as it is."""
+        return variation_of(self.design, self.found.result, self.found.minimised) if self.changed else None
 
 
-def shown_design(found: StoredFront, number: int, lengths: Lengths | None) -> ShownDesign:
-    """Return a design of a front with lengths, mm. Raises `NotFound`; `InputError` if it does not turn fully."""
-    stored = found.design(number)
-    if lengths is None:
-        return ShownDesign(found, number, stored, None)
-    own = (float(found.row(number)[key] or 0.0) for key in ("crank_mm", "rod_mm", "offset_mm"))
-    if all(abs(one - other) <= _SAME * abs(other) for one, other in zip(lengths, own, strict=True)):
-        return ShownDesign(found, number, stored, None)
-    crank, rod, offset = (length / 1e3 for length in lengths)
-    return ShownDesign(found, number, with_lengths(stored, (crank, rod, offset)), (crank, rod, offset))
+def shown_design(found: StoredFront, number: int, numbers: Numbers | None) -> ShownDesign:
+    """Return a design of a front with numbers. Raises `NotFound`; `InputError` if it does not turn fully."""
+    stored, row = found.design(number), found.row(number)
+    cells = {column: row.get(column) for column in numbers or ()}
+    own = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}
+    if all(abs(value - own[column]) <= _SAME * abs(own[column]) for column, value in (numbers or {}).items()):
+        return ShownDesign(found, number, stored, changed=False)
+    given = dict(numbers or {})
+    lengths = [
+        given.pop(name) / 1e3 if name in given else value
+        for name, value in zip(_LENGTHS, stored.values[:3], strict=True)
+    ]
+    return ShownDesign(found, number, with_numbers(stored, lengths, given), changed=True)
 
 
-def _shown(found: FrontDep, design: DesignNumber, lengths: LengthsDep) -> ShownDesign:
-    return shown_design(found, design, lengths)
+def _shown(found: FrontDep, design: DesignNumber, numbers: NumbersDep) -> ShownDesign:
+    return shown_design(found, design, numbers)
 
 
 ShownDep = Annotated[ShownDesign, Depends(_shown)]
-"""The design in the path, with the lengths in the query."""
+"""The design in the path, with the numbers in the query."""

@@ -113,7 +113,7 @@ def list_topics() -> TopicList:
     **of_type("image/svg+xml"),
 )
 def draw_topic_svg(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
-    """Draw the figure of one topic of a design, as found or with other lengths."""
+    """Draw the figure of one topic of a design, as found or with other numbers."""
     headers = {"Content-Security-Policy": SEALED}
     return Response(_drawn(shown, topic, "svg", asked), media_type="image/svg+xml", headers=headers)
 
@@ -124,13 +124,13 @@ def draw_topic_svg(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
     **of_type("image/png"),
 )
 def draw_topic_png(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
-    """Draw the figure of one topic of a design, as found or with other lengths."""
+    """Draw the figure of one topic of a design, as found or with other numbers."""
     return Response(_drawn(shown, topic, "png", asked), media_type="image/png")
 
 
 @router.get("/jobs/{number}/designs/{design}/topics/{topic}", response_model=ToldTopic)
 def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
-    """Give the numbers of one topic of a design, as found or with other lengths, and its text."""
+    """Give the numbers of one topic of a design, as found or with other numbers, and its text."""
     of = _topic(topic)
 
     def make() -> tuple[tuple[str], bytes]:

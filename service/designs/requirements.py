@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...objectives.kinds import System, shown_in
+from ...objectives.tables.varying_column import columns_of_numbers
 from ..runs.result import Cell, Row
-from .columns import DIMENSIONS
+from .columns import DIMENSIONS, find_column
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
@@ -78,9 +79,14 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 
 def ranges_of(part: Problem) -> list[Requirement]:
-    """Return the ranges of crank, rod and offset, mm."""
-    ranges = ((name, getattr(part, name)) for name in DIMENSIONS)
-    return [Requirement(name, f"{name}_mm", name, "mm", 1e3 * of.lower, 1e3 * of.upper) for name, of in ranges]
+    """Return the ranges of crank, rod, offset and the numbers that vary besides, in their units."""
+    columns = columns_of_numbers(part.mechanism.varying)
+    found = []
+    for name, of in part.ranges.items():
+        column, unit = columns[name]
+        title = find_column(column, (column,)).title
+        found.append(Requirement(name, column, title, unit.symbol, of.lower * unit.factor, of.upper * unit.factor))
+    return found
 
 
 def names_of(part: Problem) -> dict[str, str]:
@@ -105,7 +111,8 @@ def judged(problem: Problem, row: Row, system: System = "metric") -> list[Judged
 
     system: of the units of the answer.
     """
-    each = zip(*(ranges_of(part) for part in problem.parts()), strict=True)  # of several, where it is chosen
+    lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
+    each = zip(*lengths, strict=True)  # of several, where it is chosen
     ranges = [min(of, key=lambda rule: rule.missed_by(row) or 0.0) for of in each]
     return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
 

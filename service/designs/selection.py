@@ -124,10 +124,10 @@ def plain_number(text: str) -> float | None:
 
 
 def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
-    """Return a value in SI. Raises `InputError` that begins with the key; a unit is always needed."""
+    """Return a value in SI. Raises `InputError` that begins with the key; a unit is needed unless the kind has none."""
     from ...objectives.units import shown, to_si
 
-    if plain_number(text) is not None:
+    if kind.unit and plain_number(text) is not None:
         raise InputError(f'{key} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"')
     try:
         return to_si(text, kind, sign=sign, plain=False)

@@ -1,25 +1,28 @@
-"""A design of a stored front with other lengths: numbers, broken requirements, and its place against the front."""
+"""A design of a stored front with other numbers: numbers, broken requirements, and its place against the front."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.errors import InputError
 from ...model.swing.swing import require_swing
+from ...objectives.tables.varying_column import varying_column
 from ..runs.result import Result, Row, rows_of
 from .picking_options import minimised_values, sizes_of
 from .requirements import ranges_of, requirements_of, unmet
 from .stored_designs import StoredDesign
 
-_SAME = 1e-9  # of an objective's range over the front: a difference below is rounding
+_SAME = 1e-9  # of an objective's range over the front, or of a number: a difference below is rounding
 
 
 @dataclass(frozen=True)
 class Variation:
-    """A design with other lengths, judged against its job and front. row: every quantity and the slacks.
+    """A design with other numbers, judged against its job and front. row: every quantity and the slacks.
 
     broken: columns of constraints that are not met. outside: of ranges left. dominated_by, dominates: positions in the
     front of designs that are as good in every objective and better in one, and of those that this one beats so, those
@@ -34,9 +37,29 @@ class Variation:
     dominates: list[int]
 
 
-def with_lengths(design: StoredDesign, lengths: tuple[float, float, float]) -> StoredDesign:
-    """Return a design with other lengths, m: choices and varying numbers stay. Raises `InputError` for lengths."""
-    changed = replace(design, values=(*lengths, *design.values[3:]))
+def with_numbers(
+    design: StoredDesign, lengths: Sequence[float], values: Mapping[str, float] | None = None
+) -> StoredDesign:
+    """Return a design with other lengths, m, and other varying numbers, by column in its unit; the rest stays.
+
+    Raises `InputError` for lengths that do not turn, and for a number that does not vary or leaves its range.
+    """
+    numbers = list(design.values[3:])
+    columns = [varying_column(item) for item in design.part.mechanism.varying]
+    places = {column: place for place, (column, _) in enumerate(columns)}
+    for column, value in (values or {}).items():
+        if column not in places:
+            raise InputError(
+                f"only numbers that vary in this job take other values: {', '.join(places) or 'there are none'}; got "
+                f"{column!r}; leave it out"
+            )
+        item, unit = design.part.mechanism.varying[places[column]], columns[places[column]][1]
+        numbers[places[column]] = number = value / unit.factor
+        room = _SAME * max(abs(item.lower), abs(item.upper))
+        if not item.lower - room <= number <= item.upper + room:
+            ends = f"{item.lower * unit.factor:.6g} to {item.upper * unit.factor:.6g} {unit.symbol}".rstrip()
+            raise InputError(f"{item.name} must be within its range, {ends}; got {value:.6g}; correct it")
+    changed = replace(design, values=(*lengths, *numbers))
     if changed.part.motion is None:
         changed.linkage.require_full_rotation()
     else:

@@ -102,7 +102,16 @@ declare global {
       designs: RoundedRow[];
       notes: string[];
     }
-    type RoundedRow = Row & { missed: string[]; tightest: string | null };
+    type RoundedRow = Row & { missed: string[]; misses: Miss[]; tightest: string | null };
+    interface Miss {
+      quantity: string;
+      title: string;
+      kind: string;
+      amount: number;
+      unit: string;
+      side: "above" | "below";
+      allowed: number;
+    }
     /** What /analysis gives for "sensitivity", which its description leaves open: rates such as crank_per_mm beside the rest. */
     interface Sensitivity {
       quantities: Sensitive[];

@@ -92,6 +92,10 @@ declare namespace Page {
     rod_mm: number;
     offset_mm: number;
   }
+  /** What a changed design has: its lengths, and of other numbers that were changed column, = and value. */
+  interface Numbers extends Lengths {
+    value?: string[];
+  }
   /** The place in the cycle that the parts of a view share, as it changes: of a turn the crank angle. */
   interface Turn {
     angle: number;

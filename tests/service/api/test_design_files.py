@@ -227,7 +227,7 @@ def test_lengths_that_make_no_design_are_refused(
 
 def test_other_lengths_are_those_of_one_design(solved: Solved, client: httpx.Client) -> None:
     answer = client.get(f"{solved.path}/figures/parallel_coordinates.png", params=changed(solved))
-    assert "other lengths are those of a single design" in refused(answer, 422)
+    assert "other numbers are those of a single design" in refused(answer, 422)
 
 
 def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> None:

@@ -64,7 +64,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
 
     page.locator("table.designs tbody a").nth(5).press("Enter")
     page.get_by_label("Crank, step").press("Enter", timeout=PATIENCE)
-    page.get_by_role("link", name="Apply round numbers 1", exact=True).press("Enter", timeout=PATIENCE)
+    page.get_by_role("button", name="Apply round numbers 1", exact=True).press("Enter", timeout=PATIENCE)
     expect(page.locator("#what-if-crank_mm")).to_have_value(re.compile(r"^\d+(\.5)?$"), timeout=PATIENCE)
     page.locator(".what-if summary").filter(has_text="Keep this design").press("Enter", timeout=PATIENCE)
     typed(page.get_by_label("Name"), "Rounded")

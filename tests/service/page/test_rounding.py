@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
+import time
 from collections.abc import Iterator
+from threading import Event
+from typing import Any
 
 import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
+from slidercrank.optimise.front.rounding_search import RoundingSearch, Stage
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched
@@ -35,22 +40,78 @@ def page(opened: tuple[Page, str], solved: Solved) -> Page:
     return page
 
 
-def test_round_numbers_are_those_of_the_api_and_can_be_applied(
+def asked_of(address: str, number: int, design: int, **body: object) -> list[dict[str, Any]]:
+    """Return the rounded designs that the API gives."""
+    path = f"{address}{API}/jobs/{number}/designs/{design}/rounded"
+    found = httpx.post(path, json={"count": 5, **body}, timeout=60.0).json()["rounded"]
+    return list(found["designs"])
+
+
+def test_round_numbers_are_those_of_the_api_with_every_miss_as_a_number(
     page: Page, opened: tuple[Page, str], solved: Solved
 ) -> None:
     page.get_by_label("Rod, step").fill("1")
     page.get_by_label("Rod, step").press("Enter")
     lines = page.get_by_role("table", name="Round numbers").locator("tbody tr")
-    path = f"{opened[1]}{API}/jobs/{solved.number}/designs/{DESIGN}/rounded"
-    body = {"to": ["crank=0.5 mm", "rod=1 mm", "offset=0.5 mm"], "count": 5}
-    expected = httpx.post(path, json=body, timeout=60.0).json()["rounded"]["designs"]
+    steps = ["crank=0.5 mm", "rod=1 mm", "offset=0.5 mm"]
+    expected = asked_of(opened[1], solved.number, DESIGN, to=steps)
     expect(lines).to_have_count(len(expected), timeout=30_000)
     for line, row in zip(lines.all(), expected, strict=True):
         for key in (*LENGTHS, "time_ratio", "least_transmission_angle_deg"):
             assert float(str(line.locator(f"[data-key={key}]").get_attribute("data-value"))) == row[key]
-    page.get_by_role("link", name="Apply round numbers 1", exact=True).click()
-    for key in LENGTHS:
-        expect(page.locator(f"#what-if-{key}")).to_have_value(f"{expected[0][key]:.6g}", timeout=30_000)
+        (miss,) = row["misses"]
+        shown = line.locator("[data-miss=stroke]")
+        assert float(str(shown.get_attribute("data-value"))) == miss["amount"] > 0.0
+        expect(shown).to_contain_text("mm too low" if miss["side"] == "below" else "mm too high")
+    expect(page.locator(".rounding")).to_contain_text("allow a miss of stroke")
+    page.get_by_label("Stroke, allowed miss").fill("0,1")
+    page.get_by_label("Stroke, allowed miss").press("Enter")
+    expect(page.locator(".rounding")).to_contain_text("keep every requirement within 0.1 mm of stroke")
+    expected = asked_of(opened[1], solved.number, DESIGN, to=steps, allow=["stroke=0.1 mm"])
+    expect(lines).to_have_count(len(expected))
+    for line, row in zip(lines.all(), expected, strict=True):
+        assert float(str(line.locator("[data-miss]").get_attribute("data-value"))) == row["misses"][0]["amount"]
+        expect(line.locator("[data-miss]")).to_contain_text(", 0.1 mm allowed")
+
+
+def test_applying_one_keeps_the_list_and_the_steps(page: Page, opened: tuple[Page, str], solved: Solved) -> None:
+    page.get_by_label("Rod, step").fill("2")
+    page.get_by_label("Stroke, allowed miss").fill("0.2")
+    page.get_by_label("Rod, step").press("Enter")
+    lines = page.get_by_role("table", name="Round numbers").locator("tbody tr")
+    steps = ["crank=0.5 mm", "rod=2 mm", "offset=0.5 mm"]
+    expected = asked_of(opened[1], solved.number, DESIGN, to=steps, allow=["stroke=0.2 mm"])
+    expect(lines).to_have_count(len(expected), timeout=30_000)
+    for number in (2, 1):
+        page.get_by_role("button", name=f"Apply round numbers {number}", exact=True).click()
+        for key in LENGTHS:
+            expect(page.locator(f"#what-if-{key}")).to_have_value(f"{expected[number - 1][key]:.6g}", timeout=30_000)
+        expect(page.locator(".what-if .verdict")).to_contain_text("Misses a requirement: stroke")
+        expect(lines).to_have_count(len(expected))
+        expect(page.get_by_label("Rod, step")).to_have_value("2")
+        expect(page.get_by_label("Stroke, allowed miss")).to_have_value("0.2")
+        expect(page).to_have_url(re.compile(f"rod_mm={expected[number - 1]['rod_mm']:g}"))
+
+
+def test_the_search_shows_its_progress_and_can_be_stopped(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = Event()
+
+    def endless(self: RoundingSearch, count: int) -> Iterator[Stage]:
+        try:
+            while True:
+                time.sleep(0.01)
+                yield Stage("screening combinations", count, 10)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(RoundingSearch, "best", endless)
+    page.get_by_role("button", name="Find round numbers").press("Enter")
+    expect(page.locator(".rounding .searching")).to_contain_text("Screening combinations: 5 of 10")
+    assert page.get_by_role("progressbar", name="Progress of the search").evaluate("bar => bar.position") == 0.5
+    page.get_by_role("button", name="Stop").press("Enter")
+    expect(page.locator(".rounding")).to_contain_text("Stopped.")
+    expect(page.get_by_role("button", name="Find round numbers")).to_be_enabled()
+    assert ended.wait(10.0)
 
 
 def test_wrong_steps_are_said_at_their_fields(page: Page) -> None:
@@ -71,7 +132,7 @@ def test_wrong_steps_are_said_at_their_fields(page: Page) -> None:
     for name in ("Crank, step", "Rod, step", "Offset, step"):
         page.get_by_label(name).fill("")
     step.press("Enter")
-    expect(page.locator(".rounding [role=alert]")).to_contain_text("No length has a step")
+    expect(page.locator(".rounding [role=alert]")).to_contain_text("No number has a step")
 
 
 def test_rounding_bars_the_way_of_nobody(page: Page) -> None:

@@ -30,7 +30,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   /** @type {Api.Topic[]} */
   let topics = [];
   let chosen = tab;
-  /** @type {Page.Lengths | null} */
+  /** @type {Page.Numbers | null} */
   let lengths = null;
   let turn = 0;
   const wanted = h("input", { type: "text", inputmode: "decimal", class: "short number", name: "fluctuation", autocomplete: "off", placeholder: "0.02" });
@@ -121,7 +121,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
 
   window.addEventListener("units", () => begun && chosen !== CERTIFY.name && ask(), { signal });
   return {
-    /** @param {Page.Lengths | null} now */
+    /** @param {Page.Numbers | null} now */
     show(now) {
       if (JSON.stringify(now) === JSON.stringify(lengths)) return;
       lengths = now;

@@ -35,7 +35,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
   /** @type {Page.Machine[]} */
   let shown = [];
   const draw = () => charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm, turns)); // in the units of now
-  /** @type {Page.Lengths | null} */
+  /** @type {Page.Numbers | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));
   link();
@@ -46,7 +46,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
       draw();
       link();
     },
-    /** @param {Page.Lengths | null} other */
+    /** @param {Page.Numbers | null} other */
     of(other) {
       lengths = other;
       link();

@@ -1,52 +1,66 @@
-/** Round numbers for a design: a step for each length, the best rounded neighbours and what each of them costs. */
+/** Round numbers for a design: a step for each number, misses that are allowed, the best rounded neighbours and what each of them costs. */
 
-import { isAbort, post } from "../lib/api.js";
-import { link } from "../lib/address.js";
+import { isAbort, postFollowed } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { system, unitOf, withUnit } from "../lib/numbers.js";
+import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
+import { factorsOf, kindOf } from "../lib/units.js";
+import { capital } from "../lib/words.js";
 import { rankOf } from "./objectives.js";
 import { difference, scrolled } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
-/** @type {[keyof Page.Lengths, string][]} */
-const LENGTHS = [["crank_mm", "Crank"], ["rod_mm", "Rod"], ["offset_mm", "Offset"]];
 const USUAL = { si: "0.5", inch: "1/64" }; // mm, in: what drawings and stock are made to
 const COUNT = 5;
 
+/** @typedef {{ name: string, label: string, unit: string, input: HTMLInputElement, said: HTMLElement, wrong: () => string }} Field */
+
 /**
- * Put the steps into `place`. base: row of the design; ranges: of the API, fixed lengths have both ends alike. Returns {draw()}: anew,
+ * Put the steps into `place`. base: row of the design; columns: of it; applied(row): the numbers of a row are to be shown. Returns {draw()}: anew,
  * in other units.
  * @param {HTMLElement} place
  * @param {{
- *   job: string, number: number, base: Api.Row, requirements: Api.Requirements, objectives: Api.Objective[], signal: AbortSignal,
+ *   job: string, number: number, base: Api.Row, columns: Api.Column[], requirements: Api.Requirements, objectives: Api.Objective[],
+ *   applied: (row: Api.Row) => void, signal: AbortSignal,
  * }} given
  */
-export function rounding(place, { job, number, base, requirements, objectives, signal }) {
-  const { ranges, names } = requirements;
-  const titles = new Map(requirements.requirements.map(({ column, title }) => [names[column] ?? column, title]));
-  const free = LENGTHS.filter(([key]) => ranges[key] && ranges[key][0] < ranges[key][1]);
-  const fields = h("div", { class: "steps" });
+export function rounding(place, { job, number, base, columns, requirements, objectives, applied, signal }) {
+  const { ranges } = requirements;
+  const numbers = columns.filter(({ key }) => key in ranges);
+  const free = numbers.filter(({ key }) => ranges[key][0] < ranges[key][1]);
+  const steps = h("div", { class: "steps" });
+  const misses = h("div", { class: "steps" });
+  const others = h("div", { class: "steps" });
   const wrong = h("p", { class: "bad", role: "alert", hidden: true });
   const answer = h("div", { "aria-live": "polite" });
   const button = h("button", {}, "Find round numbers");
-  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, fields, button, wrong);
+  const exact = requirements.requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
+  const bounds = requirements.requirements.filter((one) => !exact.includes(one));
+  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, steps, misses,
+    bounds.length > 0 && h("details", {}, h("summary", {}, "Allow misses of bounds"), others), button, wrong);
   fill(place, h("h2", {}, "Round it"),
-    h("p", { class: "quiet hint" }, "The best designs of round numbers near this one that keep every requirement. Without a step a length stays as it is."), form, answer);
+    h("p", { class: "quiet hint" }, "The best designs of round numbers near this one that keep every requirement, or miss it by no more than you allow. Without a step a number stays as it is."), form, answer);
   place.hidden = free.length === 0;
-  /** @type {{ key: keyof Page.Lengths, name: string, input: HTMLInputElement, said: HTMLElement }[]} */
-  let inputs = [];
-  let turn = 0;
+  /** @type {{ steps: Field[], misses: Field[] }} */
+  let fields = { steps: [], misses: [] };
+  /** @type {AbortController | null} */
+  let search = null;
+  signal.addEventListener("abort", () => search?.abort(), { once: true });
 
   function draw() {
-    inputs = free.map(([key, title]) => {
-      const id = `step-${key}`;
-      const said = h("p", { class: "bad", id: `${id}-wrong` });
-      /** @type {HTMLInputElement} */
-      const input = h("input", { id, type: "text", inputmode: "decimal", class: "number", autocomplete: "off", value: USUAL[system()], "aria-describedby": `${id}-wrong`, oninput: () => say(input, said, "") });
-      return { key, name: title, input, said };
-    });
-    fill(fields, inputs.map(({ name, input, said }) => h("div", { class: "step" }, h("label", { for: input.id }, `${name}, step`), input, h("span", { class: "quiet" }, unitOf("mm")), said)));
+    search?.abort();
+    fields = {
+      steps: free.map(({ key, title, unit }) => {
+        const kind = unit === "mm" ? "a length" : "a value";
+        return field({ id: `step-${key}`, name: key, label: `${capital(title)}, step`, unit, value: unit === "mm" ? USUAL[system()] : "", wrong: () => `The step of the ${title} is ${kind} above 0${unit === "mm" ? `, such as ${USUAL[system()]}` : ""}; leave it empty to keep the ${kind.slice(2)}.` });
+      }),
+      misses: [...exact, ...bounds].map(({ quantity, column, title, unit }) => field({
+        id: `miss-${column}`, name: quantity, label: `${capital(title)}, allowed miss`, unit, value: "", wrong: () => `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
+      })),
+    };
+    fill(steps, fields.steps.map(shown));
+    fill(misses, fields.misses.slice(0, exact.length).map(shown));
+    fill(others, fields.misses.slice(exact.length).map(shown));
     fill(answer);
     refuse("");
   }
@@ -57,60 +71,51 @@ export function rounding(place, { job, number, base, requirements, objectives, s
     wrong.hidden = sentence === "";
   }
 
-  /** @param {HTMLInputElement} input @param {HTMLElement} place @param {string} sentence */
-  function say(input, place, sentence) {
-    place.textContent = sentence;
-    if (sentence) input.setAttribute("aria-invalid", "true");
-    else input.removeAttribute("aria-invalid");
-  }
-
-  /** Return the steps as the service takes them; null where a field is wrong. @returns {string[] | null} */
-  function steps() {
-    let fine = true;
-    const found = inputs.flatMap(({ key, input, said, name }) => {
-      const typed = read(input.value, { unit: unitOf("mm"), factors: { mm: 1, in: 25.4 } });
-      if (typed.empty) return [];
-      const value = Number(typed.number);
-      const unit = typed.number === undefined ? "" : typed.unit;
-      const sentence = typed.wrong ?? (value > 0 && Number.isFinite(value) ? "" : `The step of the ${name.toLowerCase()} is a length above 0, such as ${USUAL[system()]}; leave it empty to keep the length.`);
-      say(input, said, sentence);
-      if (sentence && fine) input.focus();
-      fine &&= !sentence;
-      return [`${key.replace("_mm", "")}=${typed.number} ${unit}`];
-    });
-    return fine ? found : null;
-  }
-
   async function ask() {
-    const to = steps();
+    const to = textsOf(fields.steps);
+    const allow = textsOf(fields.misses);
     fill(answer);
-    refuse(to?.length === 0 ? "No length has a step; write one of them." : "");
-    if (!to?.length) return;
-    const own = (turn += 1);
+    refuse(to?.length === 0 ? "No number has a step; write one of them." : "");
+    if (!to?.length || !allow) return;
+    search?.abort();
+    const own = new AbortController();
+    search = own;
     button.disabled = true;
+    const bar = h("progress", { "aria-label": "Progress of the search" });
+    const at = h("span", { class: "quiet" }, "Waiting for its turn");
+    const stop = h("button", { type: "button", onclick: () => own.abort() }, "Stop");
+    fill(answer, h("p", { class: "row searching" }, bar, at, stop));
+    stop.focus();
+    /** @param {Record<string, unknown>} progress */
+    const told = ({ stage, step, steps: count }) => {
+      bar.max = Math.max(1, Number(count));
+      bar.value = Number(step);
+      at.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
+    };
     try {
-      const found = await post(`jobs/${job}/designs/${number}/rounded`, { to, count: COUNT }, { signal });
-      if (own === turn) tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
+      const found = await postFollowed(`jobs/${job}/designs/${number}/rounded`, { to, allow, count: COUNT }, { signal: own.signal, told });
+      tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
     } catch (error) {
-      if (own !== turn || isAbort(error)) return;
-      refuse(`${sentenceOf(error).replace(/^To must/, "A step must")}.`);
-      fill(answer);
+      if (own !== search || signal.aborted) return;
+      fill(answer, isAbort(error) && h("p", { class: "quiet" }, "Stopped."));
+      if (!isAbort(error)) refuse(`${sentenceOf(error).replace(/^To must/, "A step must")}.`);
     } finally {
-      if (own === turn) button.disabled = false;
+      if (own === search) button.disabled = false;
     }
   }
 
   /** @param {Api.Rounded} found */
   function tell(found) {
-    const heads = ["", ...LENGTHS.map(([, title]) => title), ...objectives.map(({ title }) => title), "Requirements"];
+    const heads = ["", ...numbers.map(({ title }) => capital(title)), ...objectives.map(({ title }) => title), "Requirements"];
     const lines = found.designs.map((row, n) => h("tr", {},
-      h("td", {}, h("a", { class: "button", href: link(["jobs", job, "designs", number], Object.fromEntries(LENGTHS.map(([key]) => [key, Number(row[key])]))), "aria-label": `Apply round numbers ${n + 1}` }, "Apply")),
-      LENGTHS.map(([key]) => h("td", { class: "number", "data-key": key, "data-value": String(row[key]) }, withUnit(row[key], "mm", 7))),
+      h("td", {}, h("button", { type: "button", "aria-label": `Apply round numbers ${n + 1}`, onclick: () => applied(row) }, "Apply")),
+      numbers.map(({ key, unit }) => h("td", { class: "number", "data-key": key, "data-value": String(row[key]) }, withUnit(row[key], unit, 7))),
       objectives.map((objective) => cost(row, objective)),
       h("td", {}, judged(row))));
-    fill(answer, h("p", { class: found.met ? null : "bad" }, `${found.message.charAt(0).toUpperCase()}${found.message.slice(1)}.`),
+    fill(answer, h("p", { class: found.met ? null : "bad" }, `${inShownUnits(capital(found.message))}.`),
       found.designs.length > 0 && scrolled("Round numbers and what they cost", h("table", {}, h("caption", { class: "hidden" }, "Round numbers and what they cost"),
-        h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n && n < heads.length - 1 ? "number" : null }, title || h("span", { class: "hidden" }, "Apply"))))), h("tbody", {}, lines))));
+        h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n && n < heads.length - 1 ? "number" : null }, title || h("span", { class: "hidden" }, "Apply"))))), h("tbody", {}, lines))),
+      found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)));
   }
 
   /** @param {Api.RoundedRow} row @param {Api.Objective} objective */
@@ -122,13 +127,54 @@ export function rounding(place, { job, number, base, requirements, objectives, s
   }
 
   /** @param {Api.RoundedRow} row */
-  function judged({ missed, tightest }) {
-    /** @param {string} name */
-    const title = (name) => titles.get(name) ?? name.replaceAll("_", " ");
-    if (missed.length) return h("span", { class: "bad" }, `misses ${missed.map(title).join(" and ")}`);
-    return h("span", { class: "quiet" }, tightest ? `tightest: ${title(tightest)}` : "all kept");
+  function judged({ misses: beyond, tightest }) {
+    if (beyond.length) return beyond.map(missed);
+    const title = requirements.requirements.find(({ quantity }) => quantity === tightest)?.title;
+    return h("span", { class: "quiet" }, title ? `tightest: ${title}` : "all kept");
   }
 
   draw();
   return { draw };
+}
+
+/** @param {Api.Miss} miss */
+function missed({ quantity, title, amount, unit, side, allowed }) {
+  return h("div", { class: amount > allowed ? "bad" : "at-limit", "data-miss": quantity, "data-value": String(amount) },
+    `${title} ${withUnit(amount, unit, 4)} ${side === "above" ? "too high" : "too low"}${allowed ? `, ${withUnit(allowed, unit, 4)} allowed` : ""}`);
+}
+
+/** @param {{ id: string, name: string, label: string, unit: string, value: string, wrong: () => string }} of @returns {Field} */
+function field({ id, name, label, unit, value, wrong }) {
+  const said = h("p", { class: "bad", id: `${id}-wrong` });
+  /** @type {HTMLInputElement} */
+  const input = h("input", { id, type: "text", inputmode: "decimal", class: "number", autocomplete: "off", value, "aria-describedby": `${id}-wrong`, oninput: () => say(input, said, "") });
+  return { name, label, unit, input, said, wrong };
+}
+
+/** @param {Field} of */
+function shown({ input, said, unit, label }) {
+  return h("div", { class: "step" }, h("label", { for: input.id }, label), input, h("span", { class: "quiet" }, unitOf(unit)), said);
+}
+
+/** @param {HTMLInputElement} input @param {HTMLElement} place @param {string} sentence */
+function say(input, place, sentence) {
+  place.textContent = sentence;
+  if (sentence) input.setAttribute("aria-invalid", "true");
+  else input.removeAttribute("aria-invalid");
+}
+
+/** Return what fields say as the service takes it; null where one is wrong. @param {Field[]} fields @returns {string[] | null} */
+function textsOf(fields) {
+  let fine = true;
+  const found = fields.flatMap(({ name, unit, input, said, wrong }) => {
+    const plain = plainUnitOf(unit);
+    const typed = read(input.value, { unit: plain, factors: factorsOf(kindOf(plain)) });
+    if (typed.empty) return [];
+    const sentence = typed.wrong ?? (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)) ? "" : wrong());
+    say(input, said, sentence);
+    if (sentence && fine) input.focus();
+    fine &&= !sentence;
+    return [`${name}=${typed.number} ${typed.number === undefined ? "" : typed.unit}`.trim()];
+  });
+  return fine ? found : null;
 }

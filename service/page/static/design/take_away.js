@@ -24,7 +24,7 @@ const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
  * @param {string} job @param {number} number @param {{ signal?: AbortSignal }} options
  */
 export function takeAway(job, number, { signal } = {}) {
-  /** @type {Page.Lengths | null} */
+  /** @type {Page.Numbers | null} */
   let lengths = null;
   /** @param {string} path @param {string} title @param {string} words */
   const anchor = (path, title, words) => ({ path, node: h("a", { download: "" }, title), words });
@@ -42,7 +42,7 @@ export function takeAway(job, number, { signal } = {}) {
     }
   } }, "Print");
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
-  /** @param {Page.Lengths | null} other */
+  /** @param {Page.Numbers | null} other */
   const show = (other) => {
     lengths = other;
     for (const { path, node } of links) {

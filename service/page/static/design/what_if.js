@@ -20,23 +20,29 @@ const SAME = 1e-9; // relative
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
  * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer): the answer of the API that is drawn, null for the design
- * itself; refused(sentence). Returns {draw()}: once more, in other units.
+ * itself; refused(sentence). Returns {draw()}: once more, in other units, and {apply(row)}: to the numbers of another design.
  * @param {HTMLElement} place
  * @param {{
- *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
- *   objectives: Api.Objective[], front: Api.Row[], start: Page.Lengths | null, wrong: string, signal: AbortSignal,
- *   changed: (answer: Api.WhatIf | null, lengths?: Page.Lengths) => void, refused: (sentence: string) => void,
+ *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
+ *   objectives: Api.Objective[], front: Api.Row[], start: Page.Numbers | null, wrong: string, signal: AbortSignal,
+ *   changed: (answer: Api.WhatIf | null, lengths?: Page.Numbers) => void, refused: (sentence: string) => void,
  * }} given
  */
-export function whatIf(place, { job, path, base, ranges, requirements, objectives, front, start, wrong: unread, changed, refused, signal }) {
+export function whatIf(place, { job, path, base, columns, ranges, requirements, objectives, front, start, wrong: unread, changed, refused, signal }) {
   const own = lengthsOf(base);
-  const lengths = { ...(start ?? own) };
+  const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? own);
+  /** @type {Page.Lengths} */
+  const lengths = begun;
+  const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // numbers that vary besides
+  /** Of these those that are others than the design's. @type {Record<string, number>} */
+  let values = Object.fromEntries(linked.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]));
   /** @type {ReturnType<typeof lengthRow>[]} */
   let rows = [];
   const controls = h("div", { class: "lengths" });
+  const besides = h("p", { class: "quiet besides", hidden: true });
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
   const equal = requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
-  const holding = h("input", { type: "checkbox", checked: equal.length > 0, onchange: () => ask() });
+  const holding = h("input", { type: "checkbox", checked: equal.length > 0, onchange: () => { given = false; ask(); } });
   const rule = equal.length
     ? h("label", { class: "holding" }, holding, ` The other lengths follow, to keep ${equal.map(({ title, lower, unit }) => `${title} ${withUnit(lower, unit)}`).join(" and ")}`)
     : null;
@@ -44,9 +50,9 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
   let given = start !== null; // the lengths of a link are shown as they are
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
-  const reset = h("button", { type: "button", onclick: back, disabled: true }, "Reset");
-  const keep = keeping({ job, design: Number(path.split("/").pop()), dimensions: () => (moved() ? { ...(answer ? lengthsOf(answer.design) : lengths) } : null), lengths: () => ({ ...(answer ? lengthsOf(answer.design) : lengths) }) });
-  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, rule, verdict, results, keep, picture);
+  const reset = h("button", { type: "button", onclick: () => apply(base), disabled: true }, "Reset");
+  const keep = keeping({ job, design: Number(path.split("/").pop()), dimensions: () => (moved() ? { ...(answer ? lengthsOf(answer.design) : lengths), ...values } : null), lengths: () => ({ ...(answer ? lengthsOf(answer.design) : lengths) }) });
+  fill(place, h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset), controls, besides, rule, verdict, results, keep, picture);
   const map = frontMap(picture, { objectives, front });
   /** @type {Api.WhatIf | null} */
   let answer = null;
@@ -55,10 +61,13 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
 
   /** Return what is wrong with a length that was typed; nothing with "". */
   const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
-  const moved = () => LENGTHS.some(([key]) => Math.abs(lengths[key] - own[key]) > SAME * Math.abs(own[key] || 1));
+  const moved = () => Object.keys(values).length > 0 || LENGTHS.some(([key]) => Math.abs(lengths[key] - own[key]) > SAME * Math.abs(own[key] || 1));
 
-  function back() {
-    Object.assign(lengths, own);
+  /** Go to the numbers of another design. @param {Api.Row} row */
+  function apply(row) {
+    Object.assign(lengths, lengthsOf(row));
+    values = Object.fromEntries(further.map((key) => [key, Number(row[key])]).filter(([key, value]) => Math.abs(Number(value) - Number(base[key])) > SAME * Math.abs(Number(base[key]))));
+    given = true;
     showLengths();
     ask();
   }
@@ -80,12 +89,12 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     }
     busy = true;
     try {
-      const found = await post(`${path}/what-if`, { ...lengths, angles: 180, hold: holding.checked && !given ? last : null }, { signal });
-      given = false;
+      const found = await post(`${path}/what-if`, { ...lengths, values, angles: 180, hold: holding.checked && !given ? last : null }, { signal });
       if (moved() && !wrong()) {
         answer = found;
-        if (holding.checked && !again) follow(found.design);
-        changed(found, lengthsOf(found.design));
+        if (holding.checked && !given && !again) follow(found.design);
+        const others = Object.entries(values).map(([key, value]) => `${key}=${value}`);
+        changed(found, { ...lengthsOf(found.design), ...(others.length ? { value: others } : {}) });
         tell();
       }
     } catch (error) {
@@ -134,6 +143,7 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
     rows = LENGTHS.map(([key, title]) => lengthRow(key, title, ranges[key], (value) => {
       if (value !== null) lengths[key] = value;
       last = key.replace("_mm", "");
+      given = false;
       ask();
     }));
     fill(controls, rows.map((row) => row.node));
@@ -142,12 +152,16 @@ export function whatIf(place, { job, path, base, ranges, requirements, objective
 
   function showLengths() {
     for (const row of rows) row.show(lengths[row.key]);
+    const named = columns.filter(({ key }) => key in values);
+    besides.hidden = named.length === 0;
+    besides.textContent = `Changed too: ${named.map(({ key, title, unit }) => `${title} ${withUnit(values[key], unit)}, was ${text(base[key], unit)}`).join("; ")}`;
   }
 
   drawControls();
   tell();
   if (moved()) ask();
   return {
+    apply,
     draw() {
       drawControls();
       map.arrange();

@@ -77,6 +77,34 @@ export function post(path, body = undefined, { signal, headers } = {}) {
 }
 
 /**
+ * Send JSON and return the answer, the last event of a stream; told(data): each event before it. The service ends the work once `signal` is aborted.
+ * @template {Api.Text} Path
+ * @param {Path} path
+ * @param {unknown} body
+ * @param {{ query?: Api.Query, signal: AbortSignal, told: (data: Record<string, unknown>) => void }} options
+ * @returns {Promise<Api.Answer<"post", Path>>}
+ */
+export async function postFollowed(path, body, { query, signal, told }) {
+  const headers = { Accept: "text/event-stream", "Content-Type": "application/json" };
+  const response = await answered("POST", address(path, query), { headers, signal, body: JSON.stringify(body) });
+  if (!response.ok) return jsonOf(response);
+  const reader = /** @type {ReadableStream<Uint8Array>} */ (response.body).getReader();
+  const decoder = new TextDecoder();
+  let text = "";
+  for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {
+    text += decoder.decode(chunk.value, { stream: true });
+    const events = text.split("\n\n");
+    text = /** @type {string} */ (events.pop());
+    for (const event of events) {
+      const data = parsed(event.replace(/^.*?^data: /ms, ""));
+      if (event.startsWith("event: progress")) told(data);
+      else return data;
+    }
+  }
+  throw new Problem(0, "The service did not finish its answer; try again.");
+}
+
+/**
  * Change what is at a path, and return it.
  * @template {Api.Text} Path
  * @param {Path} path
@@ -105,17 +133,26 @@ async function ask(method, url, body, signal, more = {}) {
   const headers = { Accept: "application/json", ...more };
   if (body !== undefined) headers["Content-Type"] ??= "application/json";
   const sent = body === undefined || typeof body === "string" ? body : JSON.stringify(body);
-  const response = await answered(method, url, { signal, headers, body: sent });
+  return jsonOf(await answered(method, url, { signal, headers, body: sent }));
+}
+
+/** Return the JSON of a response. Throws the Problem that it is. @param {Response} response */
+async function jsonOf(response) {
   if (response.status === 204) return null;
   const text = await response.text();
   let answer = null;
   try {
-    answer = text ? JSON.parse(text, /"-?inf"/.test(text) ? infinite : undefined) : null;
+    answer = text ? parsed(text) : null;
   } catch {
     throw new Problem(response.status, `The answer was no JSON (status ${response.status}).`);
   }
   if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`, answer?.type);
   return answer;
+}
+
+/** @param {string} text */
+function parsed(text) {
+  return JSON.parse(text, /"-?inf"/.test(text) ? infinite : undefined);
 }
 
 /** Return the number that JSON has no form for, where a cell of a table stands for it. @param {string} key @param {unknown} value */

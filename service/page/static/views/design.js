@@ -2,7 +2,7 @@
 
 import { analyses } from "../design/analyses.js";
 import { endsOf } from "../design/extremes.js";
-import { besideOf, cycleOf, lengthsOf, loadDesign } from "../design/loading.js";
+import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
@@ -70,9 +70,9 @@ export async function show(place, { parts, query, signal }) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
   const linked = startOf(query);
-  /** @type {Page.Lengths | null} */
+  /** @type {Page.Numbers | null} */
   let kept = linked.lengths ?? null; // of the changed design
-  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept });
+  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept, value: kept?.value?.join(",") });
   const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
@@ -85,14 +85,14 @@ export async function show(place, { parts, query, signal }) {
     charts.show(series);
     legend(places.curves, series);
     return () => {
-      further?.show(changed && lengthsOf(changed.design));
+      further?.show(changed && kept);
       showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
     };
   };
   const sliders = whatIf(places["what-if"], {
-    job, path, base: main.row, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
+    job, path, base: main.row, columns: main.columns, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
     start: linked.lengths ?? null, wrong: linked.wrong ?? "",
-    /** @param {Api.WhatIf | null} answer @param {Page.Lengths} [lengths] */
+    /** @param {Api.WhatIf | null} answer @param {Page.Numbers} [lengths] */
     changed(answer, lengths) {
       changed = answer;
       clearTimeout(later);
@@ -103,7 +103,7 @@ export async function show(place, { parts, query, signal }) {
     },
     refused: () => machines.fade(true),
   });
-  const steps = rounding(places.rounding, { job, number, base: main.row, requirements, objectives, signal });
+  const steps = rounding(places.rounding, { job, number, base: main.row, columns: main.columns, requirements, objectives, applied: sliders.apply, signal });
   const drawAll = () => {
     showObjectives(places.objectives, { objectives, front: rows, designs: [main], names });
     draw()();
@@ -126,12 +126,13 @@ export async function show(place, { parts, query, signal }) {
   goOn(place);
 }
 
-/** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Lengths, wrong?: string }} */
+/** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Numbers, wrong?: string }} */
 function startOf(query) {
   const given = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
   if (given.every(([, text]) => text === null)) return {};
   const bad = given.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
-  if (!bad) return { lengths: /** @type {Page.Lengths} */ (/** @type {unknown} */ (Object.fromEntries(given.map(([key, text]) => [key, Number(text)])))) };
+  const value = query.get("value")?.split(",");
+  if (!bad) return { lengths: /** @type {Page.Numbers} */ (/** @type {unknown} */ ({ ...Object.fromEntries(given.map(([key, text]) => [key, Number(text)])), ...(value && { value }) })) };
   const [name, text] = [bad[0].replace("_mm", ""), bad[1]];
   return { wrong: `The link gives crank, rod and offset, each as a number; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. This is the design itself.` };
 }
