@@ -56,6 +56,14 @@ designs = 8
 samples = 512
 """
 
+BARS = '{ width = "30 mm", depth = "20 mm", density = "7800 kg/m^3" }'
+VARIED = (
+    JOB.replace("slider =", f"crank = {BARS}\nrod = {BARS}\nslider =")
+    .replace("[variables]", '[variables]\nmechanism.rod.width = ["20 mm", "40 mm"]')
+    .replace("[objectives]", '[objectives]\npeak_torque = "minimise"')
+)
+"""The small job with the width of the rod as a variable."""
+
 
 def problem(names: tuple[str, ...] = FOUR, mechanism: Mechanism = MACHINE) -> Problem:
     """Return a problem of a vibrating sieve with these objectives."""

@@ -72,6 +72,15 @@ def client_of(store: Store, settings: Settings = DEFAULT) -> Iterator[httpx.Clie
         yield client
 
 
+@contextlib.contextmanager
+def varied_in(place: Path) -> Iterator[tuple[Store, int]]:
+    """Solve the job with a width that varies in a store; yield it with the number of the job, and close it."""
+    with Store(place / "varied.db") as store:
+        number = submit(store, tomllib.loads(made.VARIED)).id
+        work(store, drain=True)
+        yield store, number
+
+
 def put_in(store: Store, result: Result, tables: dict[str, Any], **changes: Any) -> int:
     """Put a result into a store as if a worker had found it, and return the number of its job."""
     store.submit(tables, name=result.name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from threading import Event
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from slidercrank.optimise.front.rounding_search import RoundingSearch, Stage
-from tests.service.api.fixed_front import API, Solved
+from tests.service.api.fixed_front import API, Solved, varied_in
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched
 
@@ -141,3 +142,27 @@ def test_rounding_bars_the_way_of_nobody(page: Page) -> None:
     page.get_by_role("button", name="Find round numbers").press("Enter")
     expect(page.get_by_role("table", name="Round numbers")).to_be_visible(timeout=30_000)
     require_accessible(page)
+
+
+def test_a_rounded_width_is_applied_kept_in_the_address_and_taken_back(pages: Pages, tmp_path: Path) -> None:
+    with varied_in(tmp_path) as (store, number), watched(pages, store) as (page, address):
+        page.goto(f"{address}/#/jobs/{number}/designs/2")
+        page.get_by_label("Rod width, step").fill("7")
+        page.get_by_label("Stroke, allowed miss").fill("0.1")
+        page.get_by_label("Rod width, step").press("Enter")
+        button = page.get_by_role("button", name="Apply round numbers 1", exact=True)
+        button.click(timeout=30_000)
+        expected = asked_of(address, number, 2, to=["0.5 mm", "rod_width_mm=7 mm"], allow=["stroke=0.1 mm"], count=1)[0]
+        width = f"{expected['rod_width_mm']:g}"
+        changed = page.locator(".what-if .besides")
+        expect(changed).to_contain_text(f"rod width {width} mm, was ")
+        torque = page.locator(".what-if [data-key=peak_torque_Nm]")
+        expect(torque).to_have_attribute("data-value", re.compile(f"^{expected['peak_torque_Nm']:.7g}"[:-1]))
+        page.reload()
+        expect(changed).to_contain_text(f"rod width {width} mm, was ")
+        expect(page.get_by_role("link", name="Curves as CSV")).to_have_attribute(
+            "href", re.compile(f"value=rod_width_mm%3D{width}")
+        )
+        page.get_by_role("button", name="Reset").click()
+        expect(changed).to_be_hidden()
+        expect(page).not_to_have_url(re.compile("rod_width"))
