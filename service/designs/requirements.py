@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...objectives.kinds import System, shown_in
-from ...objectives.tables.varying_column import columns_of_numbers
 from ..runs.result import Cell, Row
 from .columns import DIMENSIONS, find_column
 
@@ -80,6 +79,8 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 def ranges_of(part: Problem) -> list[Requirement]:
     """Return the ranges of crank, rod, offset and the numbers that vary besides, in their units."""
+    from ...objectives.tables.varying_column import columns_of_numbers
+
     columns = columns_of_numbers(part.mechanism.varying)
     found = []
     for name, of in part.ranges.items():
