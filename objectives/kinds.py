@@ -48,6 +48,7 @@ class Kind:
     metric, inch: how it is shown; inch is None where both systems use the same unit.
     typed: units that a form offers, the SI unit first; usual: the one that it begins with, the metric one if left out.
     believed: the least and the greatest magnitude in SI that a number without a unit is believed to mean; None for any.
+    amount: whether the unit is a text that stands for itself, such as a currency.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Kind:
     typed: tuple[str, ...] = ()
     usual: str = ""
     believed: tuple[float, float] | None = None
+    amount: bool = False
 
     @property
     def plain(self) -> str:
@@ -158,6 +160,11 @@ def shown_in(symbol: str, system: System) -> tuple[str, float]:
 def unit_text(symbol: str) -> str:
     """Return a unit as printed: m/s^2 with a raised 2."""
     return symbol.replace("^2", "²").replace("^3", "³")
+
+
+def amount_in(unit: str) -> Kind:
+    """Return the kind of an amount in a unit that is none of physics, such as EUR."""
+    return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, face(unit), typed=(unit,), amount=True)
 
 
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:

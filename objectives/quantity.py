@@ -216,6 +216,11 @@ class Quantity(ABC):
         return True
 
     @property
+    def constant(self) -> bool:
+        """Whether it is the same for every design of one machine."""
+        return False
+
+    @property
     def of_dimensions(self) -> bool:
         """Whether it follows from crank, rod and offset alone, without a search over the cycle."""
         return False

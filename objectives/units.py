@@ -23,7 +23,7 @@ from typing import Any, Literal
 
 from ..model.errors import InputError
 from .counted import counted
-from .kinds import KINDS, Face, Kind, kind_in
+from .kinds import KINDS, Face, Kind, amount_in, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
@@ -161,8 +161,13 @@ def dimension_of(symbol: str) -> Dimension:
     return _unit(symbol)[1]
 
 
+def dimension_of_kind(kind: Kind) -> Dimension:
+    """Return the dimension of a kind; an amount has one of its own."""
+    return frozenset({(f"[{kind.unit}]", 1)}) if kind.amount else dimension_of(kind.unit)
+
+
 def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
-    """Return the kind of value of a dimension, one of `KINDS` or a new one in SI base units.
+    """Return the kind of value of a dimension, one of `KINDS` or a new one in SI base units or those of amounts.
 
     symbol: a unit, which tells kinds of one dimension apart, such as a torque and an energy.
     """
@@ -170,7 +175,13 @@ def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
     if known:
         return next((kind for kind in known if symbol in kind.typed), known[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
-    return kind_in(" ".join(_BASES[base] + (f"^{power}" if power != 1 else "") for base, power in powers))
+    unit = " ".join(base_unit(base) + (f"^{power}" if power != 1 else "") for base, power in powers)
+    return kind_in(unit) if all(base in _BASES for base, _ in powers) else amount_in(unit)
+
+
+def base_unit(base: str) -> str:
+    """Return the unit of a base dimension: "m" of "[length]"."""
+    return _BASES.get(base, base[1:-1])
 
 
 def number_in_si(digits: str, symbol: str) -> float:
@@ -218,11 +229,17 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
 
 def is_value(text: str) -> bool:
     """Return whether a text is one number, alone or with a unit of whatever kind."""
-    match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
+    parts = number_and_unit(text)
     try:
-        return match is not None and _unit(match[2] or "") is not None
+        return parts is not None and _unit(parts[1]) is not None
     except InputError:
         return False
+
+
+def number_and_unit(text: str) -> tuple[str, str] | None:
+    """Return the digits and the unit, whatever it is, of a text that is one number; None of another one."""
+    match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
+    return None if match is None else (match[1], (match[2] or "").strip())
 
 
 def shown(value: object) -> str:
@@ -269,6 +286,10 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     if not unit and kind.unit:
         bare = " (in a job file, without quotes)" if "plain number" in write else ""
         raise InputError(f"{rule} with its unit; got {shown(text)}; {write}{bare}")
+    if kind.amount:
+        if unit != kind.unit:
+            raise InputError(f"{rule}; got {shown(text)}; {write}")
+        return number
     try:
         factor, dimension = _unit(unit)
     except InputError as error:

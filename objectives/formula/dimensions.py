@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from ...model.errors import InputError
 from ..kinds import ANGLE, Kind
-from ..units import Dimension, dimension_of, kind_with
+from ..units import Dimension, base_unit, dimension_of, dimension_of_kind, kind_with
 from .expression import ANGLES, INVERSES, Node, Number, Text, fold
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
@@ -39,7 +39,7 @@ class _Part:
 
 def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
     """Return the kind of a formula's values. kinds: of the names in it. Raises InputError where dimensions clash."""
-    part = fold(node, _Dimensions({name: _powers(dimension_of(kind.unit)) for name, kind in kinds.items()}))
+    part = fold(node, _Dimensions({name: _powers(dimension_of_kind(kind)) for name, kind in kinds.items()}))
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
             f"the value of a formula has a unit of whole powers, at most {_LARGEST}; got {part.text} in "
@@ -150,5 +150,4 @@ def _unit(powers: Powers) -> str:
     kept = _kept(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in kept.values()):
         return _kind(kept).metric.symbol or "no unit"
-    names = {"[length]": "m", "[mass]": "kg", "[time]": "s", "[angle]": "rad"}
-    return " ".join(f"{names[base]}^{power}" for base, power in sorted(kept.items()))
+    return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(kept.items()))

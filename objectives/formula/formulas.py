@@ -22,7 +22,7 @@ from .dimensions import kind_of_formula
 from .expression import ARGUMENTS, Name, Node, names_in, text_of
 from .linear import Linear, linear_of, unknown
 from .parser import parse
-from .quantity import FormulaQuantity, key_of
+from .quantity import FormulaQuantity, key_of, leaves_of
 from .ranges import Interval, Ranges
 
 ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
@@ -154,7 +154,7 @@ class Formulas:
             found = self._of(text)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
-        if isinstance(found, FormulaQuantity) and found.constant:
+        if isinstance(found, FormulaQuantity) and found.constant and not leaves_of([found]):
             raise JobError(
                 f"{key}: a formula names a quantity, a dimension or a varying number; got {found.formula}, which is "
                 "the same for every design; leave it out"

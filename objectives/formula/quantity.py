@@ -66,9 +66,8 @@ class FormulaQuantity(Quantity):
 
     @property
     def constant(self) -> bool:
-        """Whether it is the same for every design, since it has numbers only in it."""
-        named = all(isinstance(part, FormulaQuantity) and part.constant for part in self.parts)
-        return named and not self.dimensions and not self.varying
+        """Whether it is the same for every design of one machine: it has numbers and amounts only in it."""
+        return all(part.constant for part in self.parts) and not self.dimensions and not self.varying
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:

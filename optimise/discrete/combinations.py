@@ -275,6 +275,8 @@ def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Proble
                 offset=ends[2],
                 limits=given.limits if given else (),
                 slow_stroke=given.slow_stroke if given else None,
+                amounts=given.amounts if given else (),
+                notes=given.notes if given else (),
             )
         )
     return replace(problem, discrete=(), variants=tuple(variants))

@@ -277,7 +277,8 @@ class ParetoFront:
 
         To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
         of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
-        b is NaN where b cannot gain at all, and where no design of the front is better in it.
+        b is NaN where b cannot gain at all, where no design of the front is better in it, and of an amount that follows
+        from a choice alone.
         """
         self.part(row)  # refuses what is no row
         owner, slopes = self.goals[row]
@@ -294,7 +295,7 @@ class ParetoFront:
             slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
         for b in range(m):
-            gains = k and left[b] > _NOTHING * reach[b]
+            gains = k and left[b] > _NOTHING * reach[b] and (owner == b).any()
             losses = _cheapest(slopes, owner, self.active[row], b, m) if gains else None
             if losses is not None:
                 rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]

@@ -23,7 +23,7 @@ from ...model.machine.strength import Material
 from ...objectives.units import shown
 from ..problem.problem import Problem
 from ..sizing.section_limits import SectionLimits
-from .catalogue import catalogues, with_catalogues
+from .catalogue import catalogues, with_catalogues, with_options
 from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
@@ -124,6 +124,7 @@ def parse_job(
     folder: where the modules of its own functions lie, besides the working directory. The rest is as for `load_job`.
     """
     require_plain(data)
+    data, _ = with_options(data)
     own = declared(data, allowed=allow_user_code)
     job = job_with(own)
     doubts: list[str] = []
@@ -150,7 +151,8 @@ def parse_job(
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
     """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
     load_job(path, require_feasible=False)  # tells what is wrong with the file, if anything is
-    data = read_job(path)
+    with _named(path):
+        data, _ = with_options(read_job(path))
     part = job_with(declared(data, allowed=True)).model_validate(data).sections
     with _named(path):
         if part is None:

@@ -1,10 +1,8 @@
-"""A catalogue as a table: the options of a choice in a CSV file, screened before anything is solved.
+"""A catalogue as a table: the options of a choice, a row each, screened before anything is solved.
 
-Each row is an option: its name, numbers of the job that come with it, and limits. Of two rows with the same numbers and
-with limits of the first nowhere tighter than those of the second, every design that meets the second's limits meets the
-first's too, and is judged by the same objectives. So the front of all rows is that of the first without the second: a
-row is left out where another one beats it in every limit. Limits that are equalities compare with equal ones alone, and
-so do greatest values of quantities whose floor depends on them (see `violation.constraints_of`).
+Each row has its name, numbers of the job that come with it, limits, and amounts and texts that are kept with designs.
+Rows that lose in everything that is asked for are not searched; those of them that may be the least that serves a
+design, see `catalogue_screening`, stay as options that are only named.
 """
 
 from __future__ import annotations
@@ -14,16 +12,16 @@ import io
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from ...model.errors import JobError
 from ...model.linkage.values import DIMENSIONS
 from ...objectives.units import shown
 from .beside import beside
 from .catalogue_columns import Column, columns_of
+from .catalogue_screening import screened
 from .messages import key_of
 from .paths import unknown_path, with_number
 
@@ -36,32 +34,79 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?", re.ASCII)
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
 _FORMULA = ("=", "+", "@")
 _LONGEST = 60
+_LONGEST_NOTE = 200
+_ARTICLE = re.compile(r"[+-]?0\d.*|\d{7,}")
+"""A number that is none but the name of an article."""
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """A catalogue after screening.
+
+    name: of the choice. options: as a job has them, the least first; those that lose only where they may be the least
+    that serves. rows: of the table. lost: rows that are not searched, each with the one that beats it, or None for one
+    without a number that is asked for. compared: what rows are compared in. idle: headers of columns of which nothing
+    is asked for. added: headers without min, max or equals, with what they are read as.
+    """
+
+    options: list[dict[str, Any]]
+    rows: int
+    name: str = ""
+    lost: dict[str, str | None] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
+    idle: tuple[str, ...] = ()
+    added: dict[str, str] = field(default_factory=dict)
 
 
 def catalogues(data: Mapping[str, Any]) -> list[str]:
     """Return the files that choices of a job name."""
     choices = data.get("choice")
     parts = choices if isinstance(choices, list | tuple) else ()
-    return [part["file"] for part in parts if isinstance(part, Mapping) and isinstance(part.get("file"), str)]
+    return [part["file"] for part in parts if _names_file(part)]
+
+
+def _names_file(part: Any) -> bool:
+    return isinstance(part, Mapping) and isinstance(part.get("file"), str) and not {"option", "table"} & set(part)
 
 
 def with_catalogues(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a job with the options of its catalogues, found in `folder`, in place of the files. Raises JobError."""
+    """Return a job with the text of its catalogues, found in `folder`, beside the names of their files.
+
+    Raises JobError.
+    """
     job = dict(data)
     if catalogues(data):
-        own = data.get("quantity")
-        names = frozenset(own) if isinstance(own, Mapping) else frozenset()
-        job["choice"] = [_filled(part, place, folder, names, data) for place, part in enumerate(job["choice"])]
+        job["choice"] = [
+            {**part, "table": _text(*beside(folder, key_of(["choice", place, "file"]), part["file"]))}
+            if _names_file(part)
+            else part
+            for place, part in enumerate(job["choice"])
+        ]
     return job
 
 
-def _filled(part: Any, place: int, folder: Path, own: frozenset[str], tables: Mapping[str, Any]) -> Any:
-    file = part.get("file") if isinstance(part, Mapping) else None
-    if not isinstance(file, str) or "option" in part:  # the model refuses both
-        return part
-    path, name = beside(folder, key_of(["choice", place, "file"]), file)
-    options, rows = options_of(_text(path, name), name, own, tables)
-    return {name: value for name, value in part.items() if name != "file"} | {"option": options, "rows": rows}
+def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogue]]:
+    """Return a job with the options of its tables beside these, and the catalogues that they are from.
+
+    Raises JobError for tables that cannot be read.
+    """
+    job, found = dict(data), list[Catalogue]()
+    own = data.get("quantity")
+    names = frozenset(own) if isinstance(own, Mapping) else frozenset[str]()
+    choices = data.get("choice")
+    parts = list(choices) if isinstance(choices, list | tuple) else []
+    for place, part in enumerate(parts):
+        if not isinstance(part, Mapping) or not isinstance(part.get("table"), str):
+            continue
+        key = key_of(["choice", place, "table"])
+        if "option" in part:
+            raise JobError(f"{key}: must stand without options; got both; leave out one of the two")
+        file = part.get("file")
+        where = f"{key_of(['choice', place, 'file'])}: {shown(file)}" if isinstance(file, str) else f"{key}: the table"
+        catalogue = read_catalogue(part["table"], where, names, data, str(part.get("name", "")))
+        parts[place] = {**part, "option": catalogue.options}
+        found.append(catalogue)
+    return (job | {"choice": parts} if found else job), found
 
 
 def _text(path: Path, name: str) -> str:
@@ -83,52 +128,96 @@ def _text(path: Path, name: str) -> str:
         raise JobError(f"{name} must be UTF-8 text; got other bytes; save it as CSV in UTF-8") from None
 
 
-def options_of(
-    text: str, name: str, own: frozenset[str] = frozenset(), tables: Mapping[str, Any] | None = None
-) -> tuple[list[dict[str, Any]], int]:
-    """Return the options of a catalogue's text that no other one beats, and how many rows it has.
+def read_catalogue(
+    text: str,
+    where: str,
+    own: frozenset[str] = frozenset(),
+    tables: Mapping[str, Any] | None = None,
+    name: str = "",
+) -> Catalogue:
+    """Return the catalogue of a text, screened.
 
-    name: of the file, for messages. own: names of the job's own quantities. tables: of the job, which give the numbers
-    that columns set. Raises JobError, naming row, column and remedy.
+    where: what messages begin with. own: names of the job's own quantities. tables: of the job, which give the numbers
+    that columns set and say what is asked for; without them nothing but limits is. name: of the choice.
+    Raises JobError, naming row, column and remedy.
     """
-    lines = _lines(text, name)
+    lines = _lines(text, where)
     first = next(lines, None)
     if first is None:
-        raise JobError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
-    columns = columns_of(first[1], name, own)
+        raise JobError(f"{where} must begin with a line that names its columns; got an empty file; fill it")
+    columns = columns_of(first[1], where, own)
     if tables is not None:
-        _require_given(columns, name, tables)
+        _require_given(columns, where, tables)
+    rows = _rows(lines, len(first[1]), where)
+    checked = (_with_cells(column, rows, where) for column in columns)
+    used, cells = [column for column in checked if column is not None], [cells for _, cells in rows]
+    found = screened(used, cells, tables or {}, where)
+    if len(found.searched) > MOST_OPTIONS:
+        raise JobError(
+            f"{where} must have at most {MOST_OPTIONS} rows that no other one beats in everything; got "
+            f"{len(found.searched)} of {len(rows)}; leave out rows that you would not buy, or columns that do not "
+            "matter"
+        )
+    return Catalogue(
+        options=[_option(used, cells[row], searched=row in found.searched) for row in found.order],
+        rows=len(rows),
+        name=name,
+        lost={cells[row][0]: None if by is None else cells[by][0] for row, by in found.lost.items()},
+        compared=found.compared,
+        idle=tuple(column.header for column in used if column.kept and column.name not in found.asked),
+        added={column.header: column.said for column in used if column.added},
+    )
+
+
+def _rows(lines: Iterator[tuple[int, list[str]]], width: int, where: str) -> list[tuple[int, list[str]]]:
+    """Return number and cells of the rows, whose names differ."""
     labels: dict[str, int] = {}
-    rows: list[list[str]] = []
+    rows: list[tuple[int, list[str]]] = []
     for number, cells in lines:
-        where = f"{name}, row {number}"
-        if len(cells) != len(first[1]):
-            raise JobError(f"{where} must have {len(first[1])} cells, as the first line; got {len(cells)}; correct it")
+        row = f"{where}, row {number}"
+        if len(cells) != width:
+            raise JobError(f"{row} must have {width} cells, as the first line; got {len(cells)}; correct it")
         label = cells[0]
         if not label or label.startswith(_FORMULA) or len(label) > _LONGEST or not label.isprintable():
             raise JobError(
-                f"{where}, column name: must be a name of 1 to {_LONGEST} characters on one line, none of = + @ first; "
+                f"{row}, column name: must be a name of 1 to {_LONGEST} characters on one line, none of = + @ first; "
                 f"got {shown(label)}; write it out"
             )
         if label in labels:
             raise JobError(
-                f"{where}, column name: names must differ; got {shown(label)} of row {labels[label]} again; rename one"
+                f"{row}, column name: names must differ; got {shown(label)} of row {labels[label]} again; rename one"
             )
         labels[label] = number
-        for column in columns:
-            _require_number(cells[column.place], f"{where}, column {shown(column.header)}")
-        rows.append(cells)
+        rows.append((number, cells))
         if len(rows) > MOST_ROWS:
-            raise JobError(f"{name} must have at most {MOST_ROWS} rows; got more; keep those that you would buy")
+            raise JobError(f"{where} must have at most {MOST_ROWS} rows; got more; keep those that you would buy")
     if not rows:
-        raise JobError(f"{name} must have a row below the names of its columns; got none; add it")
-    kept = _unbeaten(columns, rows)
-    if len(kept) > MOST_OPTIONS:
-        raise JobError(
-            f"{name} must have at most {MOST_OPTIONS} rows that no other one beats in everything; got {len(kept)} of "
-            f"{len(rows)}; leave out rows that you would not buy, or columns that do not matter"
-        )
-    return [_option(columns, rows[place]) for place in kept], len(rows)
+        raise JobError(f"{where} must have a row below the names of its columns; got none; add it")
+    return rows
+
+
+def _with_cells(column: Column, rows: Sequence[tuple[int, list[str]]], where: str) -> Column | None:
+    """Return a column whose cells are checked, one that is kept as numbers or texts; None if it is empty.
+
+    A cell of a number of the job must be filled; a limit that is blank is none.
+    """
+    cells = [(number, row[column.place]) for number, row in rows]
+    filled = [(number, cell) for number, cell in cells if cell]
+    if column.kept and not filled and not column.unit:
+        return None
+    numbers = all(_is_number(cell) and not _ARTICLE.fullmatch(cell) for _, cell in filled)
+    if column.kept and not column.unit and not numbers:
+        for number, cell in filled:
+            if cell.startswith("=") or len(cell) > _LONGEST_NOTE or not cell.isprintable():
+                raise JobError(
+                    f"{where}, row {number}, column {shown(column.header)}: must be a number, or a text of at most "
+                    f"{_LONGEST_NOTE} characters on one line, no formula; got {shown(cell)}; correct it, or let the "
+                    "column begin with # to pass it over"
+                )
+        return replace(column, kind=None)
+    for number, cell in filled if column.kept or column.word else cells:
+        _require_number(cell, f"{where}, row {number}, column {shown(column.header)}")
+    return column
 
 
 def _lines(text: str, name: str) -> Iterator[tuple[int, list[str]]]:
@@ -148,15 +237,19 @@ def _lines(text: str, name: str) -> Iterator[tuple[int, list[str]]]:
 def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
     """Refuse a column that sets a number which the job does not give."""
     for column in columns:
-        if column.word is None and column.name not in DIMENSIONS:
+        if column.word is None and not column.kept and column.name not in DIMENSIONS:
             try:
                 with_number(tables, column.name, 0.0)
             except LookupError:
                 raise JobError(f"{name}, column {shown(column.header)}: {unknown_path(column.name, tables)}") from None
 
 
+def _is_number(cell: str) -> bool:
+    return _NUMBER.fullmatch(cell) is not None and math.isfinite(float(cell))
+
+
 def _require_number(cell: str, where: str) -> None:
-    if _NUMBER.fullmatch(cell) and math.isfinite(float(cell)):
+    if _is_number(cell):
         return
     if not cell:
         raise JobError(f"{where}: must have a number; got an empty cell; fill it, or leave out the row")
@@ -171,35 +264,18 @@ def _require_number(cell: str, where: str) -> None:
     raise JobError(f"{where}: must be a number; got {shown(cell)}; {write}")
 
 
-def _unbeaten(columns: Sequence[Column], rows: Sequence[Sequence[str]]) -> list[int]:
-    """Return the places of rows that no other one beats; of equal ones the first."""
-    from ..front.dominance import nondominated  # brings what computes
-
-    numbers = np.array([[float(row[column.place]) for column in columns] for row in rows])
-    limits = np.array([column.monotone for column in columns])
-    tightness = numbers[:, limits] * np.array([-1.0 if of.word == "max" else 1.0 for of in columns if of.monotone])
-    _, groups = np.unique(numbers[:, ~limits], axis=0, return_inverse=True)
-    kept: list[int] = []
-    for group in range(int(groups.max()) + 1):
-        own = np.flatnonzero(groups.ravel() == group)
-        if not limits.any():
-            kept.append(int(own[0]))
-            continue
-        _, first = np.unique(tightness[own], axis=0, return_index=True)
-        different = own[np.sort(first)]
-        kept += different[nondominated(tightness[different])].tolist()
-    return sorted(kept)
-
-
-def _option(columns: Sequence[Column], row: Sequence[str]) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    constraints: dict[str, Any] = {}
-    for column in columns:
-        value = column.value(row[column.place])
-        if column.word is None:
-            values[column.name] = value
-        else:
-            constraints.setdefault(column.name, {})[column.word] = value
+def _option(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {"name": row[0]}
-    found |= {"values": values} if values else {}
-    return found | ({"constraints": constraints} if constraints else {})
+    for column in columns:
+        cell = row[column.place]
+        if not cell:
+            continue
+        if column.word is not None:
+            found.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.value(cell)
+        elif not column.kept:
+            found.setdefault("values", {})[column.name] = column.value(cell)
+        elif column.kind is not None:
+            found.setdefault("amounts", {})[column.name] = column.value(cell)
+        else:
+            found.setdefault("notes", {})[column.name] = cell
+    return found if searched else found | {"searched": False}

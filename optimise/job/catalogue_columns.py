@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import difflib
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.amount import kind_of_amount
 from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, names_in, text_of
 from ...objectives.formula.formulas import ROOTS, Units, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
-from ...objectives.own.quantity import own_quantities
+from ...objectives.own.quantity import LONGEST_NAME, own_quantities
 from ...objectives.registry import FACTS, QUANTITIES
 from ...objectives.units import shown, to_si
 
@@ -25,19 +29,31 @@ _SAID = "|".join(sorted(_LIMIT, reverse=True))
 _MISPLACED = re.compile(rf"(?i)(?:(?P<first>{_SAID})\s+(?P<after>.+)|(?P<before>.+?)\s+(?P<last>{_SAID}))")
 _RULE = (
     'must be a quantity or formula with min, max or equals, or the path of a number, and its unit, like "peak_torque '
-    'max (N m)"'
+    'max (N m)", or have a name of letters'
 )
+_GIVEN = {"motion", "proportions"}
+"""Parts of a form that ask for a quantity which is to have some value: neither more nor less of it is better."""
+_NEAR = 0.85
+"""Names of columns nearer than this to a quantity are taken for misspelt ones."""
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of numbers. header: as it is written. word: of a limit; None for a number of the job."""
+    """A column. header: as it is written. name: of a quantity, a path, or of a column that is kept with designs.
+
+    word: of a limit; None for others. kept: whether it is neither a limit nor a number of the job. unit: as written.
+    kind: of a limit or a number that is kept; None where the job knows it, and of a text. added: whether the word is
+    not in the header.
+    """
 
     place: int
     header: str
     name: str
     word: str | None
     unit: str
+    kind: Kind | None = None
+    kept: bool = False
+    added: bool = False
 
     def value(self, cell: str) -> str | float:
         """Return a cell as a job has it."""
@@ -49,11 +65,18 @@ class Column:
         of = QUANTITIES.get(self.name)
         return self.word == "min" or (self.word == "max" and (of is None or of.floor is None))
 
+    @property
+    def said(self) -> str:
+        """What it is read as, as a header."""
+        return f"{self.name} {self.word or ''} ({self.unit})".replace(" ()", "").replace("  ", " ")
+
 
 def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Column]:
     """Return the columns that a first line names, those that begin with # left out.
 
-    name: of the file, for messages. own: names of the job's own quantities. Raises JobError, naming column and remedy.
+    A quantity without min, max or equals is limited on its bad side. What is neither a limit nor a number of the job is
+    kept with designs, under a name of small letters, digits and _. name: of the file, for messages. own: names of the
+    job's own quantities. Raises JobError, naming column and remedy.
     """
     if header[0] != "name":
         raise JobError(f"{name} must have the column name first; got {shown(header[0])}; rename or move it")
@@ -67,7 +90,7 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
             raise JobError(f"{where}: columns must differ; got it twice; leave out one")
         found.append(column)
     if not found:
-        raise JobError(f"{name} must have a column of numbers beside the name; got none; add one")
+        raise JobError(f"{name} must have a column beside the name; got none; add one")
     return found
 
 
@@ -76,45 +99,76 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
     if parts is None:
         raise JobError(f"{where}: {_RULE}; a column to be passed over begins with #")
     name, word, unit = parts["name"].strip(), parts["word"], (parts["unit"] or parts["other"] or "").strip()
-    if word is None:
-        _require_path(text, name, unit, where, own)
-        return Column(place, text, name, None, unit)
-    try:
-        name, kind = _limited(name, own)
-    except InputError as error:
-        raise JobError(f"{where}: {error}") from None
-    if kind is not None:
-        _require_unit(unit, kind, where)
-    return Column(place, text, name, word, unit)
-
-
-def _require_path(text: str, name: str, unit: str, where: str, own: frozenset[str]) -> None:
-    """Refuse a column of no limit that is no number of the job either."""
+    if word is not None:
+        try:
+            name, kind = _limited(name if name in own else _quantities().get(identifier(name), name), own)
+        except InputError as error:
+            raise JobError(f"{where}: {error}") from None
+        if kind is not None:
+            _require_unit(unit, kind, where)
+        return Column(place, text, name, word, unit, kind)
     if _PATH.fullmatch(name):
-        return
+        return Column(place, text, name, None, unit)
+    of = FACTS.get(_quantities().get(identifier(name), ""))
+    if of is not None and not _GIVEN & set(of.offered):
+        _require_unit(unit, of.kind, where)
+        return Column(place, text, of.name, "max" if of.better == "low" else "min", unit, of.kind, added=True)
+    _require_kept(text, name, unit, where, own)
+    return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), kept=True)
+
+
+def identifier(text: str) -> str:
+    """Return a text as a name of small letters, digits and _; empty where nothing is left of it."""
+    plain = unicodedata.normalize("NFKD", text.casefold()).encode("ascii", "ignore").decode()
+    return re.sub("[^a-z0-9]+", "_", plain).strip("_")
+
+
+@cache
+def _quantities() -> dict[str, str]:
+    """Return the quantities by their names, and by their titles as such."""
+    return {identifier(of.title): name for name, of in FACTS.items()} | {name: name for name in FACTS}
+
+
+def _require_kept(text: str, name: str, unit: str, where: str, own: frozenset[str]) -> None:
+    """Refuse a column that seems to be meant as a limit or a number of the job, and one that has no name."""
     behind = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
-    if misplaced is not None:
+    if misplaced is not None and _is_known(misplaced["after"] or misplaced["before"], own):
         word = _LIMIT[(misplaced["first"] or misplaced["last"]).casefold()]
         limited = misplaced["after"] or misplaced["before"]
         raise JobError(
             f"{where}: min, max or equals stands after the quantity, in small letters; got it otherwise; write "
             f"{limited} {word}{behind}"
         )
-    if name in FACTS or name in own:
+    known = _quantities().get(identifier(name), name)
+    if known in FACTS or known in own:
         raise JobError(
-            f"{where}: a quantity needs min, max or equals; got none; write {name} max{behind} for its limit"
+            f"{where}: a quantity needs min, max or equals; got none; write {known} max{behind} for its limit"
         )
     own_path = name.removeprefix("variables.")
     if own_path != name and _PATH.fullmatch(own_path):
         raise JobError(f"{where}: a number of the job has its own path; got {name}; write {own_path}{behind}")
     for formula in (name, text):  # text: the brackets at its end may be those of a function
-        try:
+        if _is_known(formula, own):
             limited, _ = _limited(formula, own)
-        except InputError:
-            continue
-        raise JobError(f"{where}: a formula needs min, max or equals; got none; write {limited} max for its limit")
-    raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to pass it over")
+            raise JobError(f"{where}: a formula needs min, max or equals; got none; write {limited} max for its limit")
+    key = identifier(name)
+    if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
+        raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to pass it over")
+    near = difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
+    if near:
+        raise JobError(
+            f"{where}: must be spelled as a quantity is, or have a name that none resembles; did you mean "
+            f"{_quantities()[near[0]]}? rename it, or let it begin with # to pass it over"
+        )
+
+
+def _is_known(text: str, own: frozenset[str]) -> bool:
+    """Return whether a text is a quantity or a formula."""
+    try:
+        return bool(_limited(text, own))
+    except InputError:
+        return False
 
 
 def _limited(text: str, own: frozenset[str]) -> tuple[str, Kind | None]:

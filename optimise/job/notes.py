@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ...objectives.counted import counted
+from .catalogue import Catalogue, with_options
 from .model import Job, job_with
 from .own import declared
 from .plain_numbers import plain_numbers
@@ -21,6 +23,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     And on a speed and tables that a swing does not have, and exponents of a liquid. What probably is another machine
     than the one meant is among the warnings of the problem instead.
     """
+    data, tables = with_options(data)
     model = job_with(declared(data, allowed=True))
     job = model.model_validate(data)
     told = [item.note for item in plain_numbers(model, data) if not item.warning]
@@ -28,12 +31,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     if told:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
         notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
-    notes += [
-        f"{part.name}: of {part.rows} rows of the file {len(part.option)} {'is' if len(part.option) == 1 else 'are'} "
-        "solved; each of the others is beaten in every limit, or equalled, by one of these"
-        for part in job.choice
-        if part.rows is not None and part.rows > len(part.option)
-    ]
+    notes += [note for table in tables for note in _of_catalogue(table)]
     machine = job.machine()
     moving = machine.crank, machine.rod
     if job.mechanism.gravity is None and (machine.slider_mass or any(getattr(link, "mass", 1.0) for link in moving)):
@@ -57,6 +55,30 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         if idle:
             notes.append(f"load #{k}: a liquid is not compressed: no use of {' and '.join(idle)}; leave it out")
     return notes
+
+
+def _of_catalogue(table: Catalogue) -> Iterator[str]:
+    """Yield which rows of a catalogue are not searched and why, and columns that may mean something else."""
+    few = [f"{row} to {better}" for row, better in table.lost.items() if better is not None]
+    blank = [row for row, better in table.lost.items() if better is None]
+    left = table.rows - len(table.lost)
+    said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if table.lost else []
+    if few:
+        said += [f"the others lose in {_all(table.compared)}: {_some(few)}"]
+        said += ["each design names the least row that also serves"]
+    said += [f"without a number that is asked for: {_some(blank)}"] if blank else []
+    said += [f"not asked for, and kept with each design: {_all(table.idle)}"] if table.idle else []
+    if said:
+        yield f"{table.name}: {'; '.join(said)}"
+    yield from (f"{table.name}: the column {header} is read as {said}" for header, said in table.added.items())
+
+
+def _all(names: Sequence[str]) -> str:
+    return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names) or "nothing that differs"
+
+
+def _some(lines: Sequence[str]) -> str:
+    return ", ".join(lines[:_MOST]) + (f" and {len(lines) - _MOST} more" if len(lines) > _MOST else "")
 
 
 def _pins(job: Job) -> list[str]:

@@ -27,6 +27,7 @@ from ...objectives.own.quantity import (
 )
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_for, per_si, shown
+from .amounts import amounts_in, kinds_of_amounts
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .values import Part, Physical, optional, required
@@ -187,6 +188,11 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         taken = name in FACTS or name == SLOW_STROKE
         if not taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = _stated(name.replace("_", " "), kind)
+    tables |= {
+        name: _stated(name.replace("_", " "), kind)
+        for name, kind in kinds_of_amounts(amounts_in(data)).items()
+        if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
+    }
     asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
     asked += [word for name in names for word in words_of(parts[name]["formula"])]
     known = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import numpy as np
+
 from ...model.errors import InfeasibleError, InputError, JobError
 from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
@@ -16,6 +18,8 @@ from ..methods.registry import require_fit
 from ..problem.impossible import no_option
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
+from ..problem.violation import FEASIBLE, violated_by
+from .amounts import amounts_of
 from .contradictions import require_consistent
 from .messages import key_of
 from .model import Job
@@ -45,23 +49,29 @@ def problem_of(
     require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
     require_apart(motion, machine.varying)
+    amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
     own = (
+        *amounts,
         *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
         *functions_of(job.quantity, folder),
         *installed,
         *(() if motion is None else swing_quantities(motion)),
     )
     formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity), turning=motion is None)
-    choices, variants = variants_of(job, formulas)
+    choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
-    variants, left_out = _possible(variants, constraints, (*own, *formulas.made.values()))
+    asked = {item.quantity for item in objectives} | {item.quantity for item in constraints}
+    missing = [of for of in amounts if of.name in asked]
+    known = QUANTITIES | {of.name: of for of in (*own, *formulas.made.values())}
+    variants, left_out = _possible(variants, constraints, known, missing)
+    catalogue, _ = _possible(catalogue, constraints, known, missing)
     if choices and not variants:
         if require_feasible:
             raise no_option(left_out)
-        choices = ()  # what a design is judged by does not depend on them
+        choices, catalogue = (), ()  # what a design is judged by does not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
-    asked = {item.quantity for item in objectives} | {item.quantity for item in limits}
+    named = {*asked, *(item.quantity for item in limits)}
     problem = Problem(
         name=job.name,
         mechanism=machine,
@@ -71,6 +81,7 @@ def problem_of(
         choices=choices,
         variants=variants,
         left_out=left_out,
+        catalogue=catalogue,
         objectives=objectives,
         constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
@@ -78,7 +89,7 @@ def problem_of(
         motion=motion,
         costs=None if job.costs is None else job.costs.build(),
         settings=job.optimiser.build(),
-        own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in asked)),
+        own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in named)),
     )
     _require_shorter(problem)
     try:
@@ -125,20 +136,38 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
 
 
 def _possible(
-    variants: tuple[Variant, ...], constraints: tuple[Constraint, ...], own: Iterable[Quantity]
+    variants: tuple[Variant, ...],
+    constraints: tuple[Constraint, ...],
+    known: Mapping[str, Quantity],
+    asked: Iterable[Quantity],
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
-    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not."""
-    known = QUANTITIES | {of.name: of for of in own}
-    reasons = [_contradiction(variant, constraints, known) for variant in variants]
+    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
+
+    known: quantities by name. asked: amounts that a variant must have.
+    """
+    reasons = [_missing(variant, asked) or _contradiction(variant, constraints, known) for variant in variants]
     left_out = tuple(
         (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
     )
     return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
 
 
+def _missing(variant: Variant, asked: Iterable[Quantity]) -> str | None:
+    """Return in words which amount that is asked for a variant does not have; None if there is no such."""
+    had = dict(variant.amounts)
+    return next((f"{of.title} is not given" for of in asked if of.name not in had), None)
+
+
 def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:
     """Return in words which limit of a variant leaves nothing of a constraint; None if there is no such."""
     given = {of.quantity: of for of in constraints}
+    for name, value in variant.amounts:
+        own = given.get(name)
+        if own is not None and violated_by(own, np.array([value]))[0] > FEASIBLE:
+            face = known[name].unit
+            return f"{known[name].title} {value * face.factor:.6g} {face.symbol}".rstrip() + (
+                f", where {_asked((own,), known[name])} is asked"
+            )
     for limit in variant.limits:
         name = limit.quantity
         both = (given[name], limit) if name in given else (limit,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -16,6 +17,8 @@ from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_for
+from .amounts import amounts_in, kinds_of_amounts
+from .catalogue import with_options
 from .messages import key_of
 from .quantities import SLOW_STROKE, WORDS
 from .variables import varying_in
@@ -49,6 +52,7 @@ def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
     """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
     kinds = _Kinds(tables)
     own = [OwnName(name, _title(name, part), kinds.own(name)) for name, part in kinds.stated.items()]
+    own += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
     return [*own, *(OwnName(path, _words(path), kind) for path, kind in kinds.varying)]
 
 
@@ -98,6 +102,9 @@ class _Kinds:
     """Kinds of the names that formulas of a job may have. Raises nothing for what is incomplete: its kind is None."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
+        with suppress(InputError):  # a table that is wrong, which the job says
+            tables = with_options(tables)[0]
+        self.amounts = kinds_of_amounts(amounts_in(tables))
         own = tables.get("quantity")
         given = own.items() if isinstance(own, Mapping) else ()
         self.stated = {
@@ -105,7 +112,7 @@ class _Kinds:
         }
         self.varying = [(path, _kind_of(value)) for path, value in islice(varying_in(tables).items(), _MOST)]
         self._known: dict[str, Kind | None] = dict.fromkeys(DIMENSIONS, LENGTH)
-        self._known |= dict(self.varying) | {name: of.kind for name, of in FACTS.items()}
+        self._known |= dict(self.varying) | {name: of.kind for name, of in FACTS.items()} | self.amounts
         self.names = frozenset((*self._known, *self.stated))
         self._units = Units(self.names)
 

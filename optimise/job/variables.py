@@ -16,7 +16,8 @@ from pydantic import AfterValidator, Field, model_validator
 from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import shown
-from .catalogue import MOST_OPTIONS
+from .amounts import Amounts
+from .catalogue import LARGEST
 from .file import DEEPEST
 from .grids import says_values
 from .quantities import ConstraintsPart
@@ -88,6 +89,18 @@ class OptionPart(Part):
         default=ConstraintsPart(),
     )
 
+    amounts: Amounts = optional(
+        "numbers that limit nothing, such as a price, with any unit; their names may be objectives and constraints",
+        {"price": "310 EUR"},
+        default={},
+    )
+    notes: dict[str, Annotated[str, Field(max_length=200)]] = optional(
+        "texts to keep with designs, such as a maker", {"maker": "Example Motors"}, default={}
+    )
+    searched: bool = optional(
+        "whether designs are searched with it; else it is only named where it is the least that serves", default=True
+    )
+
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that come with it: path and value."""
@@ -115,10 +128,14 @@ class ChoicePart(Part):
             {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
         ],
         default=(),
-        max_length=MOST_OPTIONS,
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
         "instead of options: a CSV file beside the job file, a row an option, its units in the header", "gearmotors.csv"
+    )
+    table: str | None = optional(
+        "instead of options: the text of such a file",
+        "name,peak_torque max (N m),price (EUR)\nGM 40,40,310\nGM 200,200,840\n",
+        max_length=LARGEST,
     )
     rows: Annotated[int, Field(strict=True, ge=1)] | None = optional(
         "rows of the file that the options were screened from", 5000
@@ -126,12 +143,12 @@ class ChoicePart(Part):
 
     @model_validator(mode="after")
     def _given(self) -> Self:
-        if self.file is not None:
+        if self.file is not None and self.table is None:
             raise InputError(
                 f"a file is read beside a job file only, and instead of options; got file {shown(self.file)}; "
                 "give the options, or the file alone in a job file"
             )
-        if len(self.option) < (2 if self.rows is None else 1):
+        if len(self.option) < (2 if self.rows is None and self.table is None else 1):
             raise InputError(
                 f"must have two options or more, or a file; got {len(self.option)}; add [[choice.option]] tables"
             )

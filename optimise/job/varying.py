@@ -22,12 +22,15 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
+from ...objectives.amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.units import shown
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
+from ..problem.table_columns import note_field
+from .amounts import values_of
 from .crank_speed import TIME_KEYS
 from .grids import Grid, read_grid, says_values
 from .messages import explain
@@ -50,6 +53,10 @@ class _Option:
     values: dict[str, Any]
     limits: tuple[Constraint, ...] = ()
     slow_stroke: SlowStroke | None = None
+    amounts: tuple[tuple[str, float], ...] = ()
+    notes: tuple[tuple[str, str], ...] = ()
+    searched: bool = True
+    rank: int = 0
 
 
 def varying_machine(job: Job, key: str = "variables") -> Mechanism:
@@ -67,14 +74,17 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
         raise JobError(f"{key}: {error}") from None
 
 
-def variants_of(job: Job, formulas: Formulas) -> tuple[tuple[str, ...], tuple[Variant, ...]]:
-    """Return the names of a job's choices and every combination of them; none if nothing is to be chosen.
+def variants_of(
+    job: Job, formulas: Formulas, amounts: Mapping[str, Amount]
+) -> tuple[tuple[str, ...], tuple[Variant, ...], tuple[Variant, ...]]:
+    """Return the names of a job's choices, every combination of them, and those of the catalogue of the problem.
 
-    formulas: of the job, which its options may constrain too.
+    None if nothing is to be chosen. formulas: of the job, which its options may constrain too. amounts: of the job.
     """
-    axes = list(_axes(job, formulas))
+    every = list(_axes(job, formulas, amounts))
+    axes = [(name, [option for option in options if option.searched]) for name, options in every]
     if not axes:
-        return (), ()
+        return (), (), ()
     count = math.prod(len(options) for _, options in axes)
     if count > MOST:
         sizes = " x ".join(str(len(options)) for _, options in axes)
@@ -88,9 +98,23 @@ def variants_of(job: Job, formulas: Formulas) -> tuple[tuple[str, ...], tuple[Va
             f"variables: numbers that vary are read in every combination of choices, {_MOST_READ} in all at most; got "
             f"{numbers} numbers in {count} combinations; leave out some of either"
         )
-    combinations = itertools.product(*(options for _, options in axes))
-    variants = tuple(_variant(job, [name for name, _ in axes], chosen) for chosen in combinations)
-    return tuple(name for name, _ in axes if name not in DIMENSIONS), variants
+    names = [name for name, _ in axes]
+    combinations = list(itertools.product(*(options for _, options in axes)))
+    variants = tuple(_variant(job, names, chosen) for chosen in combinations)
+    searched = {tuple(map(id, chosen)): variant for chosen, variant in zip(combinations, variants, strict=True)}
+    catalogue = dict(searched) if any(part.table is not None for part in job.choice) else {}
+    for place, (_, options) in enumerate(every) if catalogue else ():
+        alike = {tuple(option.values.items()): option for option in axes[place][1]}
+        for option in options:
+            if option.searched:
+                continue
+            like = alike.get(tuple(option.values.items()))
+            for chosen in combinations if like is not None else ():
+                if chosen[place] is like:
+                    named = (*chosen[:place], option, *chosen[place + 1 :])
+                    machine = searched[tuple(map(id, chosen))]
+                    catalogue[tuple(map(id, named))] = replace(machine, **_of_options(names, named))
+    return tuple(name for name in names if name not in DIMENSIONS), variants, tuple(catalogue.values())
 
 
 def discrete_of(job: Job) -> tuple[Discrete, ...]:
@@ -151,7 +175,7 @@ def is_choice(given: object) -> bool:
     return isinstance(given, Mapping) and set(given) == {"choices"}
 
 
-def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
+def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterator[tuple[str, list[_Option]]]:
     """Yield name and options of every choice."""
     for name in DIMENSIONS:
         given = getattr(job.variables, name)
@@ -167,15 +191,21 @@ def _axes(job: Job, formulas: Formulas) -> Iterator[tuple[str, list[_Option]]]:
                 raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
             yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
     for part in job.choice:
-        options = [
-            _Option(
-                o.name,
-                o.paths,
-                tuple(constraints_of(o.constraints, formulas, f"choice {shown(part.name)}, option {shown(o.name)}: ")),
-                slow_stroke_of(o.constraints),
+        options = []
+        for rank, o in enumerate(part.option):
+            where = f"choice {shown(part.name)}, option {shown(o.name)}"
+            options.append(
+                _Option(
+                    o.name,
+                    o.paths,
+                    tuple(constraints_of(o.constraints, formulas, f"{where}: ")),
+                    slow_stroke_of(o.constraints),
+                    values_of(o.amounts, amounts, where),
+                    tuple((note_field(part.name, head), text) for head, text in o.notes.items()),
+                    o.searched,
+                    0 if part.table is None else rank,
+                )
             )
-            for o in part.option
-        ]
         yield part.name, options
 
 
@@ -199,12 +229,25 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
             with_values(job, {path: value for path, value in option.values.items() if path in values}, own)
         raise
     return Variant(
-        labels=tuple(option.label for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS),
         mechanism=varying_machine(other),
-        limits=tuple(limit for option in chosen for limit in option.limits),
-        slow_stroke=_slow_stroke(chosen),
-        **{name: ends_of(given) for name, given in ranges.items()},
+        crank=ends_of(ranges["crank"]),
+        rod=ends_of(ranges["rod"]),
+        offset=ends_of(ranges["offset"]),
+        **_of_options(names, chosen),
     )
+
+
+def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]:
+    """Return what a combination has of its options besides the numbers of the job."""
+    labelled = [option for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS]
+    return {
+        "labels": tuple(option.label for option in labelled),
+        "limits": tuple(limit for option in chosen for limit in option.limits),
+        "slow_stroke": _slow_stroke(chosen),
+        "amounts": tuple(amount for option in chosen for amount in option.amounts),
+        "notes": tuple(note for option in chosen for note in option.notes),
+        "ranks": tuple(option.rank for option in labelled),
+    }
 
 
 def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:

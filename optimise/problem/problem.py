@@ -18,6 +18,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
+from ...objectives.amount import with_amounts
 from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
 from ...objectives.reach import Reach
@@ -34,7 +35,7 @@ from .costs import Costs
 from .design_analysis import Analysis, analyse, one_design
 from .discrete import Discrete, require_known
 from .requirements import Constraint, Objective, Range, Word, merged
-from .table_columns import require_own_columns
+from .table_columns import choice_field, least_field, require_own_columns
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
@@ -74,7 +75,9 @@ class Variant:
 
     labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
     with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
-    constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it.
+    constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it. amounts: values of
+    the problem's amounts, SI. notes: texts of columns, such as a maker, by their keys. ranks: of each choice, how many
+    options of its catalogue are less than this one.
     """
 
     labels: tuple[str, ...]
@@ -84,14 +87,24 @@ class Variant:
     offset: Range
     limits: tuple[Constraint, ...] = ()
     slow_stroke: SlowStroke | None = None
+    amounts: tuple[tuple[str, float], ...] = ()
+    notes: tuple[tuple[str, str], ...] = ()
+    ranks: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "labels", "limits")
+        keep_tuples(self, "labels", "limits", "amounts", "notes", "ranks")
         _require_stroke(self.slow_stroke)
 
 
 _KINDS = {"name": str, "mechanism": Mechanism, "crank": Range, "rod": Range, "offset": Range, "settings": Settings}
-_EACH = {"objectives": Objective, "constraints": Constraint, "own": Quantity, "variants": Variant, "discrete": Discrete}
+_EACH = {
+    "objectives": Objective,
+    "constraints": Constraint,
+    "own": Quantity,
+    "variants": Variant,
+    "catalogue": Variant,
+    "discrete": Discrete,
+}
 _CHANGE = "change what is there by `dataclasses.replace`, or state the problem anew by `problem`"
 
 
@@ -102,7 +115,8 @@ class Problem:
     mechanism: its varying numbers are variables besides the dimensions. crank, rod, offset: where the three dimensions
     may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
     chosen. left_out: combinations whose limits the constraints exclude, label and reason, to be told. With
-    variants, mechanism and ranges here are those of no variant in particular: use `parts`. costs: of the
+    variants, mechanism and ranges here are those of no variant in particular: use `parts`. catalogue: combinations that
+    a design may name as the least that also serves, see `search.least`; also ones that are not searched. costs: of the
     tolerances, for their allocation. own: quantities besides those that every problem has; objectives and
     constraints may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset
     has only one sign, see `slow_side`, unless the speed follows a profile, and the time ratio is above 1, see
@@ -125,13 +139,15 @@ class Problem:
     choices: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
     left_out: tuple[tuple[str, str], ...] = ()
+    catalogue: tuple[Variant, ...] = ()
     slow_stroke: SlowStroke | None = None
     discrete: tuple[Discrete, ...] = ()
     motion: Swing | None = None
     warnings: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out", "discrete", "warnings")
+        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out")
+        keep_tuples(self, "catalogue", "discrete", "warnings")
         require_kinds(self, _KINDS, _CHANGE)
         require_kinds(self, _EACH, _CHANGE, each=True)
         require_known(self.discrete, [*self.ranges])
@@ -141,7 +157,7 @@ class Problem:
             for own in self.variants or (self,):
                 require_no_winding(own.mechanism)
         self._take_formulas()
-        require_own_columns(self.own, self.mechanism.varying, self.choices)
+        require_own_columns(self.own, self.mechanism.varying, self.choice_fields)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
@@ -331,6 +347,22 @@ class Problem:
         return tuple(variant.mechanism for variant in self.variants) or (self.mechanism,)
 
     @property
+    def choice_fields(self) -> list[tuple[str, str]]:
+        """Keys of the columns that say what was chosen and what comes with it, each with what it is, in words."""
+        notes = dict.fromkeys(key for variant in self.variants for key, _ in variant.notes)
+        return [
+            *((choice_field(name), f"the choice {name}") for name in self.choices),
+            *((key, "a column of a catalogue") for key in notes),
+            *((least_field(self.choices[place]), "the least option that serves") for place in self.catalogues),
+        ]
+
+    @property
+    def catalogues(self) -> tuple[int, ...]:
+        """Places of the choices whose options have an order, the least first."""
+        ranks = {variant.ranks for variant in self.catalogue}
+        return tuple(place for place in range(len(self.choices)) if len({of[place] for of in ranks}) > 1)
+
+    @property
     def every_constraint(self) -> tuple[Constraint, ...]:
         """The constraints and those that come with choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
@@ -362,7 +394,11 @@ class Problem:
             return self
         if not isinstance(variant, Integral) or not -len(self.variants) <= variant < len(self.variants):
             raise InputError(f"a variant is one of 0 to {len(self.variants) - 1}, see `variants`; got {variant!r}")
-        chosen = self.variants[variant]
+        return self.with_variant(self.variants[variant])
+
+    def with_variant(self, chosen: Variant) -> Problem:
+        """Return the problem of a combination of choices. Raises `InputError` if its limits leave nothing."""
+        amounts = dict(chosen.amounts)
         return replace(
             self,
             mechanism=chosen.mechanism,
@@ -371,9 +407,11 @@ class Problem:
             offset=chosen.offset,
             constraints=merged((*self.constraints, *chosen.limits)),
             slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
+            own=tuple(with_amounts(of, amounts) for of in self.own),
             choices=(),
             variants=(),
             left_out=(),
+            catalogue=(),
         )
 
     def parts(self) -> tuple[Problem, ...]:

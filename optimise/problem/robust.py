@@ -72,6 +72,9 @@ def robust(problem: Problem, plan: Robust) -> Problem:
         variants=tuple(
             replace(variant, limits=tuple(_robust_constraints(variant.limits, names))) for variant in problem.variants
         ),
+        catalogue=tuple(
+            replace(variant, limits=tuple(_robust_constraints(variant.limits, names))) for variant in problem.catalogue
+        ),
         own=(*problem.own, *made.values()),
     )
 
@@ -97,6 +100,7 @@ def nominal(problem: Problem) -> Problem:
         ),
         constraints=_nominal(problem.constraints, inner),
         variants=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.variants),
+        catalogue=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.catalogue),
         own=tuple(quantity for quantity in problem.own if not isinstance(quantity, RobustQuantity)),
     )
 
@@ -109,7 +113,7 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
     same = {"".join(name.split()): name for name in (*able, *held, *aimed)}  # a formula is the same with other spaces
     chosen = (
-        [name for name in able if not problem.quantity(name).about_tolerances]
+        [name for name in able if not (of := problem.quantity(name)).about_tolerances and not of.constant]
         if plan.quantities is None
         else [same.get("".join(name.split()), name) for name in plan.quantities]
     )

@@ -23,19 +23,36 @@ def choice_field(name: str) -> str:
     return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
 
 
+def least_field(name: str) -> str:
+    """Return the key of the column that says which is the least option of a catalogue that also serves."""
+    return choice_field(f"least {name}")
+
+
+def note_field(choice: str, head: str) -> str:
+    """Return the key of the column with a text of a catalogue, such as the maker of what was chosen."""
+    return choice_field(f"{choice} {head}")
+
+
 def slack_field(of: Quantity) -> str:
     """Return the key of the column with the slack of a requirement on a quantity."""
     return f"{_SLACK}{of.field}"
 
 
-def require_own_columns(own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[str]) -> None:
-    """Raise `InputError` for a quantity of a problem's own whose column is that of another number."""
-    own = tuple(own)
-    if not own:
-        return
+def require_own_columns(
+    own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[tuple[str, str]]
+) -> None:
+    """Raise `InputError` for a quantity of a problem's own, or a choice, whose column is that of another one.
+
+    choices: columns of choices, each with what it is.
+    """
     owner = dict.fromkeys(_EVERY, "every table") | {of.field: name for name, of in FACTS.items()}
     owner |= {column: name for name, (column, _) in columns_of_numbers(varying).items()}
-    owner |= {choice_field(name): f"the choice {name}" for name in choices}
+    for field, what in choices:
+        if field in owner:
+            raise InputError(
+                f"columns of choices must differ; got {field} for {what} and for {owner[field]}; choose another name"
+            )
+        owner[field] = what
     for of in own:
         if of.name in FACTS or owner.get(of.field) == of.name:  # a dimension may be a formula
             continue

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask, Whole, distinct
 from ...model.kinematics.in_line import without_rounding
+from ...objectives.amount import Amount
 from ...objectives.counted import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
@@ -23,6 +24,7 @@ from ..problem.violation import constraints_of
 from .candidates import Finished
 from .evaluation import Evaluator
 from .fingerprint import versions
+from .least import least_options
 from .pieces import ACTIVE
 from .search import Run
 
@@ -123,22 +125,23 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
     alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
     for variant in distinct(variants).tolist():
         part = problem.part(variant)
-        alike.setdefault((part.mechanism, part.constraints), []).append(variant)
+        alike.setdefault((part.mechanism, part.constraints, part.own), []).append(variant)
+    chosen = _chosen(problem, variants, dimensions)
     for same in alike.values():
         own = np.flatnonzero(np.isin(variants, same))
         part = problem.part(same[0])
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
             stand(done, len(dimensions))
             judged = analysis.columns_of if problem.motion is None else swinging.columns_of
-            columns = judged(part.mechanism, dimensions[rows], own=problem.own)
+            columns = judged(part.mechanism, dimensions[rows], own=part.own)
             stand(done, len(dimensions))
-            chosen = {
-                choice_field(name): np.array([problem.variants[variant].labels[place] for variant in variants[rows]])
-                for place, name in enumerate(problem.choices)
-            }
             before = 3 + len(part.mechanism.varying)
-            of_size, others = dict(islice(columns.items(), before)), dict(islice(columns.items(), before, None))
-            parts.append(of_size | chosen | others | _slacks(part, dimensions[rows]))
+            of_size = dict(itertools.islice(columns.items(), before))
+            others = dict(itertools.islice(columns.items(), before, None))
+            of_choice: Columns = {name: column[rows] for name, column in chosen.items()}
+            fields = [of.field for of in part.own if isinstance(of, Amount)]
+            of_choice |= {name: others.pop(name) for name in fields}
+            parts.append(of_size | of_choice | others | _slacks(part, dimensions[rows]))
             done += len(rows)
             order.append(rows)
     if len(parts) == 1:
@@ -146,6 +149,19 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
     place = np.argsort(np.concatenate(order))
     names = dict.fromkeys(name for part in parts for name in part)
     return {name: np.concatenate([_column(part, name) for part in parts])[place] for name in names}
+
+
+def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
+    """Return what was chosen for designs, the texts that come with it, and the least options that serve too."""
+    own = [problem.variants[variant] for variant in variants] if problem.variants else []
+    columns: Columns = {
+        choice_field(name): np.array([variant.labels[place] for variant in own])
+        for place, name in enumerate(problem.choices)
+    }
+    columns |= least_options(problem, variants, dimensions)
+    notes = [dict(variant.notes) for variant in own]
+    keys = dict.fromkeys(itertools.chain.from_iterable(notes))
+    return columns | {key: np.array([of.get(key, "") for of in notes]) for key in keys}
 
 
 def _column(part: Columns, name: str) -> NDArray[Any]:

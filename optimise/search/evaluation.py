@@ -56,6 +56,8 @@ class Evaluator:
         self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in sheet.eliminated)
         self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
+        constant = [problem.quantity(objective.quantity).constant for objective in problem.objectives]
+        self.constant = () if all(constant) else tuple(np.flatnonzero(constant).tolist())
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
         self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
@@ -177,7 +179,7 @@ class Evaluator:
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(objectives):
             parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
-        aims = _stack(parts, len(u), self.dimension)
+        aims = replace(_stack(parts, len(u), self.dimension), constant=self.constant)
         parts = []
         for index, constraint in enumerate(self.constraints):
             own = pieces[constraint.quantity]

@@ -91,6 +91,8 @@ def _may_differ(of: Quantity) -> bool:
 
     All of a job's own may but formulas, unless these have the offset's sign in them.
     """
+    if of.constant:
+        return False
     if isinstance(of, FormulaQuantity):
         return of.one_sided or any(map(_may_differ, of.parts))
     return QUANTITIES.get(of.name) != of

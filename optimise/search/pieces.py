@@ -18,13 +18,15 @@ class Rows:
     """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
 
     values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
-    objective that a row belongs to.
+    objective that a row belongs to. constant: owners that are the same for every design, of which nothing can be told
+    by slopes; none if all are.
     """
 
     values: Array
     gradients: Array
     labels: Array
     owner: Whole
+    constant: tuple[int, ...] = ()
 
     @classmethod
     def none(cls, n: int, k: int) -> Rows:

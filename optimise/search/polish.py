@@ -149,12 +149,14 @@ class _Batch:
                 self._put(row, self.safe[row], goals, limits, source)
         residual = np.zeros(n)
         pieces, active = [], []
+        moved = tuple(owner for owner in range(m) if owner not in self.goals.constant)
+        chosen = tuple(owner for owner in self.chosen if owner in moved) or self.chosen
         for row in range(n):
             here, edge = alone(self.goals, row), alone(self.limits, row)
-            columns = active_pieces(here, tuple(range(m)))
+            columns = active_pieces(here, moved)
             pieces.append((here.owner[columns].astype(np.float64), here.gradients[columns]))
             active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], box(self.u[row])]))
-            wanted = active_pieces(here, self.chosen)
+            wanted = active_pieces(here, chosen)
             residual[row], _, _ = multipliers(here.gradients[wanted], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
         return Polished(self.u, greatest(self.goals, m), violation, residual, ragged(pieces), ragged(active))

@@ -74,7 +74,7 @@ class CatalogueText(BaseModel, extra="forbid", strict=True):
 
 
 class CatalogueModel(BaseModel):
-    """The options of a choice that no other one beats, as a job has them. rows: of the table."""
+    """The options of a choice, as a job has them; those that others beat are only named. rows: of the table."""
 
     option: list[dict[str, Any]] = Field(examples=[[{"name": "GM 40", "constraints": {}}]])
     rows: int = Field(examples=[3])
@@ -154,12 +154,12 @@ def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
 
 @router.post("/catalogue")
 def read_catalogue(given: CatalogueText) -> CatalogueModel:
-    """Give the options of a catalogue that is sent as a table, without rows that others beat in everything."""
-    from ...optimise.job.catalogue import options_of
+    """Give the options of a catalogue that is sent as a table, without rows that no design can need."""
+    from ...optimise.job.catalogue import read_catalogue
 
     with READING:
-        option, rows = options_of(given.table, "the table", frozenset(given.own))
-    return CatalogueModel(option=option, rows=rows)
+        found = read_catalogue(given.table, "the table", frozenset(given.own))
+    return CatalogueModel(option=found.options, rows=found.rows)
 
 
 @router.post(

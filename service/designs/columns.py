@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -56,6 +57,8 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     same = name if name in keys else next((key for key in keys if metric_key(key) == metric), None)
     key = _meant(name, keys) if same is None else same
     plain, unit, factor = split_unit(key)
+    from ...objectives.quantity import Group
+
     slack = key.startswith("slack_")
     title = _titles().get(
         metric_key(key).removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
@@ -66,7 +69,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         unit,
         factor,
         factor / split_unit(name)[2] if same is not None else None if unit else 1.0,
-        _group(metric_key(key)),
+        Group.DIMENSIONS if key in chosen_columns(keys) else _group(metric_key(key)),
     )
 
 
@@ -80,11 +83,15 @@ def _group(key: str) -> Group:
     others = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}
     others |= {f"{PEAK_TORQUE.name}_angle_deg": PEAK_TORQUE.group, "slow_stroke": Group.MOTION}
     others |= {"loaded_stroke": Group.MOTION}
-    if key.startswith("choice_"):
-        return Group.DIMENSIONS
     if "_dead_centre" in key:
         return Group.MOTION
     return ({of.field: of.group for of in FACTS.values()} | others).get(key, Group.FURTHER)
+
+
+def chosen_columns(keys: Iterable[str]) -> list[str]:
+    """Return the columns of what was chosen besides the dimensions: those between the offset and the quantities."""
+    behind = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
+    return list(itertools.takewhile(lambda key: metric_key(key) not in _titles(), itertools.islice(behind, 1, None)))
 
 
 @functools.cache

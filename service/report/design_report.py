@@ -10,7 +10,7 @@ from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ...optimise.search.fingerprint import version_of
-from ..designs.columns import DIMENSIONS, find_column, metric_key
+from ..designs.columns import DIMENSIONS, chosen_columns, find_column, metric_key
 from ..designs.variation import Variation
 from ..figures.numerals import measured, rounded
 from ..text.summary import machine_in_words
@@ -63,11 +63,19 @@ def _summary(subject: Subject) -> Section:
     rows = {
         "Lengths": [", ".join(lengths)],
         "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
-        "Choices": [f"{key.removeprefix('choice_')} {row[key]}" for key in row if key.startswith("choice_")],
+        "Choices": [_chosen(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
         "Machine": _machine(subject),
         "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
     }
     return Section("Summary", (Facts({title: lines for title, lines in rows.items() if lines}),))
+
+
+def _chosen(subject: Subject, key: str) -> str:
+    """Return what was chosen, or an amount that comes with it, in words."""
+    column, value = find_column(key, list(subject.row)), subject.row[key]
+    known = next((of for of in subject.problem.own if of.field == key), None)
+    title, unit = (column.title, column.unit) if known is None else (known.title, known.unit.symbol)
+    return f"{title} {value}" if isinstance(value, str) else f"{title} {measured(value, unit)}"
 
 
 def _machine(subject: Subject) -> list[str]:

@@ -6,12 +6,11 @@ import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
-from ..designs.columns import DIMENSIONS, Column, find_column, metric_key, split_unit
+from ..designs.columns import DIMENSIONS, Column, chosen_columns, find_column, metric_key, split_unit
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -148,7 +147,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 
     names = list(result.designs[0])
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
-    keys = [*dimensions, *_chosen(names), *(key for key in names if metric_key(key) == STROKE.field)]
+    keys = [*dimensions, *chosen_columns(names), *(key for key in names if metric_key(key) == STROKE.field)]
     keys += ["slow_stroke"] if result.strokes_differ else []
     keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
     objectives = {wanted.column for wanted in result.objectives}
@@ -168,18 +167,6 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         else:
             columns.append(column)
     return columns, constant
-
-
-def _chosen(keys: list[str]) -> list[str]:
-    """Return the columns of what was chosen besides the dimensions: those between the offset and the quantities."""
-    from ...objectives.registry import FACTS
-
-    metric, fields = [metric_key(key) for key in keys], {of.field for of in FACTS.values()}
-    if "offset_mm" not in metric:
-        return []
-    first = metric.index("offset_mm") + 1
-    count = len(list(takewhile(lambda key: key not in fields, metric[first:])))
-    return keys[first : first + count]
 
 
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import files_beside, load_job, parse_job, read_job
-from slidercrank.optimise.job.catalogue import MOST_OPTIONS, options_of
+from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
 from slidercrank.optimise.job.notes import notes_of
 from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
@@ -80,8 +80,9 @@ def test_the_front_is_that_of_solving_every_row(seed: int, masses: bool, tmp_pat
 
 def test_no_row_that_is_left_is_beaten_and_every_other_one_is() -> None:
     text = catalogue(7, 5000, masses=True)
-    options, rows = options_of(text, "file")
-    assert rows == 5000
+    found = read_catalogue(text, "file")
+    assert found.rows == 5000
+    options = [option for option in found.options if option.get("searched", True)]
     table = {line.split(",")[0]: [float(x) for x in line.split(",")[1:]] for line in text.splitlines()[1:]}
     left = [table[option["name"]] for option in options]
 
@@ -94,26 +95,29 @@ def test_no_row_that_is_left_is_beaten_and_every_other_one_is() -> None:
     assert len(left) <= 20
 
 
+def searched(text: str, tables: dict[str, Any] | None = None) -> list[str]:
+    """Return the rows that are searched, the least first."""
+    found = read_catalogue(text, "file", tables=tables)
+    return [option["name"] for option in found.options if option.get("searched", True)]
+
+
 def test_least_values_are_looser_the_smaller_and_floors_are_not_compared() -> None:
-    found, _ = options_of("name,stroke min (mm)\na,90\nb,80\nc,80\n", "file")
-    assert [option["name"] for option in found] == ["b"]
+    assert searched("name,stroke min (mm)\na,90\nb,80\nc,80\n") == ["b"]
     # A greatest transmission angle moves the floor that is kept by default.
-    found, _ = options_of("name,transmission_angle max (deg)\na,8\nb,50\n", "file")
-    assert len(found) == 2
-    found, _ = options_of("name,stroke equals (mm)\na,80\nb,90\nc,90\n", "file")
-    assert [option["name"] for option in found] == ["a", "b"]
+    assert searched("name,transmission_angle max (deg)\na,8\nb,50\n") == ["a", "b"]
+    assert searched("name,stroke equals (mm)\na,80\nb,90\nc,90\n") == ["a", "b"]
 
 
 @pytest.mark.parametrize("sign", [";", "\t"])
 def test_other_signs_between_cells_and_brackets_are_read(sign: str) -> None:
     text = "\n".join(line.replace(",", sign) for line in catalogue(1, 9).splitlines())
-    assert options_of(text.replace("(N m)", "[N m]"), "file") == options_of(catalogue(1, 9), "file")
+    assert read_catalogue(text.replace("(N m)", "[N m]"), "file") == read_catalogue(catalogue(1, 9), "file")
 
 
 def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) -> None:
     job = written(tmp_path, catalogue(0, 60))
     (note,) = [note for note in notes_of(read_job(job)) if "rows" in note]
-    assert re.fullmatch(r"gearmotor: of 60 rows of the file \d (is|are) solved; .*", note)
+    assert re.fullmatch(r"gearmotor: of 60 rows \d (is|are) searched; the others lose in peak_torque max .*", note)
     assert files_beside(job) == [tmp_path / "gearmotors.csv"]
     one = load_job(written(tmp_path, f"{HEADER}\nA,10,5,1\n"))
     assert [variant.labels for variant in one.variants] == [("A",)] * 3
@@ -135,7 +139,10 @@ ROW = "A,10,5,1"
     [
         ("", "must begin with a line that names its columns; got an empty file; fill it"),
         (HEADER, "must have a row below the names of its columns; got none; add it"),
-        (f"{HEADER}\n{ROW}\nB,,5,1", 'row 3, column "peak_torque max (N m)": must have a number; got an empty cell'),
+        (
+            "name,mechanism.slider.mass (kg)\nA,1\nB,",
+            'row 3, column "mechanism.slider.mass (kg)": must have a number; got an empty cell',
+        ),
         (f"{HEADER}\n{ROW}\nB,=2*B2,5,1", 'must be a number; got the formula "=2*B2"; save values instead of formulas'),
         (f"{HEADER}\n=A1,10,5,1", "row 2, column name: must be a name"),
         (
@@ -153,11 +160,11 @@ ROW = "A,10,5,1"
         ),
         ("name,peak_torque max\nA,1", "must have the unit of a torque in brackets; got none"),
         ("name,time_ratio max (mm)\nA,1", 'got "mm"; leave it out'),
-        ("name,peak_torque (N m)\nA,1", "a quantity needs min, max or equals"),
+        ("name,stroke (mm)\nA,1", "a quantity needs min, max or equals"),
         ("name,peak_torqe max (N m)\nA,1", 'is called "peak_torqe"; did you mean peak_torque or'),
         ("name,stroke max (mm),stroke max (m)\nA,1,1", "columns must differ"),
         ("name,(mm)\nA,1", "must be a quantity or formula with min, max or equals, or the path of a number"),
-        ("name,# price\nA,1", "must have a column of numbers beside the name"),
+        ("name,# price\nA,1", "must have a column beside the name"),
         ("motor,stroke max (mm)\nA,1", 'must have the column name first; got "motor"'),
         ('name,stroke max (mm)\n"A,1', "must be a line of CSV"),
         ("name,stroke max (mm)\nA\0,1", "got a byte 0"),
@@ -241,4 +248,4 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
             load_job(job)
     many = "\n".join(f"M {k},{k + 1},{1000 - k}" for k in range(MOST_OPTIONS + 1))
     with pytest.raises(JobError, match="at most 200 rows that no other one beats in everything; got 201 of 201"):
-        options_of(f"name,peak_torque max (N m),rms_torque max (N m)\n{many}\n", "file")
+        read_catalogue(f"name,peak_torque max (N m),rms_torque max (N m)\n{many}\n", "file")

@@ -135,7 +135,11 @@ def test_a_catalogue_that_is_sent_as_a_table_gives_the_options_that_no_other_one
     table = "name,room min (mm),peak_torque max (N m)\nA,3,40\nB,4,40\nC,5,90\n"
     found = shared.post("/catalogue", json={"table": table, "own": ["room"]}).json()
     assert found["rows"] == 3
-    assert [option["name"] for option in found["option"]] == ["A", "C"]
-    assert found["option"][0]["constraints"] == {"room": {"min": "3 mm"}, "peak_torque": {"max": "40 N m"}}
+    assert [(option["name"], option.get("searched", True)) for option in found["option"]] == [
+        ("C", True),
+        ("B", False),  # the least that serves some designs, though A beats it
+        ("A", True),
+    ]
+    assert found["option"][2]["constraints"] == {"room": {"min": "3 mm"}, "peak_torque": {"max": "40 N m"}}
     for wrong, said in (("", "empty"), ("name,peak_torque max (mm)\nA,1", "unit"), ("name,crank\nA,=1", "formula")):
         assert said in refused(shared.post("/catalogue", json={"table": wrong}), 422)

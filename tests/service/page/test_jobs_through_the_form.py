@@ -133,37 +133,23 @@ def test_points_of_a_load_are_pasted_from_a_table_with_their_units_and_mistakes_
 
 
 @pytest.mark.slow
-def test_a_catalogue_is_pasted_and_its_options_are_in_the_job_without_those_that_others_beat(
-    form: Open, store: Store
-) -> None:
-    page = form(store, "#/new?preset=sieve", expected=("422",))
+def test_a_catalogue_is_pasted_and_stays_in_the_job_as_a_table(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
     page.get_by_text("Catalogues to choose from").click()
     page.get_by_role("button", name="Add a catalogue").click()
     table = page.get_by_role("group", name="Catalogue 1").get_by_role("textbox").last
     expect(table).to_be_focused()
     table.fill("name,peak_torqe max (N m)\nGM 40,40")
     expect(page.get_by_text("did you mean peak_torque")).to_be_visible()
-    table.fill("name;peak_torque max (N m);# price\nGM 60;60;310\nGM 200;200;840\nGM 50;60;400")
-    expect(page.get_by_text("1 option of 3 rows: GM 200.")).to_be_visible()
-    table = page.get_by_role("group", name="Catalogue 1").get_by_role("textbox").last
-    table.fill("name,peak_torque max (N m),mechanism.slider.mass (kg)\nGM 60,60,1.2\nGM 200,200,2.6")
-    expect(page.get_by_text("2 options of 2 rows: GM 60, GM 200.")).to_be_visible()
+    text = "name;peak_torque max (N m);price (EUR)\nGM 60;60;310\nGM 200;200;840\nGM 50;60;400"
+    table.fill(text)
+    expect(page.get_by_text("3 rows.")).to_be_visible()
+    expect(page.get_by_text("of 3 rows 1 is searched")).to_be_attached()
     status = page.get_by_role("complementary").get_by_role("status")
     expect(status).to_have_text("Ready to start.", timeout=30_000)
     job = json.loads(page.locator("#job-text").input_value())
-    assert job["choice"][0]["option"] == [
-        {
-            "name": "GM 60",
-            "values": {"mechanism.slider.mass": "1.2 kg"},
-            "constraints": {"peak_torque": {"max": "60 N m"}},
-        },
-        {
-            "name": "GM 200",
-            "values": {"mechanism.slider.mass": "2.6 kg"},
-            "constraints": {"peak_torque": {"max": "200 N m"}},
-        },
-    ]
-    assert len(parse_job(job).variants) == 2
+    assert job["choice"] == [{"name": "catalogue 1", "table": text}]
+    assert [variant.labels for variant in parse_job(job).variants] == [("GM 200",)]
     page.get_by_role("button", name="Remove catalogue 1").click()
     assert "choice" not in json.loads(page.locator("#job-text").input_value())
 

@@ -1,16 +1,13 @@
 /** Choices between options, such as gearmotors of a catalogue: a table to paste, a row an option. */
 
-import { isAbort, post } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { plain } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { sentenceOf } from "../lib/refusals.js";
 
-const WAIT = 400; // ms after the last letter until the table is read
 const SHOWN = 6; // names of options
-const EXAMPLE = "name,peak_torque max (N m),mechanism.slider.mass (kg)\nGM 40,40,1.2\nGM 90,90,1.6";
-const WHY = "One row an option, the first line its columns: name, then limits such as “peak_torque max (N m)” or numbers of the job such as “mechanism.slider.mass (kg)”. Columns that begin with # are passed over. Rows that another one beats in everything are left out.";
+const EXAMPLE = "name,peak_torque max (N m),price (EUR),maker\nGM 40,40,310,A\nGM 90,90,450,B";
+const WHY = "One row an option, the first line its columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and what is to be kept with each design, such as “price (EUR)” or a maker; what is kept and a number may be an objective or a requirement. A blank limit is none. Columns that begin with # are passed over.";
 
 /** Return the fields of the choices, and a button for another one. @param {Form.Whole} form */
 export function choices(form) {
@@ -18,8 +15,8 @@ export function choices(form) {
   const all = Array.isArray(given) ? given : [];
   const add = h("button", { type: "button", id: "add-choice" }, all.length ? "Add another catalogue" : "Add a catalogue");
   add.addEventListener("click", () => {
-    form.put(["choice", all.length], { name: `catalogue ${all.length + 1}`, option: [] });
-    form.redraw(idOf(["choice", all.length, "option"], "c"));
+    form.put(["choice", all.length], { name: `catalogue ${all.length + 1}`, table: "" });
+    form.redraw(idOf(["choice", all.length, "table"], "c"));
   });
   return [all.map((one, place) => row(form, one, place, all)), h("p", { class: "wide" }, add)];
 }
@@ -27,12 +24,16 @@ export function choices(form) {
 /** Return what there is to choose from, in a line. @param {Form.Whole} form */
 export function choicesGiven(form) {
   const given = form.at(["choice"]);
-  return (Array.isArray(given) ? given : []).map((one) => `${at(one, ["name"])}: ${counted(optionsOf(one).length)}`).join(", ");
+  return (Array.isArray(given) ? given : []).map((one) => `${at(one, ["name"])}: ${counted(one)}`).join(", ");
 }
 
-/** @param {number} count */
-function counted(count) {
-  return count === 1 ? "1 option" : `${count} options`;
+/** Return how many rows or options a choice has, in words. @param {unknown} one */
+function counted(one) {
+  const table = at(one, ["table"]);
+  const lines = typeof table === "string" ? table.split("\n").filter((line) => line.trim()).length - 1 : 0;
+  const options = optionsOf(one).length;
+  const [count, word] = options ? [options, "option"] : [Math.max(lines, 0), "row"];
+  return `${count} ${word}${count === 1 ? "" : "s"}`;
 }
 
 /** @param {unknown} one @returns {unknown[]} */
@@ -44,37 +45,22 @@ function optionsOf(one) {
 /** @param {Form.Whole} form @param {unknown} one @param {number} place @param {unknown[]} all */
 function row(form, one, place, all) {
   const path = ["choice", place];
-  const options = optionsOf(one);
-  const rows = at(one, ["rows"]);
-  const names = options.map((option) => String(at(option, ["name"])));
+  const names = optionsOf(one).map((option) => String(at(option, ["name"])));
   const more = names.length > SHOWN ? ` and ${names.length - SHOWN} more` : "";
-  const has = h("p", { class: "quiet wide", role: "status" }, options.length ? `${counted(options.length)}${rows === undefined ? "" : ` of ${rows} rows`}: ${names.slice(0, SHOWN).join(", ")}${more}.` : "No options yet.");
-  const text = h("textarea", { id: idOf([...path, "option"], "c"), rows: 5, class: "points", spellcheck: "false", placeholder: EXAMPLE });
-  const made = field(form, [...path, "option"], options.length ? "another table in place of these" : "table", [text], WHY, { wide: true });
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
-  /** @type {AbortController | null} */
-  let asked = null;
+  const has = h("p", { class: "quiet wide", role: "status" });
+  /** @param {unknown} given */
+  const say = (given) => has.replaceChildren(`${counted(given)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`);
+  say(one);
+  const text = h("textarea", { id: idOf([...path, "table"], "c"), rows: 5, class: "points", spellcheck: "false", placeholder: EXAMPLE });
+  text.value = String(at(one, ["table"]) ?? "");
+  const made = field(form, [...path, "table"], names.length ? "a table in place of these" : "table", [text], WHY, { wide: true });
   text.addEventListener("input", () => {
-    clearTimeout(timer);
-    asked?.abort();
-    delete text.dataset.wrong;
-    if (text.value.trim()) timer = setTimeout(read, WAIT);
+    names.length = 0;
+    const { option: _, rows: __, file: ___, ...rest } = /** @type {Record<string, unknown>} */ (isTable(form.at(path)) ? form.at(path) : {});
+    const given = { ...rest, table: text.value };
+    form.put(path, given);
+    say(given);
   });
-  const read = async () => {
-    const mine = (asked = new AbortController());
-    try {
-      const own = Object.keys(form.at(["quantity"]) ?? {});
-      const found = await post("catalogue", { table: text.value.trim(), own }, { signal: mine.signal });
-      if (!text.isConnected) return;
-      form.put(path, { ...(isTable(one) ? one : {}), option: found.option, rows: found.rows });
-      form.redraw();
-    } catch (problem) {
-      if (isAbort(problem) || !text.isConnected) return;
-      text.dataset.wrong = sentenceOf(problem).replace(/^The table,? ?/, "");
-      form.put([...path, "option"], form.at([...path, "option"])); // so that it is said
-    }
-  };
   const drop = h("button", { type: "button", "aria-label": `Remove catalogue ${place + 1}` }, "Remove");
   drop.addEventListener("click", () => {
     form.put(["choice"], all.length > 1 ? all.filter((_, other) => other !== place) : undefined);

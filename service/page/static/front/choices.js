@@ -22,7 +22,8 @@ export function choicesFrom(query, front) {
   const known = (key) => typeof key === "string" && keys.includes(key);
   const objectives = front.objectives.map(({ column }) => column);
   const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
-  const labels = keys.filter((key) => key.startsWith("choice_"));
+  const first = keys.findIndex((key) => key.startsWith("choice_"));
+  const labels = keys.filter((key, place) => first >= 0 && place >= first && front.columns[place].group === front.columns[first].group && !objectives.includes(key));
   const strokes = front.strokes_differ ? ["slow_stroke"] : [];
   /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);

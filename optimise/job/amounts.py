@@ -1,0 +1,103 @@
+"""Amounts of options: numbers of a catalogue that are neither limits nor numbers of the job."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from ...model.errors import InputError, JobError
+from ...model.linkage.values import DIMENSIONS
+from ...objectives.amount import Amount, amount_of, kind_of_amount
+from ...objectives.formula.expression import ARGUMENTS
+from ...objectives.kinds import RATIO, Kind
+from ...objectives.own.quantity import require_name
+from ...objectives.registry import FACTS
+from ...objectives.units import shown, to_si
+from .quantities import SLOW_STROKE
+from .values import Physical
+
+_MOST = 1e15
+
+
+class _Read(Physical):
+    """Marks an amount: a number with any unit, or a plain number."""
+
+    def read(self, value: object) -> Any:
+        found = None if isinstance(value, bool) or not isinstance(value, str | int | float) else amount_of(value)
+        if found is None or not abs(found[0]) <= _MOST:
+            raise InputError(f'must be a number with its unit, such as "310 EUR", or a number; got {shown(value)}')
+        return value
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string"}, {"type": "number"}]}
+
+
+def _named(amounts: dict[str, Any]) -> dict[str, Any]:
+    for name in amounts:
+        if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
+            raise InputError(f"an amount must have a name of its own; got {name}; choose another name")
+        require_name(name)
+    return amounts
+
+
+Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_named)]
+"""Amounts of an option by name."""
+
+
+def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
+    """Return the kinds of the amounts of options, by name. options: their amounts; what is wrong is left out."""
+    found: dict[str, Kind] = {}
+    for amounts in options:
+        for name, value in amounts.items():
+            known = amount_of(value) if name not in found and isinstance(value, str | int | float) else None
+            if known is not None:
+                found[name] = kind_of_amount(known[1])
+    return found
+
+
+def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """Yield the amounts of options of a job, as far as they can be told."""
+    choices = tables.get("choice")
+    for choice in choices if isinstance(choices, list | tuple) else ():
+        options = choice.get("option") if isinstance(choice, Mapping) else None
+        for option in options if isinstance(options, list | tuple) else ():
+            amounts = option.get("amounts") if isinstance(option, Mapping) else None
+            if isinstance(amounts, Mapping):
+                yield amounts
+
+
+def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection[str]) -> tuple[Amount, ...]:
+    """Return the amounts that the options of choices have, as quantities without values.
+
+    choices: by name, the amounts of their options. taken: names of the job's own quantities. Raises JobError for a name
+    that is taken, or that two choices have.
+    """
+    found: dict[str, Amount] = {}
+    owners: dict[str, str] = dict.fromkeys(taken, "the table [quantity]")
+    for choice, options in choices.items():
+        for name, kind in kinds_of_amounts(options).items():
+            if name in owners:
+                raise JobError(
+                    f"choice {shown(choice)}: an amount must have a name of its own; got {name}, which {owners[name]} "
+                    "has too; rename one; a formula adds the two"
+                )
+            owners[name] = f"the choice {shown(choice)}"
+            found[name] = Amount(
+                name=name,
+                kind=kind,
+                sentence=f"{name.replace('_', ' ')} of what is chosen for {choice}, from its catalogue.".capitalize(),
+                source="this job",
+                signed=any((amount_of(of[name]) or (0.0,))[0] < 0.0 for of in options if name in of),
+            )
+    return tuple(found.values())
+
+
+def values_of(amounts: Mapping[str, Any], of: Mapping[str, Amount], where: str) -> tuple[tuple[str, float], ...]:
+    """Return the amounts of an option, SI. of: amounts of the job. where: the option, for messages. Raises JobError."""
+    try:
+        return tuple((name, to_si(value, of[name].kind)) for name, value in amounts.items())
+    except InputError as error:
+        raise JobError(f"{where}: amounts of one name must have one unit: {error}") from None

@@ -1,0 +1,193 @@
+"""Rows of a catalogue that are worth a search, and those that may be the least that serves a design.
+
+What is asked for of a row are its limits, as far as the constraints of the job do not hold already, and those amounts
+that are objectives or constraints. Of two rows with the same numbers of the job, where the first is nowhere worse in
+what is asked for, every design that the second allows is one of the first, as good in every objective. So the front of
+all rows is that of the first without the second, which loses. Of rows that are equal in all of it the least stays.
+Limits that are equalities compare with equal ones alone, and so do greatest values of quantities whose floor depends on
+them (see `violation.constraints_of`), and amounts that a formula names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...model.arrays import Array, Whole
+from ...model.errors import InputError, JobError
+from ...objectives.formula.formulas import words_of
+from ...objectives.units import to_si
+from .catalogue_columns import Column
+
+ORDER = ("price", "mass")
+"""Amounts by which one row is less than another, before their limits."""
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What a job asks of an amount. way: 1 for little, -1 for much, 0 for a value. bound: of what is all the same."""
+
+    way: int
+    bound: float | None = None
+
+
+def _asked(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
+    """Return what a job asks of the amounts of a catalogue that it names."""
+    objectives, constraints, own = (
+        given if isinstance(given := tables.get(name), Mapping) else {}
+        for name in ("objectives", "constraints", "quantity")
+    )
+    plain = {column.name for column in columns if column.kept}
+    words: set[str] = set()  # in formulas, through which they may count either way
+    for key, value in (*objectives.items(), *constraints.items()):
+        words |= set() if key in plain else set(words_of(key))
+        words |= {word for bound in value.values() for word in words_of(bound)} if isinstance(value, Mapping) else set()
+    for part in own.values():
+        words |= set(words_of(part.get("formula"))) if isinstance(part, Mapping) else set()
+    found = {}
+    for column in columns:
+        if not column.kept or column.kind is None:
+            continue
+        wish, bounds = objectives.get(column.name), constraints.get(column.name)
+        ways = {0} if column.name in words else set()
+        ways |= set() if wish is None else {_WAYS.get(wish, 0) if isinstance(wish, str) else 0}
+        given = bounds if isinstance(bounds, Mapping) else {}
+        ways |= {_WAYS.get(word, 0) for word in given}
+        bound = None if wish is not None or len(given) != 1 else _si(next(iter(given.values())), column)
+        if ways:
+            found[column.name] = _Asked(ways.pop(), bound) if len(ways) == 1 else _Asked(0)
+    return found
+
+
+_WAYS = {"minimise": 1, "minimize": 1, "max": 1, "maximise": -1, "maximize": -1, "min": -1}
+
+
+def _si(value: Any, column: Column) -> float | None:
+    try:
+        return None if column.kind is None else to_si(value, column.kind)
+    except InputError:  # a formula, or wrong
+        return None
+
+
+def _table_of(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    given = tables.get(name)
+    return given if isinstance(given, Mapping) else {}
+
+
+@dataclass(frozen=True)
+class Screened:
+    """Rows after screening. order: those that are searched or named, by their places, the least first.
+
+    searched: those that are searched. lost: places of the others, each with one that beats it, or None for one without
+    a number that is asked for. compared: what rows are compared in. asked: the amounts among it.
+    """
+
+    order: list[int]
+    searched: set[int]
+    lost: dict[int, int | None]
+    compared: tuple[str, ...]
+    asked: frozenset[str]
+
+
+def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], where: str) -> Screened:
+    """Return which rows to search, and which may be the least that serves a design.
+
+    columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. where: what
+    messages begin with. Raises JobError if no row has all that is asked for.
+    """
+    asked, constraints = _asked(tables, columns), _table_of(tables, "constraints")
+    fixed, costs = list[Array](), list[Array]()
+    compared = list[str]()
+    complete = np.ones(len(rows), np.bool_)
+    for column in columns:
+        blank = np.array([not row[column.place] for row in rows])
+        wanted = asked.get(column.name) if column.kept else None
+        if column.kept and wanted is None:
+            continue
+        factor = 1.0 if column.kind is None or not column.unit else to_si(f"1 {column.unit}", column.kind)
+        values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
+        compared += [] if column.word is None and wanted is None else [column.said.partition(" (")[0]]
+        if wanted is not None:
+            complete &= ~blank
+            floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
+            (costs if wanted.way else fixed).append(np.maximum(wanted.way * values, floor) if wanted.way else values)
+        elif column.word is not None and column.monotone:
+            side = -1.0 if column.word == "max" else 1.0
+            floor = _held(constraints.get(column.name), column, side)
+            costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
+        else:
+            fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
+    if not complete.any():
+        names = " and ".join(asked)
+        raise JobError(f"{where} must have a row with {names}, which the job asks for; got none; fill the cells")
+    order = _order(columns, rows)
+    rank = np.empty(len(rows))
+    rank[order] = np.arange(len(rows))
+    groups, tight = _groups(fixed, len(rows)), _side_by_side(costs, len(rows))
+    least = np.column_stack([tight, rank])
+    searched, named, lost = list[int](), list[int](), dict[int, int | None]()
+    for group in range(int(groups.max()) + 1):
+        own = order[(groups == group)[order]]
+        whole = own[complete[own]]
+        best = whole[_unbeaten(tight[whole])]
+        searched += best.tolist()
+        named += whole[_unbeaten(least[whole])].tolist()
+        for row in np.setdiff1d(own, best).tolist():
+            better = best[(tight[best] <= tight[row]).all(axis=1)] if complete[row] else best[:0]
+            lost[row] = int(better[0]) if len(better) else None
+    return Screened(
+        sorted({*searched, *named}, key=lambda row: rank[row]), {*searched}, lost, tuple(compared), frozenset(asked)
+    )
+
+
+def _held(bounds: object, column: Column, side: float) -> float:
+    """Return the cost of the job's own limit on the quantity of a column, below which rows are equal.
+
+    side: 1 of a least value, -1 of a greatest one.
+    """
+    given = bounds if isinstance(bounds, Mapping) else {}
+    found = [_si(given[word], column) for word in (column.word, "equals") if word in given]
+    return max((side * bound for bound in found if bound is not None), default=-math.inf)
+
+
+def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> Whole:
+    """Return the rows, the least first: by price, mass and limits, the tighter first, as far as there are columns.
+
+    A blank price, mass or limit comes last, and of equal rows the first one first.
+    """
+    amounts = {column.name: (1.0, column) for column in columns if column.kept and column.kind is not None}
+    limits = [(-1.0 if column.word == "min" else 1.0, column) for column in columns if column.word is not None]
+    keys = [amounts[name] for name in ORDER if name in amounts] + limits
+    table = [
+        np.array([sign * float(row[column.place]) if row[column.place] else math.inf for row in rows])
+        for sign, column in keys
+    ]
+    return np.asarray(np.lexsort(table[::-1]) if table else np.arange(len(rows)), np.int64)
+
+
+def _side_by_side(columns: Sequence[Array], count: int) -> Array:
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
+
+
+def _groups(columns: Sequence[Array], count: int) -> Whole:
+    """Return a number of each row that rows have in common which are equal in some columns."""
+    if not columns:
+        return np.zeros(count, np.int64)
+    return np.asarray(np.unique(_side_by_side(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
+
+
+def _unbeaten(costs: Array) -> Whole:
+    """Return the rows (n, k) that none dominates; of equal ones the first."""
+    from ..front.dominance import nondominated  # brings what computes
+
+    if not costs.shape[1] or not len(costs):
+        return np.arange(min(1, len(costs)))
+    _, first = np.unique(costs, axis=0, return_index=True)
+    different = np.sort(first)
+    # By their places in order: limits that are none are infinite, which moocore does not take.
+    places = [np.unique(column, return_inverse=True)[1].ravel() for column in costs[different].T]
+    return np.asarray(different[nondominated(np.stack(places, axis=1).astype(np.float64))], np.int64)

@@ -1,0 +1,77 @@
+"""The least option of a catalogue that serves a design: the cheapest gearmotor that can take what it asks for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...model.arrays import Array, Mask, Whole, distinct
+from ...model.errors import InputError
+from ...objectives.quantity import Quantity
+from ..front.front import Columns
+from ..problem.problem import Problem, Variant
+from ..problem.table_columns import least_field
+from ..problem.violation import FEASIBLE, constraints_of, violated_by
+
+_SAME = 1e-9  # relative: a dimension that an option sets
+
+
+def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
+    """Return for each catalogue the least option (n,) with which designs meet all requirements, all else being equal.
+
+    variants: (n,), of each design. dimensions: (n, 3 + v). An option with which designs have other numbers, such as a
+    mass of its own, may change what they are judged by; it must meet every requirement then.
+    """
+    columns: Columns = {}
+    for place in problem.catalogues:
+        found = np.full(len(dimensions), "", dtype=np.object_)
+        for variant in distinct(variants).tolist():
+            labels = problem.variants[variant].labels
+            rows = np.flatnonzero(variants == variant)
+            serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)
+            for option in sorted(_others(problem, labels, place), key=lambda of: of.ranks[place]):
+                served = left if option.labels == labels else left & serving(option)
+                found[rows[served]] = option.labels[place]
+                left = left & ~served
+                if not left.any():
+                    break
+        columns[least_field(problem.choices[place])] = found.astype(np.str_)
+    return columns
+
+
+def _others(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
+    """Return the combinations that differ from one in a single choice at most."""
+
+    def rest(of: tuple[str, ...]) -> tuple[str, ...]:
+        return of[:place] + of[place + 1 :]
+
+    return [variant for variant in problem.catalogue if rest(variant.labels) == rest(labels)]
+
+
+class _Serving:
+    """Which designs meet all requirements with another option. What options have in common is computed once."""
+
+    def __init__(self, problem: Problem, dimensions: Array) -> None:
+        self.problem, self.dimensions = problem, dimensions
+        self._known: dict[tuple[int, int], tuple[Quantity, Array]] = {}  # with the quantity, so that its id stays
+
+    def __call__(self, option: Variant) -> Mask:
+        """Return which of the designs an option serves."""
+        designs = self.dimensions
+        served = np.ones(len(designs), np.bool_)
+        try:
+            part = self.problem.with_variant(option)
+        except InputError:  # of limits that leave nothing
+            return ~served
+        for column, ends in enumerate((option.crank, option.rod, option.offset)):
+            room = _SAME * max(abs(ends.lower), abs(ends.upper))
+            served &= (designs[:, column] >= ends.lower - room) & (designs[:, column] <= ends.upper + room)
+        side = part.slow_side()
+        if side is not None:
+            served &= side * designs[:, 2] > 0.0
+        for constraint in constraints_of(part):
+            of = part.quantity(constraint.quantity)
+            key = id(option.mechanism), id(of)
+            if key not in self._known:
+                self._known[key] = of, of.evaluate(part.mechanism, designs).values
+            served &= violated_by(constraint, self._known[key][1]) <= FEASIBLE
+        return served

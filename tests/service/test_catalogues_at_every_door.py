@@ -1,0 +1,71 @@
+"""The six gearmotors of a pusher at the command line and over HTTP: price and maker stay, the cheapest is named."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from slidercrank.service.jobs.submission import submit
+from slidercrank.service.store import Store
+from slidercrank.service.workers.worker import work
+from tests.optimise.test_catalogue_amounts import PUSHER, SIX
+from tests.service.api.fixed_front import API, client_of
+from tests.service.conftest import Command
+
+KEYS = {"choice_gearmotor", "choice_least_gearmotor", "choice_gearmotor_maker", "price_EUR"}
+
+
+def expected(design: dict[str, Any]) -> None:
+    """Compare what a design has of its catalogue with the torque that it needs."""
+    assert set(design) >= KEYS
+    assert (design["choice_gearmotor"], design["price_EUR"], design["choice_gearmotor_maker"]) == (
+        "GM 150",
+        830.0,
+        "Acme",
+    )
+    assert design["choice_least_gearmotor"] == ("GM 30" if design["peak_torque_Nm"] <= 30.0 else "GM 45")
+
+
+@pytest.fixture
+def pusher(tmp_path: Path) -> Path:
+    """Return a job file with its catalogue beside it."""
+    (tmp_path / "gearmotors.csv").write_text(SIX)
+    job = {**PUSHER, "choice": [{"name": "gearmotor", "file": "gearmotors.csv"}]}
+    (tmp_path / "pusher.json").write_text(json.dumps(job))
+    return tmp_path / "pusher.json"
+
+
+def test_commands_check_and_tell_catalogues_and_keep_their_columns(pusher: Path, command: Command) -> None:
+    checked = command("check", pusher)
+    assert "of 6 rows 1 is searched" in " ".join(checked.stdout.split())
+    done = command("optimise", pusher, "--no-figures", "--json")
+    assert done.exit_code == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert len(record["designs"]) > 3
+    for design in record["designs"]:
+        expected(design)
+    table = command("front", record["run"])
+    said = "In every design: offset 20 mm, gearmotor GM 150, gearmotor maker Acme, price EUR 830"
+    assert said in " ".join(table.stdout.split())
+    assert "GM 30" in table.stdout
+    one = " ".join(command("analyse", record["run"], "--design", 1).stdout.split())
+    assert "price 830 EUR" in one or "price EUR 830" in one
+
+
+def test_the_api_checks_catalogues_gives_their_columns_and_filters_by_price(store: Store) -> None:
+    number = submit(store, dict(PUSHER)).id
+    work(store, drain=True)
+    with client_of(store) as client:
+        checked = client.post(f"{API}/check", json={"job": PUSHER}).json()
+        assert any("of 6 rows 1 is searched" in note for note in checked["notes"])
+        found = client.get(f"{API}/jobs/{number}/designs").json()
+        for row in found["designs"]:
+            expected(row)
+        front = client.get(f"{API}/jobs/{number}/front").json()
+        groups = {column["key"]: column["group"] for column in front["columns"]}
+        assert {groups[key] for key in KEYS} == {groups["crank_mm"]}
+        look = client.post(f"{API}/preview", json={"job": PUSHER}).json()
+        assert {"name": "price", "title": "price", "unit": "EUR"} in look["names"]
