@@ -11,7 +11,7 @@ def require_no_winding(mechanism: Mechanism) -> None:
     for load in mechanism.fullest.loads:
         if load.winds:
             raise InputError(
-                f"a spring on the crank winds up with every turn; got a crank that turns through, with a {load.text}; "
+                f"a spring on the crank winds up with every turn; got a crank that turns through, with a {load.size}; "
                 'let the crank swing, [motion] kind = "swing", or give its torque over the crank angle'
             )
 
@@ -20,4 +20,4 @@ def require_no_crank_load(mechanism: Mechanism, what: str) -> None:
     """Refuse loads on the crank where an analysis has those on the slider alone; what: its subject."""
     for load in mechanism.fullest.loads:
         if load.on_crank:
-            raise InputError(f"{what} takes loads on the slider; got {load.text}; leave that load out")
+            raise InputError(f"{what} takes loads on the slider; got {load.size}; leave that load out")

@@ -24,6 +24,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _PANELS, _GRADED = 8, 1
 _CHUNK = 64
 _EQUAL = 1e-12
+_EVEN = 1e-9
+"""Of the work of a way: of what is given back on the other one no more than rounding is left."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,21 @@ def graded() -> tuple[Array, Array]:
 def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
     """Return the work of the drive on the way forth, J, for designs (n, 3 + k)."""
     return _gathered(mechanism, swing, designs, gradients, lambda rows: _forth(mechanism, swing, rows, gradients))
+
+
+def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
+    """Return the net work (n,), J, that loads do on designs over a swing and back: what a drive without friction takes.
+
+    NaN where a design cannot swing.
+    """
+
+    def both_ways(rows: Array) -> tuple[Array, Array]:
+        free = Many(mechanism, swing, rows, slopes=False, free=True)
+        ways = [_work(free, free.pieces(back=back), False)[0] for back in (False, True)]
+        total = np.add(*ways)
+        return -np.where(np.abs(total) <= _EVEN * np.abs(ways[0]), 0.0, total), np.empty((len(rows), 0))
+
+    return _gathered(mechanism, swing, designs, False, both_ways).values
 
 
 def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ...model.errors import InputError
 from ...objectives.units import closest, shown
@@ -12,11 +12,15 @@ from .values import Part
 
 @dataclass(frozen=True)
 class Kinds:
-    """The kinds of a part, each by its key. choice: all of them, for messages. remedy: where a table is of several."""
+    """The kinds of a part, each by its key. choice: all of them, for messages. remedy: where a table is of several.
+
+    meant: keys by other words that people try for them.
+    """
 
     parts: Mapping[str, type[Part]]
     choice: str
     remedy: str
+    meant: Mapping[str, str] = field(default_factory=dict)
 
     def one(self, value: object) -> object:
         """Return the value; refuse one that is no table, of no kind, or of several kinds."""
@@ -27,7 +31,7 @@ class Kinds:
         found = [key for key in self.parts if key in value]
         if not found:
             keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
-            near = [closest(key, self.parts) for key in value if isinstance(key, str)]
+            near = [self.meant.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
             meant = next((f"; did you mean {key}?" for key in near if key), "")
             raise InputError(f"must be one of {self.choice}; got {keys}{meant}")
         if len(found) > 1:

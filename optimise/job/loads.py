@@ -80,7 +80,8 @@ def _type(entry: model.Entry) -> Any:
 def _field(entry: model.Entry) -> Any:
     shape: Any = {"min_length": 2, "max_length": 1000} if entry.several else {}
     default = ... if entry.default is None else entry.default
-    return optional(entry.description, entry.example, default=default, **shape)
+    words = isinstance(default, str)
+    return optional(entry.description, entry.example, default=default, validate_default=words, **shape)
 
 
 PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables}
@@ -96,7 +97,8 @@ def _choice() -> str:
     return f"{', '.join(shapes[:-1])} or {shapes[-1]}"
 
 
-_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]], loads add up")
+_MEANT = {"resists": "opposes", "against": "opposes", "assists": "helps", "along": "helps"}
+_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]], loads add up", _MEANT)
 
 if TYPE_CHECKING:
     Load = LoadPart

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ...model.machine.loads.load import StrokePart
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import closest
 from .crank_speed import SPEED_KEYS
@@ -99,7 +100,7 @@ def _with(part: Any, steps: list[str], value: Any) -> Any:
 
 
 def _is_plain(value: object) -> bool:
-    return isinstance(value, int | float | str)
+    return isinstance(value, int | float | str | StrokePart)
 
 
 def _is_number(value: object) -> bool:

@@ -5,6 +5,7 @@ Each says in the JSON Schema what it accepts, and writes back what it reads: SI 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
@@ -21,6 +22,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from ...model.errors import InputError
+from ...model.machine.loads import load
 from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
@@ -322,6 +324,37 @@ class ToleranceOf(_Read):
         return {"anyOf": either, "examples": ["0.05 mm", "0.1 %"]}
 
 
+class PartOfStroke(_Read):
+    """Marks a value as a part of a stroke: "first 20 mm", "last 60 mm" or "whole stroke"."""
+
+    kind = kinds.LENGTH
+    _text: ClassVar = re.compile(r"\s*(?:the\s+)?(first|last|whole)\s+(.*?)\s*", re.IGNORECASE)
+
+    def read(self, value: object) -> load.StrokePart:
+        """Return the part, its length in m; raises InputError."""
+        if isinstance(value, load.StrokePart):
+            return value
+        found = self._text.fullmatch(value) if isinstance(value, str) else None
+        part = found[1].lower() if found else ""
+        if not found or (part == "whole" and found[2].lower() != "stroke"):
+            raise InputError(
+                f'must be "first" or "last" and a length, or "whole stroke"; got {shown(value)}; write it like '
+                '"last 60 mm"'
+            )
+        if part == "whole":
+            return load.StrokePart()
+        length = to_si(found[2], self.kind, sign="positive", plain=False)
+        return load.StrokePart("first" if part == "first" else "last", length)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        schema: Any = super().__get_pydantic_core_schema__(source, handler)
+        return schema | {"serialization": core_schema.plain_serializer_function_ser_schema(repr)}
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        pattern = r"^\s*([Tt]he\s+)?([Ww]hole\s+stroke|([Ff]irst|[Ll]ast)\s+.*\d.*)\s*$"
+        return {"type": "string", "pattern": pattern, "examples": ["last 60 mm"]}
+
+
 Length = Annotated[float, Physical(kinds.LENGTH)]
 PositiveLength = Annotated[float, Physical(kinds.LENGTH, "positive")]
 Radius = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
@@ -362,3 +395,4 @@ HeatCapacityRatio = Annotated[PositiveRatio, Limited("above 1", "1.4 is cold air
 PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]
+StrokePart = Annotated[load.StrokePart, PartOfStroke()]

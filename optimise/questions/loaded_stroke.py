@@ -13,16 +13,11 @@ from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
-from ..search.elimination import sheets, signs
-from ..search.sampling import first_samples
+from ..search.elimination import signs
+from .samples import samples
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
-
-_SAMPLES = 32
-"""Designs of a sheet that are looked at."""
-_SHEETS = 20
-"""Sheets that are looked at: of very many choices the first ones."""
 
 
 def expected_warnings(problem: Problem) -> list[str]:
@@ -33,12 +28,7 @@ def expected_warnings(problem: Problem) -> list[str]:
     if problem.motion is not None:  # forth and back are told apart by their drive alone
         return []
     fast, turning, sides = 0, 0, []
-    for sheet in sheets(problem)[:_SHEETS]:
-        part = problem.part(sheet.variant)
-        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), 0, 0))
-        crank, rod, offset = designs.T[:3]
-        with np.errstate(invalid="ignore"):
-            designs = designs[(crank > 0.0) & (rod > crank + np.abs(offset))]
+    for part, designs in samples(problem):
         if part.slow_stroke is not None or not part.mechanism.loads or not len(designs):
             continue
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)

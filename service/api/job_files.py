@@ -94,6 +94,10 @@ class Understood(BaseModel):
 
     name: str = Field(examples=["Feeder"])
     given: list[str] = Field(examples=[["crank speed 2400 rpm (counter-clockwise)"]])
+    loads: list[str] = Field(
+        description="of each load its size, sign, effect and range",
+        examples=[["200 N inward, resists the outward stroke, throughout"]],
+    )
     tolerances: list[str] = Field(examples=[["crank 0.05 mm"]])
     costs: list[str] = Field(examples=[[]])
     variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])

@@ -129,6 +129,7 @@ def wanted_of(problem: Problem) -> list[Wanted]:
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
     from ...optimise.problem.zero_objectives import idle_rules
+    from ...optimise.questions.driving_loads import front_driven_by_loads
     from ...optimise.questions.loaded_stroke import front_warnings
 
     found = len(front) > 0
@@ -147,7 +148,12 @@ def result_of(front: ParetoFront, run: str) -> Result:
         extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
         knee=int(front.knee()) if found else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
-        warnings=(*front.problem.warnings, *front_warnings(front), *idle_rules(front.problem)),
+        warnings=(
+            *front.problem.warnings,
+            *front_driven_by_loads(front),
+            *front_warnings(front),
+            *idle_rules(front.problem),
+        ),
         discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )

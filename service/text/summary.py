@@ -25,12 +25,13 @@ from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
+from ...optimise.questions.driving_loads import driven_by_loads
 from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.elimination import sheets
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
-    """Return a job in words: name, given, tolerances, costs, variables, rules, objectives, freedom, warnings, search.
+    """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
     Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
@@ -41,6 +42,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     return {
         "name": problem.name,
         "given": [*_motion(problem), *machine_in_words(problem, problem.mechanism), *_own(problem)],
+        "loads": [load.text for load in problem.mechanism.loads],
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
@@ -59,7 +61,13 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": free,
         "eliminated": list(sheet.eliminated),
-        "warnings": [*problem.warnings, *expected_warnings(problem), *idle_rules(problem), *idle_options(problem)],
+        "warnings": [
+            *problem.warnings,
+            *driven_by_loads(problem),
+            *expected_warnings(problem),
+            *idle_rules(problem),
+            *idle_options(problem),
+        ],
         "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
     }
 

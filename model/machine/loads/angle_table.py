@@ -31,6 +31,7 @@ from .load import (
     require_table,
     require_word,
 )
+from .words import SLIDES, effect_by_direction, range_of_angles, sized, without_steps_from_zero
 
 _ROUNDING = 1e-9  # rad
 _TURN = 2.0 * math.pi
@@ -44,7 +45,7 @@ class AngleTable(Load):
     last one that is there itself has the force before the first, from which that steps. forces: N, positive outward.
     during: the force acts in these strokes. datum: what the angles are counted from: zero, counter-clockwise, or a dead
     centre, in the sense in which the crank turns. cycle: one turn or two. turn: 0, or the one of the two turns that the
-    load is of (`two_turns`).
+    load is of (`two_turns`). drives: see `Load`.
     """
 
     angles: tuple[float, ...]
@@ -53,6 +54,7 @@ class AngleTable(Load):
     datum: AngleDatum = "zero crank angle"
     cycle: CycleAngle = "360 deg"
     turn: int = 0
+    drives: bool = False
 
     enters: ClassVar = Enters.ANGLE_TABLE
     sizes: ClassVar = ("forces",)
@@ -157,18 +159,33 @@ class AngleTable(Load):
         return passage.work(self._force(angle))
 
     @property
-    def text(self) -> str:
-        """The size of the table."""
-        datum = f" from the {self.datum}" if self.turns else ""
-        during = f"cycle of {self.cycle}" if self.cycle_turns > 1 and self.during == "cycle" else self.during
-        return f"table of {len(self.angles)} crank angles{datum}, {during}"
+    def size(self) -> str:
+        """The least and the greatest force."""
+        return sized(without_steps_from_zero(self.angles, self.forces))
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
+        """The forces in the stroke in which they act; None over the cycle, whose strokes no angle tells."""
+        if self.during == "cycle":
+            return None
+        return (self.forces, (0.0,)) if self.during == "outward stroke" else ((0.0,), self.forces)
+
+    @property
+    def effect(self) -> str:
+        """What it does to its stroke, or over the cycle to either motion."""
+        return effect_by_direction(self.forces, SLIDES, "motion") if self.push is None else super().effect
+
+    @property
+    def range(self) -> str:
+        """The ends of the table, and its cycle."""
+        return range_of_angles(self.angles, self.datum, self.cycle)
 
 
 def _of_pressures(
     pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
 ) -> AngleTable:
     forces = piston_forces(pressure_angles, head=head, **pressures)
-    return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during)
+    return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during, drives=True)
 
 
 AngleTable.tables = (

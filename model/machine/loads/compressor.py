@@ -38,7 +38,12 @@ class Compressor(Cylinder):
                 )
 
     @property
-    def text(self) -> str:
+    def effect(self) -> str:
+        """It takes work."""
+        return "takes net work over a cycle"
+
+    @property
+    def size(self) -> str:
         """Pressures, exponents and size."""
         what = "pump" if self.compression_exponent == 0.0 else "compressor"
         how = (

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from .angle_table import AngleTable
 from .load import ANGLE_DATUM, CYCLE, Entry, Passage, Table, built, points
+from .words import TURNS, effect_by_direction, sized
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,11 +38,14 @@ class CrankTable(AngleTable):
         return 0.0
 
     @property
-    def text(self) -> str:
-        """The size of the table."""
-        datum = f" from the {self.datum}" if self.turns else ""
-        cycle = f", cycle of {self.cycle}" if self.cycle_turns > 1 else ""
-        return f"table of {len(self.angles)} torques on the crank over crank angle{datum}{cycle}"
+    def size(self) -> str:
+        """The least and the greatest torque."""
+        return f"{sized(self.forces, 'N m', TURNS)} on the crank"
+
+    @property
+    def effect(self) -> str:
+        """What it does to a rotation in either sense."""
+        return effect_by_direction(self.forces, TURNS, "rotation")
 
 
 CrankTable.tables = (

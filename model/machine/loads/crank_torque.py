@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from ...checks import require_numbers
 from .load import Enters, Entry, Load, Table, built
+from .words import TURNS, effect_by_direction, sized, spring_effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,14 +55,29 @@ class CrankTorque(Load):
         return {(CrankTorque, "torque"): (self.torque,), (CrankTorque, "resistance"): (self.resistance,)}
 
     @property
-    def text(self) -> str:
+    def size(self) -> str:
         """The torques and the spring."""
-        parts = [f"{self.torque:.6g} N m on the crank, positive counter-clockwise"] if self.torque else []
-        parts += [f"{self.resistance:.6g} N m on the crank against its motion"] if self.resistance else []
+        return "; ".join(size for size, _ in self._parts) or "no torque on the crank"
+
+    @property
+    def text(self) -> str:
+        """Each torque and the spring with its effect."""
+        return "; ".join(f"{size}, {effect}" for size, effect in self._parts) or self.size
+
+    @property
+    def _parts(self) -> list[tuple[str, str]]:
+        """Sizes and effects of the torques and the spring."""
+        parts = []
+        if self.torque:
+            size = f"{sized((self.torque,), 'N m', TURNS)} on the crank"
+            parts.append((size, effect_by_direction((self.torque,), TURNS, "rotation")))
+        if self.resistance:
+            parts.append((f"{self.resistance:.6g} N m on the crank", "resists every motion"))
         if self.crank_stiffness:
             free = math.degrees(self.free_angle)
-            parts += [f"spring on the crank {self.crank_stiffness:.6g} N m/rad, free at {free:.6g} deg"]
-        return "; ".join(parts) or "no torque on the crank"
+            size = f"spring on the crank {self.crank_stiffness:.6g} N m/rad, free at {free:.6g} deg"
+            parts.append((size, spring_effect(self.crank_stiffness)))
+        return parts
 
 
 CrankTorque.tables = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -43,9 +44,19 @@ class Drag(Load):
         return True
 
     @property
-    def text(self) -> str:
+    def size(self) -> str:
         """The coefficient."""
         return f"drag, {self.drag:.6g} N s^2/m^2"
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Forces at a speed of 1 m/s."""
+        return (-self.drag,), (self.drag,)
+
+    @property
+    def range(self) -> str:
+        """All of a stroke."""
+        return "with the square of the speed"
 
 
 Drag.tables = (

@@ -70,7 +70,17 @@ class Engine(Cylinder):
         return float(self.high / (1.0 + 1.0 / self.clearance) ** self.expansion_exponent)
 
     @property
-    def text(self) -> str:
+    def drives(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def effect(self) -> str:
+        """It gives work."""
+        return "gives more work in expansion than it takes in compression"
+
+    @property
+    def size(self) -> str:
         """Pressures, exponents and size."""
         return f"two-stroke engine cycle {self._gas_text}, {self.size_text}"
 
@@ -199,7 +209,7 @@ class FourStroke(Engine):
         return 0.5 * (self.on_turn(1).stroke_work(passage) + self.on_turn(2).stroke_work(passage))
 
     @property
-    def text(self) -> str:
+    def size(self) -> str:
         """Pressures, exponents and size."""
         return f"four-stroke engine cycle {self._gas_text}, exhaust at {1e-5 * self.exhaust:.6g} bar, {self.size_text}"
 

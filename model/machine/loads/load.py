@@ -18,6 +18,7 @@ import numpy as np
 from ...arrays import Array
 from ...checks import require_all_finite
 from ...errors import InputError
+from .words import effect_in_strokes
 
 Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
 AngleDatum = Literal["zero crank angle", "inner dead centre", "outer dead centre"]
@@ -59,6 +60,17 @@ class Passage(NamedTuple):
     def work(self, force: Any) -> Array:
         """Return the work (n,), J, of a force in the middle of each step, N outward."""
         return np.asarray(np.sum(force * np.diff(self.distance, axis=1), axis=1))
+
+
+@dataclass(frozen=True)
+class StrokePart:
+    """A part of a stroke: the whole of it, or the first or last length, m."""
+
+    part: Literal["whole", "first", "last"] = "whole"
+    length: float = 0.0
+
+    def __repr__(self) -> str:
+        return "whole stroke" if self.part == "whole" else f"{self.part} {self.length!r} m"
 
 
 @dataclass(frozen=True)
@@ -208,9 +220,35 @@ class Load:
         return 0.0
 
     @property
-    def text(self) -> str:
-        """The load in a few words."""
+    def drives(self) -> bool:
+        """Whether the load says itself that it may drive the machine: gas, or a force that helps a stroke."""
+        return False
+
+    @property
+    def size(self) -> str:
+        """Its size and sign in a few words."""
         raise NotImplementedError
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
+        """The forces, N outward, that it may have in the outward and in the inward stroke; None if more decides."""
+        return None
+
+    @property
+    def effect(self) -> str:
+        """What it does to the strokes, and whether it gives back over a cycle what it takes."""
+        said = [] if self.push is None else [effect_in_strokes(*self.push)]
+        return ", ".join([*said, "no net work over a cycle"] if self.by_position and self.acts else said)
+
+    @property
+    def range(self) -> str:
+        """Where it acts."""
+        return ""
+
+    @property
+    def text(self) -> str:
+        """The load in a sentence: size and sign, effect, range."""
+        return ", ".join(filter(None, (self.size, self.effect, self.range)))
 
 
 def _listed(names: set[str]) -> str:

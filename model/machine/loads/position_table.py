@@ -27,6 +27,7 @@ from .load import (
     require_table,
     require_word,
 )
+from .words import range_of_positions, sized, without_steps_from_zero
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,13 +36,14 @@ class PositionTable(Load):
 
     positions: increasing, two equal ones where the force steps, m, from the datum: of a dead centre distances, zero or
     more. forces: N, positive outward.
-    during: the force acts in these strokes.
+    during: the force acts in these strokes. drives: see `Load`.
     """
 
     positions: tuple[float, ...]
     forces: tuple[float, ...]
     datum: Datum = "crank pivot"
     during: During = "cycle"
+    drives: bool = False
 
     enters: ClassVar = Enters.POSITION_TABLE
     sizes: ClassVar = ("forces",)
@@ -94,14 +96,25 @@ class PositionTable(Load):
         return passage.work(np.interp(at, self.positions, self.forces))
 
     @property
-    def text(self) -> str:
-        """The size of the table."""
-        return f"table of {len(self.positions)} positions from the {self.datum}, {self.during}"
+    def size(self) -> str:
+        """The least and the greatest force."""
+        return sized(without_steps_from_zero(self.positions, self.forces))
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+        """The forces in the strokes in which they act."""
+        outward, inward = self.numbers()[:2]
+        return [outward * force for force in self.forces], [inward * force for force in self.forces]
+
+    @property
+    def range(self) -> str:
+        """The ends of the table, and what holds beyond them."""
+        return range_of_positions(self.positions, self.forces, self.datum, self.during)
 
 
 def _of_pressures(pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any) -> PositionTable:
     forces = piston_forces(pressure_positions, head=head, **pressures)
-    return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during)
+    return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during, drives=True)
 
 
 PositionTable.tables = (

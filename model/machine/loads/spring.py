@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from ...checks import require_numbers
 from .load import DATUM, Datum, Enters, Entry, Load, Table, built, require_word
+from .words import spring_effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,12 @@ class Spring(Load):
         return True
 
     @property
-    def text(self) -> str:
+    def effect(self) -> str:
+        """What it does to a motion away from where it is free, and back."""
+        return spring_effect(self.stiffness)
+
+    @property
+    def size(self) -> str:
         """Stiffness and free position."""
         return f"spring {self.stiffness:.6g} N/m, free at {1e3 * self.free_position:.6g} mm from the {self.datum}"
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ...checks import require_numbers
-from .load import DURING, During, Enters, Entry, Load, Passage, Table
+from ...errors import InputError
+from .load import DURING, Datum, During, Enters, Entry, Load, Passage, StrokePart, Table
+from .position_table import PositionTable
+from .words import sized
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,11 +18,12 @@ class StrokeForce(Load):
     """A force that is constant within each stroke, N, positive outward.
 
     Equal values make a constant force; `outward=-F, inward=0` resists the outward stroke only;
-    `outward=-F, inward=F` always opposes the motion (Coulomb, of given size).
+    `outward=-F, inward=F` always opposes the motion (Coulomb, of given size). drives: see `Load`.
     """
 
     outward: float
     inward: float
+    drives: bool = False
 
     enters: ClassVar = Enters.STROKE_FORCE
     sizes: ClassVar = ("outward", "inward")
@@ -46,17 +50,52 @@ class StrokeForce(Load):
         return passage.work(self.outward if passage.outward else self.inward)
 
     @property
-    def text(self) -> str:
-        """The forces."""
-        if self.outward == self.inward:
-            return f"{self.outward:.6g} N, positive outward"
-        return f"{self.outward:.6g} N in the outward and {self.inward:.6g} N in the inward stroke, positive outward"
+    def size(self) -> str:
+        """The forces, without direction where they are equal along the motion."""
+        if self.outward == -self.inward:
+            return f"{abs(self.outward):.6g} N"
+        forces = {force: sized((force,)) for force in (self.outward, self.inward) if force}
+        return " in the outward and ".join(forces.values()) + (" in the inward stroke" if len(forces) > 1 else "")
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Both forces."""
+        return (self.outward,), (self.inward,)
+
+    @property
+    def range(self) -> str:
+        """All of a stroke."""
+        return "throughout"
 
 
-def _opposing(force: float, opposes: str) -> StrokeForce:
-    return StrokeForce(
-        outward=0.0 if opposes == "inward stroke" else -force,
-        inward=0.0 if opposes == "outward stroke" else force,
+def _opposing(force: float, opposes: str, over: StrokePart) -> Load:
+    return _along(-force, opposes, over)
+
+
+def _helping(force: float, helps: str, over: StrokePart) -> Load:
+    return _along(force, helps, over, drives=True)
+
+
+def _along(force: float, stroke: str, over: StrokePart, *, drives: bool = False) -> Load:
+    """Return a force along the motion, N, in a part of a stroke, or all of it, or of both ("motion")."""
+    outward = 0.0 if stroke == "inward stroke" else force
+    inward = 0.0 if stroke == "outward stroke" else -force
+    if over.part == "whole":
+        return StrokeForce(outward=outward, inward=inward, drives=drives)
+    if stroke == "motion":
+        raise InputError(
+            f"the {over.part} part of a stroke needs one stroke; got both, as motion; name the outward or the inward "
+            "stroke, and give each its own load"
+        )
+    ends = ("outer dead centre", "inner dead centre")
+    at: Datum = ends[(stroke == "outward stroke") == (over.part == "first")]
+    size = outward + inward
+    return PositionTable(
+        positions=(0.0, over.length, over.length),
+        forces=(size, size, 0.0),
+        datum=at,
+        during="outward stroke" if stroke == "outward stroke" else "inward stroke",
+        drives=drives,
     )
 
 
@@ -69,15 +108,33 @@ def _directed(force: float, direction: str, during: During) -> StrokeForce:
 
 
 _SIZE = Entry("force", "Resistance", "its size", "200 N")
+_STROKES = ("outward stroke", "inward stroke", "motion")
+_OVER = Entry(
+    "over",
+    "StrokePart",
+    'the part of the stroke in which it acts: "first" or "last" and a length, or the whole stroke',
+    "last 60 mm",
+    default="whole stroke",
+)
 StrokeForce.tables = (
     Table(
         "opposes",
         "OpposingForce",
         "force against a stroke or the motion",
-        "A force of constant size that opposes a stroke, or every motion (Coulomb friction of known size).",
-        (_SIZE, Entry("opposes", ("outward stroke", "inward stroke", "motion"), "what it resists", "outward stroke")),
+        "A force of constant size that resists a stroke or a part of it, or every motion (Coulomb friction of known "
+        "size).",
+        (_SIZE, Entry("opposes", _STROKES, "what it resists", "outward stroke"), _OVER),
         {"force": "100 N", "opposes": "outward stroke"},
         _opposing,
+    ),
+    Table(
+        "helps",
+        "HelpingForce",
+        "force along a stroke or the motion",
+        "A force of constant size that helps a stroke or a part of it, or every motion.",
+        (_SIZE, Entry("helps", _STROKES, "what it helps", "inward stroke"), _OVER),
+        {"force": "100 N", "helps": "inward stroke"},
+        _helping,
     ),
     Table(
         "direction",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -33,9 +33,19 @@ class Viscous(Load):
         return {Viscous: (self.coefficient,)} if moving else {}
 
     @property
-    def text(self) -> str:
+    def size(self) -> str:
         """The coefficient."""
         return f"viscous, {self.coefficient:.6g} N s/m"
+
+    @property
+    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Forces at a speed of 1 m/s."""
+        return (-self.coefficient,), (self.coefficient,)
+
+    @property
+    def range(self) -> str:
+        """All of a stroke."""
+        return "in proportion to the speed"
 
 
 Viscous.tables = (

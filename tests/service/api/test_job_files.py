@@ -143,3 +143,26 @@ def test_a_catalogue_that_is_sent_as_a_table_gives_the_options_that_no_other_one
     assert found["option"][2]["constraints"] == {"room": {"min": "3 mm"}, "peak_torque": {"max": "40 N m"}}
     for wrong, said in (("", "empty"), ("name,peak_torque max (mm)\nA,1", "unit"), ("name,crank\nA,=1", "formula")):
         assert said in refused(shared.post("/catalogue", json={"table": wrong}), 422)
+
+
+def test_check_says_of_each_load_what_it_does_and_warns_of_one_that_pushes_with_the_stroke(
+    shared: httpx.Client, pytestconfig: pytest.Config
+) -> None:
+    job = shipped(pytestconfig.rootpath)["feeder"]
+    push = {"positions": ["0 mm", "60 mm"], "forces": ["350 N", "350 N"], "measured_from": "outer dead centre"}
+    sentence = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
+    before = shared.post("/check", json={"job": job}).json()
+    assert before["loads"] == [
+        "2000 N inward, resists the outward stroke, throughout",
+        "60 N, resists both strokes, throughout",
+    ]
+    changed = job | {"load": [push | {"during": "outward stroke"}]}
+    after = shared.post("/check", json={"job": changed}).json()
+    assert after["loads"] == [sentence]
+    assert f"load: {sentence}" in after["given"]
+    (said,) = set(after["warnings"]) - set(before["warnings"])
+    assert f"load #1 ({sentence})" in said
+    helps = {"force": "350 N", "helps": "outward stroke", "over": "last 60 mm"}
+    stated = shared.post("/check", json={"job": job | {"load": [helps]}}).json()
+    assert stated["loads"] == [sentence.replace("constant", "zero")]
+    assert stated["warnings"] == before["warnings"]

@@ -66,10 +66,10 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
   const given = form.at(path);
   const text = given === undefined ? "" : typeof given === "string" ? given : JSON.stringify(given);
   const input = long ? h("textarea", { rows: 2, id: idOf(path, "c"), value: text }) : h("input", { type: "text", id: idOf(path, "c"), value: text, autocomplete: "off" });
+  if (fallback !== undefined && fallback !== null) input.placeholder = String(fallback);
   if (control !== "text") {
     input.inputMode = "decimal";
     input.classList.add("short");
-    if (fallback !== undefined && fallback !== null) input.placeholder = String(fallback);
   }
   const write = () => form.put(path, input instanceof HTMLTextAreaElement || control === "text" ? input.value || undefined : number(input));
   input.addEventListener("input", write);

@@ -10,9 +10,9 @@ const CONTROLS = "input, select, textarea";
  * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
  * page of its own. The field is registered with the form, which tells it what is wrong.
  * @param {Form.Whole} form @param {Form.Path} path @param {string} label @param {HTMLElement[]} controls @param {Form.Why | undefined} why
- * @param {{ wide?: boolean, labelled?: boolean, register?: boolean }} looks
+ * @param {{ wide?: boolean, labelled?: boolean, register?: boolean, tell?: () => void }} looks
  */
-export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true } = {}) {
+export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true, tell = undefined } = {}) {
   const inputs = controls.flatMap((one) => (one.matches(CONTROLS) ? [one] : /** @type {HTMLElement[]} */ ([...one.querySelectorAll(CONTROLS)])));
   const id = (inputs[0].id ||= idOf(path, "c"));
   const understood = h("p", { class: "understood", role: "status", hidden: true });
@@ -30,7 +30,7 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   node.addEventListener("input", ({ target }) => {
     if (target instanceof HTMLElement) target.dataset.touched = "yes";
   });
-  if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error });
+  if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error, tell });
   return node;
 }
 

@@ -7,6 +7,8 @@ import { fits } from "./motion.js";
 import { idOf, isTable } from "./path.js";
 import { points } from "./points.js";
 import { describe, words } from "./schema.js";
+import { inShownUnits } from "../lib/numbers.js";
+import { capital } from "../lib/words.js";
 
 /**
  * Return the fields of all loads, with buttons to add and to remove one.
@@ -44,12 +46,22 @@ function one(form, load, place, all) {
   const [first, second] = columns;
   const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "", { steps: true }) : null;
   const rest = Object.keys(properties ?? {}).filter((key) => !table || !columns.some((one) => one.key === key));
+  const chosen = field(form, path, "kind of load", [select], "", { tell: () => say() });
+  /** Say below the kind what the service understood of the load. */
+  function say() {
+    const loads = form.said?.understood?.loads ?? [];
+    const line = chosen.querySelector(".understood");
+    if (!(line instanceof HTMLElement)) return;
+    line.hidden = loads.length !== all.length;
+    line.textContent = line.hidden ? "" : capital(inShownUnits(loads[place]));
+  }
+  say();
   const fields = [table, rest.map((key) => byschema(form, [...path, key], { required: required?.includes(key) }))];
   return h(
     "fieldset",
     { class: "inner" },
     h("legend", {}, `Load ${place + 1}`),
-    h("div", { class: "fields" }, field(form, path, "kind of load", [select]), fields),
+    h("div", { class: "fields" }, chosen, fields),
     h("p", {}, drop),
   );
 }

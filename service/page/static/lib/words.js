@@ -65,6 +65,7 @@ const SAID = [
   [/\bat --at\b/g, "at a crank angle"],
   [/--(?=[a-z])/g, ""],
   [/require slow_stroke = "(\w+)"(?: among the constraints)?/g, (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`],
+  [/ \((?:opposes|helps)\)/g, ""],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];
 

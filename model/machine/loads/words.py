@@ -1,0 +1,85 @@
+"""A load in words: sizes, signs, effects and ranges, which `Load.text` puts together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+Ways = tuple[str, str]
+SLIDES: Ways = ("outward", "inward")
+TURNS: Ways = ("counter-clockwise", "clockwise")
+
+
+def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
+    """Return sizes and directions: "350 N outward", "up to 600 N inward". ways: of positive and negative forces."""
+    low, high = min(forces := tuple(forces)), max(forces)
+    if low < 0.0 < high:
+        return f"{-low:.6g} {unit} {ways[1]} to {high:.6g} {unit} {ways[0]}"
+    least, most = sorted((abs(low), abs(high)))
+    if not most:
+        return f"0 {unit}"
+    between = "" if least == most else f"{least:.6g} to " if least else "up to "
+    return f"{between}{most:.6g} {unit} {ways[0] if high > 0.0 else ways[1]}"
+
+
+def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
+    """Return the forces of a table without zeros at its ends that a step parts from the others."""
+    first = int(forces[0] == 0.0 and at[0] == at[1])
+    last = int(forces[-1] == 0.0 and at[-1] == at[-2])
+    return forces[first : len(forces) - last] or forces
+
+
+def effect_in_strokes(outward: Sequence[float], inward: Sequence[float]) -> str:
+    """Return what forces, N outward, do to each stroke: "helps the outward stroke"."""
+    verbs = _verb(outward), _verb([-force for force in inward])
+    if verbs[0] == verbs[1]:
+        return f"{verbs[0]} both strokes" if verbs[0] else "no effect"
+    return " and ".join(f"{verb} the {way} stroke" for verb, way in zip(verbs, SLIDES, strict=True) if verb)
+
+
+def effect_by_direction(forces: Sequence[float], ways: Ways, what: str) -> str:
+    """Return what forces do to a motion in either direction, whatever the stroke. what: "motion" or "rotation"."""
+    low, high = min(forces), max(forces)
+    if low < 0.0 < high:
+        return "helps or resists by crank angle"
+    helped, resisted = ways if high > 0.0 else ways[::-1]
+    return f"helps {helped} and resists {resisted} {what}" if low or high else "no effect"
+
+
+def spring_effect(stiffness: float) -> str:
+    """Return what a spring does to a motion away from where it is free, and back."""
+    away, back = ("resists", "helps") if stiffness >= 0.0 else ("helps", "resists")
+    return f"{away} motion away from there and {back} motion back, no net work over a cycle"
+
+
+def _verb(along: Sequence[float]) -> str:
+    """Return what forces along the motion do."""
+    helps, resists = max(along) > 0.0, min(along) < 0.0
+    if helps and resists:
+        return "partly helps and partly resists"
+    return "helps" if helps else "resists" if resists else ""
+
+
+def range_of_positions(positions: Sequence[float], forces: Sequence[float], datum: str, during: str) -> str:
+    """Return where a table over position lies, m from its datum, and what holds beyond it."""
+    low, high = (f"{1e3 * end:.6g} mm" for end in (positions[0], positions[-1]))
+    inner_end = datum == "crank pivot" or positions[0] > 0.0
+    towards = (datum, during) in (("outer dead centre", "outward stroke"), ("inner dead centre", "inward stroke"))
+    if datum == "crank pivot":
+        where = f"between {low} and {high} from the crank pivot"
+    elif during == "cycle":
+        where = f"from {low} to {high} from the {datum}" if inner_end else f"within {high} of the {datum}"
+    elif towards:
+        where = f"from {high} to {low} before the {datum}" if inner_end else f"from {high} before the {datum} to it"
+    else:
+        where = f"from {low} to {high} after the {datum}" if inner_end else f"from the {datum} to {high} after it"
+    constant = len(set(forces)) == 1
+    near, far = ("zero" if not end else "constant" if constant else sized((end,)) for end in (forces[0], forces[-1]))
+    return f"{where}; {near} nearer and {far} beyond" if inner_end and near != far else f"{where}; {far} beyond"
+
+
+def range_of_angles(angles: Sequence[float], datum: str, cycle: str) -> str:
+    """Return where a table over crank angle lies, rad from its datum, and the cycle that it repeats after."""
+    low, high = (f"{math.degrees(end):.6g}" for end in (angles[0], angles[-1]))
+    after = "of crank angle" if datum == "zero crank angle" else f"after the {datum}"
+    return f"from {low} to {high} deg {after}; periodic over {cycle}"

@@ -1,0 +1,125 @@
+"""Warning of loads that drive a machine that is not an engine: signs are turned round easily, and nothing else tells.
+
+The net work that the loads on slider and crank do on the machine over a cycle, W = integral of F dx + M d theta, is
+negative if the machine is driven, and zero for springs, weights and tables over position. It is positive for engines
+alone. A job says that it has one by a load that `drives`, gas or a force that helps, whose work does not count here, or
+by requiring a delivered work of zero or more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.machine.dissipation import load_works_over_a_turn, with_loads_alone
+from ...model.machine.loads.stroke_force import StrokeForce
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.two_turns import cycle_turns
+from ...model.machine.varying import Varying
+from ...model.signals.averages import average_torque
+from ...model.swing.work import work_of_loads
+from ...objectives.energy import DELIVERED_WORK
+from ..problem.problem import Problem
+from .samples import samples
+
+if TYPE_CHECKING:
+    from ..front.front import ParetoFront
+
+_ROUNDING = 1e-9
+"""Of the RMS torque over a cycle: a mean torque below is rounding."""
+_NAMED = 3
+"""Loads that are named one by one."""
+
+
+def driven_by_loads(problem: Problem) -> list[str]:
+    """Return the warning of loads that do positive net work within the ranges of a problem, or none."""
+    return _warning(samples(problem))
+
+
+def front_driven_by_loads(front: ParetoFront) -> list[str]:
+    """Return the warning of loads that do positive net work on designs of a front, or none."""
+    variants = np.array(front.variants or [0] * len(front), dtype=np.int64)
+    rows = [np.flatnonzero(variants == variant) for variant in np.unique(variants)]
+    return _warning((front.part(int(own[0])), front.dimensions[own]) for own in rows)
+
+
+def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
+    """Return the net work (n,), J a cycle, that loads do on designs (n, 3 + k).
+
+    loads: places of those that count; if None, all that do not say that they drive. NaN for a design that cannot move
+    as asked.
+    """
+    if loads is None:
+        loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.drives]
+    machine = _with_loads(problem.mechanism, loads)
+    if problem.motion is not None:
+        return work_of_loads(machine, problem.motion, designs)
+    if not load_works_over_a_turn(machine):
+        return np.zeros(len(designs))
+    found = average_torque(with_loads_alone(machine), designs)
+    mean = np.where(np.abs(found.mean) > _ROUNDING * found.rms_over_angle, found.mean, 0.0)
+    return -2.0 * math.pi * cycle_turns(machine) * machine.direction * mean
+
+
+def _with_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
+    """Return the machine with nothing in the place of the loads that do not count."""
+    others = set(range(len(mechanism.loads))).difference(counted)
+    if not others:
+        return mechanism
+
+    def without(item: Varying) -> Varying:
+        sets = tuple(each for each in item.sets if not any(each[0].startswith(f"loads.{k}.") for k in others))
+        return replace(item, sets=sets, idle=not sets)
+
+    nothing = StrokeForce(outward=0.0, inward=0.0)
+    loads = tuple(nothing if k in others else load for k, load in enumerate(mechanism.loads))
+    return replace(mechanism, loads=loads, varying=tuple(map(without, mechanism.varying)))
+
+
+def _delivers(problem: Problem) -> bool:
+    """Whether every design must deliver work."""
+    return any(
+        constraint.quantity == DELIVERED_WORK.name and constraint.lower is not None and constraint.lower >= 0.0
+        for constraint in problem.constraints
+    )
+
+
+def _warning(parts: Iterable[tuple[Problem, Array]]) -> list[str]:
+    """Return the warning of designs, each with the problem of their choices."""
+    works: list[float] = []
+    what, named, count = "loads", "", 0
+    for part, designs in parts:
+        if _delivers(part):
+            continue
+        work = net_work(part, designs)
+        drives = work > 0.0
+        count += int(np.isfinite(work).sum())
+        works += work[drives].tolist()
+        if not named and drives.any():
+            named = _named(part, designs[drives][:1])
+            what += " that are not stated to drive" if any(load.drives for load in part.mechanism.loads) else ""
+    if not works:
+        return []
+    where = "in every design" if len(works) == count else "in a part of the designs"
+    ends = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(works), max(works))))
+    required = "" if part.motion is not None else f", or require a {DELIVERED_WORK.short} of at least 0 J"
+    return [
+        f"{where} {what} do more work on the machine than they take, by {ends} J a cycle: {named}; reverse the sign of "
+        "what should resist, or state it as a force against a stroke (opposes); state what should drive as a force "
+        f"along one (helps){required}"
+    ]
+
+
+def _named(part: Problem, design: Array) -> str:
+    """Return the loads that do positive net work on a design, numbered as in the job."""
+    found = [
+        f"load #{k + 1} ({load.text})"
+        for k, load in enumerate(part.mechanism.loads)
+        if not load.drives and net_work(part, design, [k])[0] > 0.0
+    ]
+    return " and ".join(found[:_NAMED])

@@ -1,0 +1,53 @@
+"""A load that pushes with the stroke: what `check`, a front and its report say of it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.service.report.document import Facts, Paragraph
+from slidercrank.service.report.job_section import job_section
+from slidercrank.service.report.subject import Subject
+from slidercrank.service.runs.result import result_of
+from tests.service import fronts
+from tests.service.conftest import Command
+
+PUSH = """
+[[load]]
+positions = ["0 mm", "60 mm"]
+forces = ["350 N", "350 N"]
+measured_from = "outer dead centre"
+during = "outward stroke"
+"""
+SENTENCE = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
+QUESTION = f"in every design loads do more work on the machine than they take, by 98 J a cycle: load #1 ({SENTENCE})"
+
+
+def test_check_says_of_a_load_what_it_does_and_questions_one_that_pushes(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text() + PUSH)
+    found = command("check", job).stdout
+    assert f"load: {SENTENCE}" in found
+    assert QUESTION in found
+    record = json.loads(command("check", job, "--json").stdout)
+    assert record["loads"] == [SENTENCE]
+    assert any(sentence.startswith(QUESTION) for sentence in record["warnings"])
+    job.write_text(job.read_text().replace('"350 N"', '"-350 N"'))
+    found = command("check", job).stdout
+    assert "load: 350 N inward, resists the outward stroke, from 60 mm before" in found
+    assert "do more work" not in found
+
+
+def test_a_report_of_a_design_says_both_too() -> None:
+    push = PositionTable(
+        positions=(0.0, 0.06), forces=(350.0, 350.0), datum="outer dead centre", during="outward stroke"
+    )
+    found = fronts.front(fronts.FOUR[:2], designs=4, mechanism=replace(fronts.MACHINE, loads=(push,)))
+    result = result_of(found, "kept")
+    assert any(sentence.startswith(QUESTION) for sentence in result.warnings)
+    facts, *warned = job_section(Subject(found.problem, result, 1, run="kept", versions={})).blocks
+    assert isinstance(facts, Facts)
+    assert f"load: {SENTENCE}" in facts.rows["Given"]
+    assert any(isinstance(each, Paragraph) and QUESTION in each.text for each in warned)
