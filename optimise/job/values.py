@@ -346,9 +346,9 @@ class PartOfStroke(_Read):
         length = to_si(found[2], self.kind, sign="positive", plain=False)
         return load.StrokePart("first" if part == "first" else "last", length)
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        schema: Any = super().__get_pydantic_core_schema__(source, handler)
-        return schema | {"serialization": core_schema.plain_serializer_function_ser_schema(repr)}
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
+        written = core_schema.plain_serializer_function_ser_schema(repr)
+        return core_schema.with_info_plain_validator_function(self._noted, serialization=written)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         pattern = r"^\s*([Tt]he\s+)?([Ww]hole\s+stroke|([Ff]irst|[Ll]ast)\s+.*\d.*)\s*$"

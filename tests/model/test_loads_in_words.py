@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import pytest
@@ -21,7 +21,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from tests.model.virtual_work import load_force, outward_motion, path, stroke_ends
 
 _VERBS = "partly helps and partly resists|helps|resists"
-OUTER, OUTWARD = "outer dead centre", "outward stroke"
+OUTER: Final = "outer dead centre"
+OUTWARD: Final = "outward stroke"
 
 
 @pytest.mark.parametrize(

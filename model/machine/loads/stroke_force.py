@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from ...checks import require_numbers
 from ...errors import InputError
-from .load import DURING, Datum, During, Enters, Entry, Load, Passage, StrokePart, Table
+from .load import DURING, During, Enters, Entry, Load, Passage, StrokePart, Table
 from .position_table import PositionTable
 from .words import sized
 
@@ -87,13 +87,12 @@ def _along(force: float, stroke: str, over: StrokePart, *, drives: bool = False)
             f"the {over.part} part of a stroke needs one stroke; got both, as motion; name the outward or the inward "
             "stroke, and give each its own load"
         )
-    ends = ("outer dead centre", "inner dead centre")
-    at: Datum = ends[(stroke == "outward stroke") == (over.part == "first")]
+    from_outer = (stroke == "outward stroke") == (over.part == "last")
     size = outward + inward
     return PositionTable(
         positions=(0.0, over.length, over.length),
         forces=(size, size, 0.0),
-        datum=at,
+        datum="outer dead centre" if from_outer else "inner dead centre",
         during="outward stroke" if stroke == "outward stroke" else "inward stroke",
         drives=drives,
     )
