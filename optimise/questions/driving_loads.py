@@ -38,7 +38,7 @@ _NAMED = 3
 
 def driven_by_loads(problem: Problem) -> list[str]:
     """Return the warning of loads that do positive net work within the ranges of a problem, or none."""
-    return _warning(samples(problem))
+    return _warning(samples(problem)) if any(map(_may_be_driven, problem.parts())) else []
 
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
@@ -81,12 +81,16 @@ def _with_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
     return replace(mechanism, loads=loads, varying=tuple(map(without, mechanism.varying)))
 
 
-def _delivers(problem: Problem) -> bool:
-    """Whether every design must deliver work."""
-    return any(
+def _may_be_driven(problem: Problem) -> bool:
+    """Whether loads may drive the machine that neither say so nor are excused by delivered work that is required.
+
+    It spares most problems the kernels of the torque.
+    """
+    delivers = any(
         constraint.quantity == DELIVERED_WORK.name and constraint.lower is not None and constraint.lower >= 0.0
         for constraint in problem.constraints
     )
+    return not delivers and any(not (load.drives or load.resists) for load in problem.mechanism.fullest.loads)
 
 
 def _warning(parts: Iterable[tuple[Problem, Array]]) -> list[str]:
@@ -94,9 +98,7 @@ def _warning(parts: Iterable[tuple[Problem, Array]]) -> list[str]:
     works: list[float] = []
     what, named, count = "loads", "", 0
     for part, designs in parts:
-        if _delivers(part):
-            continue
-        work = net_work(part, designs)
+        work = net_work(part, designs) if _may_be_driven(part) else np.zeros(len(designs))
         drives = work > 0.0
         count += int(np.isfinite(work).sum())
         works += work[drives].tolist()

@@ -38,6 +38,11 @@ class Compressor(Cylinder):
                 )
 
     @property
+    def resists(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def effect(self) -> str:
         """It takes work."""
         return "takes net work over a cycle"

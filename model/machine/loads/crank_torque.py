@@ -55,6 +55,11 @@ class CrankTorque(Load):
         return {(CrankTorque, "torque"): (self.torque,), (CrankTorque, "resistance"): (self.resistance,)}
 
     @property
+    def resists(self) -> bool:
+        """Whether there is no constant torque."""
+        return not self.torque
+
+    @property
     def size(self) -> str:
         """The torques and the spring."""
         return "; ".join(size for size, _ in self._parts) or "no torque on the crank"

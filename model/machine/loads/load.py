@@ -235,6 +235,14 @@ class Load:
         return None
 
     @property
+    def resists(self) -> bool:
+        """Whether it certainly does no net work on the machine over a cycle."""
+        if self.push is None:
+            return self.by_position
+        outward, inward = self.push
+        return self.by_position or (max(outward) <= 0.0 and min(inward) >= 0.0)
+
+    @property
     def effect(self) -> str:
         """What it does to the strokes, and whether it gives back over a cycle what it takes."""
         said = [] if self.push is None else [effect_in_strokes(*self.push)]
