@@ -73,8 +73,13 @@ def load_job(
 
 
 def warn_of(problem: Problem) -> None:
-    """Raise a warning of Python for each warning of a problem, in the name of whoever calls the caller."""
-    for sentence in problem.warnings:
+    """Raise a warning of Python for each warning of a problem, in the name of whoever calls the caller.
+
+    And for loads that drive it.
+    """
+    from ..search.driving_loads import driven_by_loads
+
+    for sentence in (*problem.warnings, *driven_by_loads(problem)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 
 

@@ -14,7 +14,7 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
 from ..search.elimination import signs
-from .samples import samples
+from ..search.samples import samples
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront

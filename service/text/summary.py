@@ -25,8 +25,8 @@ from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
-from ...optimise.questions.driving_loads import driven_by_loads
 from ...optimise.questions.loaded_stroke import expected_warnings
+from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import sheets
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputWarning
 from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.drag import Drag
@@ -20,9 +21,10 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.tables import problem as stated
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.questions.driving_loads import driven_by_loads, front_driven_by_loads, net_work
-from slidercrank.optimise.questions.samples import samples
+from slidercrank.optimise.search.driving_loads import driven_by_loads, front_driven_by_loads, net_work
+from slidercrank.optimise.search.samples import samples
 from slidercrank.optimise.solve import solve
 from tests.model.test_loads_in_words import random_load
 from tests.model.virtual_work import crank_torque, path, slider_load
@@ -226,3 +228,11 @@ def test_the_front_has_the_warning_too() -> None:
     (said,) = front_driven_by_loads(solve(problem(PUSH)))
     assert said.startswith("in every design loads do more work on the machine than they take")
     assert front_driven_by_loads(solve(problem(PRESS))) == []
+
+
+def test_python_warns_once_of_a_problem_whose_loads_drive_it() -> None:
+    with pytest.warns(InputWarning, match="do more work on the machine than they take") as caught:
+        asked = stated(deepcopy(JOB))
+    asked.evaluate([[0.05, 0.3, 0.02]])
+    assert len(caught) == 1
+    assert caught[0].filename == __file__

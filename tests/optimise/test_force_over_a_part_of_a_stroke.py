@@ -14,7 +14,7 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.optimise.job import Job, job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.questions.driving_loads import net_work
+from slidercrank.optimise.search.driving_loads import net_work
 
 LENGTHS = {"crank": ["20 mm", "100 mm"], "rod": ["200 mm", "400 mm"], "offset": ["0 mm", "50 mm"]}
 

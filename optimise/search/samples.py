@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from ...model.arrays import Array
 from ..problem.problem import Problem
-from ..search.elimination import sheets
-from ..search.evaluation import Evaluator
-from ..search.sampling import first_samples
+from .elimination import sheets
+from .evaluation import Evaluator
+from .sampling import first_samples
 
 _SAMPLES = 32
 """Designs of a sheet."""

@@ -43,9 +43,9 @@ def driven_by_loads(problem: Problem) -> list[str]:
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
     """Return the warning of loads that do positive net work on designs of a front, or none."""
-    variants = np.array(front.variants or [0] * len(front), dtype=np.int64)
-    rows = [np.flatnonzero(variants == variant) for variant in np.unique(variants)]
-    return _warning((front.part(int(own[0])), front.dimensions[own]) for own in rows)
+    variants = front.variants or (0,) * len(front)
+    rows = [[row for row, own in enumerate(variants) if own == variant] for variant in sorted({*variants})]
+    return _warning((front.part(own[0]), front.dimensions[own]) for own in rows)
 
 
 def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
