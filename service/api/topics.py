@@ -11,7 +11,6 @@ from pydantic_core import to_json
 
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
-from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
 from ..runs.result import json_ready
 from ..topics.discovery import TOPICS
@@ -139,7 +138,7 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
         found = asked.of(of, shown)
         numbers = found.numbers(over(LONGEST_TOPICS))
         blocks = [BlockModel(**vars(block)) for block in told(found, numbers, asked.units)]
-        record = record_in(json_ready(numbers), asked.units)
+        record = found.numbers_in(json_ready(numbers), asked.units)
         answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
         return (shown.key,), to_json(answer)
 

@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
 from ..designs.selection import value_of
-from ..designs.shown_units import record_in, row_in
+from ..designs.shown_units import row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -109,8 +109,7 @@ def analyse(
         _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
     if json:
-        record = record_in(found.record(), units)
-        give(json_text(record | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
+        give(json_text(found.record(units) | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
         from ..topics.told import show_in
 

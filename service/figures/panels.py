@@ -14,6 +14,7 @@ from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from . import style
+from .numerals import shown
 from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet
 
 Array = NDArray[np.float64]
@@ -80,7 +81,8 @@ def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
     _scale(axes, panel)
     _name(axes, panel)
     ink = style.VERMILION if any(line.points for line in panel.lines) else style.MUTED
-    style.title_panel(axes, panel.title, panel.note, ink)
+    note = panel.note.format(*map(shown, panel.noted)) if panel.noted else panel.note
+    style.title_panel(axes, panel.title, note, ink)
     axes.tick_params(labelbottom=across)
     if across:
         axes.set_xlabel(panel.across, fontsize=style.TEXT)

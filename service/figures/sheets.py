@@ -8,9 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.linkage.linkage import Linkage
-from .numerals import shown
-
 Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
 _TURN = 2.0 * np.pi
@@ -37,7 +34,8 @@ class Panel:
     """Lines over a common axis. title, across: with unit. names: (text, x, y) of what is named in the drawing.
 
     equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. level: a
-    horizontal line, with its name. shaded: parts of the axis (from, to). note: at the right of the title.
+    horizontal line, with its name. shaded: parts of the axis (from, to). note: at the right of the title, with {} for
+    each of the values `noted`, in the unit of the title.
     """
 
     title: str
@@ -49,6 +47,7 @@ class Panel:
     level: tuple[str, float] | None = None
     shaded: tuple[tuple[float, float], ...] = ()
     note: str = ""
+    noted: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -68,15 +67,15 @@ class Sheet:
     stacked: bool = False
 
 
-def over_turn(title: str, *lines: Line, level: tuple[str, float] | None = None, note: str = "") -> Panel:
+def over_turn(
+    title: str,
+    *lines: Line,
+    level: tuple[str, float] | None = None,
+    note: str = "",
+    noted: tuple[float, ...] = (),
+) -> Panel:
     """Return a panel of lines over the crank angle."""
-    return Panel(title, CRANK_ANGLE, lines, turns=True, level=level, note=note)
-
-
-def lengths(linkage: Linkage) -> str:
-    """Return the dimensions of a linkage in words."""
-    crank, rod, offset = (shown(1e3 * float(length)) for length in (linkage.crank, linkage.rod, linkage.offset))
-    return f"crank {crank}, rod {rod}, offset {offset} mm"
+    return Panel(title, CRANK_ANGLE, lines, turns=True, level=level, note=note, noted=noted)
 
 
 def turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:

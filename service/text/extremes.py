@@ -18,7 +18,7 @@ def show_extremes(console: Console, title: str, curves: Mapping[str, Mapping[str
     """Write a line for each curve of a record: its extremes, each with crank angle and slider position."""
     console.print(title, style="bold", soft_wrap=True)
     unit = next((unit for entry in curves.values() for _, unit in [_place(entry, "least")]), "mm")
-    heads = ("curve", ">least", ">at\ndeg", f">slider\n{unit}", ">greatest", ">at\ndeg", f">slider\n{unit}", "unit")
+    heads = ("curve", ">least", ">at,\ndeg", f">slider,\n{unit}", ">greatest", ">at,\ndeg", f">slider,\n{unit}", "unit")
     rows = table(*heads, ruled=True)
     for entry in curves.values():
         rows.add_row(*extremes_line(entry))

@@ -134,6 +134,11 @@ def told(numbers: Mapping[str, Any], key: str, remark: str = "") -> Line:
     return words, numbers[key], unit_text(unit), ", ".join(remarks)
 
 
+def compared(numbers: Mapping[str, Any], key: str, words: str) -> str:
+    """Return a remark on a number, with the unit of its key: "12.5 N m without friction"."""
+    return f"{numbers[key]:.6g} {unit_text(split_unit(key)[1])} {words}"
+
+
 def plain(value: Any) -> float | None:
     """Return a number that JSON can have: None for what is not finite."""
     number = float(value)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
+from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, rows_of
 from .discovery import TOPICS
 from .topic import TopicOfDesign
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...model.swing.swing import Swing
+    from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
     from ..designs.stored_designs import StoredDesign
 
@@ -35,9 +37,11 @@ class Analysis:
     refused: list[str]
     undefined: dict[str, str] | None = None
 
-    def record(self) -> dict[str, Any]:
+    def record(self, units: System = "metric") -> dict[str, Any]:
         """Return all numbers of the design and of its topics, for JSON, and the reasons of those that are undefined."""
-        return self.row | self.found | ({} if self.undefined is None else {"undefined": self.undefined})
+        topics = {topic.name: topic.numbers_in(self.found[topic.name], units) for topic in self.topics}
+        undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
+        return row_in(self.row, units) | topics | undefined
 
 
 def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> tuple[Row, dict[str, str]]:

@@ -13,8 +13,7 @@ from .block import Block
 from .exact_numbers import TAG, changed, plain
 
 _NUMBER = rf"[-+−]?\d[\d.]*(?:e[-+]?\d+)?{TAG}"
-_JOINED = rf"{_NUMBER}(?:(?:, | to | and | or | x | / | ± ){_NUMBER})*"
-_FIRST = re.compile(rf"({_NUMBER})( without .+)", re.DOTALL)  # a remark that compares with another value of the line
+_JOINED = rf"(?:± )?{_NUMBER}(?:(?:, | to | and | or | x | / | ± ){_NUMBER})*"
 _LEAST_DIGITS = 4  # 0.7 mm is 0.02756 in
 
 
@@ -83,6 +82,7 @@ def _panel(panel: Panel) -> Panel:
         level=None if panel.level is None else (panel.level[0], up * panel.level[1]),
         shaded=tuple((along * start, along * end) for start, end in panel.shaded),
         note=sentence_in_inches(panel.note),
+        noted=tuple(up * value for value in panel.noted),
     )
 
 
@@ -105,10 +105,7 @@ def _cell(cell: str, unit: str | None, *, own: bool) -> str:
         return sentence_in_inches(cell)
     if cell == unit and not own:
         return _units()[unit][0]
-    if re.fullmatch(_JOINED, cell):
-        return _scaled(cell, unit)
-    compared = _FIRST.fullmatch(cell)
-    return f"{_scaled(compared[1], unit)}{plain(compared[2])}" if compared else sentence_in_inches(cell)
+    return _scaled(cell, unit) if re.fullmatch(_JOINED, cell) else sentence_in_inches(cell)
 
 
 def _with_unit(numbers: str, unit: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -37,25 +38,20 @@ class _Collecting(Console):
 
 def told(topic: TopicOfDesign, numbers: dict[str, Any], units: System = "metric") -> Sequence[Block]:
     """Return the text of a topic on its numbers, metric as they are, as sentences and tables in units."""
-    screen = _Collecting()
-    if units == "metric":
-        topic.show(screen, numbers)
-        return screen.blocks
-    from .exact_numbers import exact
-    from .inches import block_in_inches
-
-    topic.show(screen, exact(numbers))
-    return [block_in_inches(block) for block in screen.blocks]
+    return [
+        replace(block, heads=tuple(" ".join(head.split()) for head in block.heads))
+        for block in _blocks(topic, numbers, units)
+    ]
 
 
 def show_in(screen: Console, topic: TopicOfDesign, numbers: dict[str, Any], units: System) -> None:
     """Write a topic on a screen in a system of units."""
     from ..text.tables import print_table, table
 
-    if units == "metric":
-        topic.show(screen, numbers)
+    if units == "metric" or topic.shows_any_units:
+        topic.show(screen, topic.numbers_in(numbers, units))
         return
-    for block in told(topic, numbers, units):
+    for block in _blocks(topic, numbers, units):
         if not block.rows:
             screen.print(block.sentence, style="bold" if block.heading else None, soft_wrap=True)
             continue
@@ -66,10 +62,23 @@ def show_in(screen: Console, topic: TopicOfDesign, numbers: dict[str, Any], unit
         print_table(screen, rows)
 
 
+def _blocks(topic: TopicOfDesign, numbers: dict[str, Any], units: System) -> Sequence[Block]:
+    """Return the text of `told`, the heads of tables with their line breaks."""
+    screen = _Collecting()
+    if units == "metric" or topic.shows_any_units:
+        topic.show(screen, topic.numbers_in(numbers, units))
+        return screen.blocks
+    from .exact_numbers import exact
+    from .inches import block_in_inches
+
+    topic.show(screen, exact(numbers))
+    return [block_in_inches(block) for block in screen.blocks]
+
+
 def _table_block(table: Table) -> Block:
     columns = [[_plain(cell) for cell in column.cells] for column in table.columns]
     return Block(
-        heads=tuple(" ".join(_plain(column.header).split()) if table.show_header else "" for column in table.columns),
+        heads=tuple(_plain(column.header) if table.show_header else "" for column in table.columns),
         right=tuple(column.justify == "right" for column in table.columns),
         rows=tuple(zip(*columns, strict=True)),
     )

@@ -25,7 +25,8 @@ class Topic:
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
     the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. A function
-    `prepare` of that module, if it has one, gives further options for numbers and figure.
+    `prepare` of that module, if it has one, gives further options for numbers and figure. A function `in_units`, if it
+    has one, gives the numbers in a system of units, of which `show` then takes any.
     """
 
     package: str
@@ -65,8 +66,20 @@ class TopicOfDesign:
         found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
         return found
 
+    def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
+        """Return the topic's numbers, metric as they are, in a system of units, for JSON."""
+        from ..designs.shown_units import record_in
+
+        found: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
+        return found
+
+    @property
+    def shows_any_units(self) -> bool:
+        """Whether `show` takes what `numbers_in` gives, not only metric numbers."""
+        return hasattr(self._analysis, "in_units")
+
     def show(self, screen: Console, numbers: dict[str, Any]) -> None:
-        """Write the topic's numbers, metric as they are, for people."""
+        """Write the topic's numbers for people; metric ones, unless it shows any units."""
         self._analysis.show(screen, numbers)
 
     def draw(self, folder: Path, units: System = "metric") -> Path:

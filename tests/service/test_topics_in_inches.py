@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,8 +13,16 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.objectives.kinds import SHOWN, unit_text
-from slidercrank.service.figures.sheets import Line, Panel, Sheet
+from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics
+from slidercrank.objectives.kinds import SHOWN, System, unit_text
+from slidercrank.service.designs.columns import key_in
+from slidercrank.service.designs.shown_units import record_in
+from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.figures.sheets import Line, Panel, Sheet, over_turn
 from slidercrank.service.topics.block import Block
 from slidercrank.service.topics.discovery import TOPICS
 from slidercrank.service.topics.exact_numbers import exact
@@ -49,13 +59,18 @@ def test_numbers_of_a_table_have_the_unit_of_their_column_or_of_their_row() -> N
     block = Block(
         heads=("curve", "least", "at deg", "slider mm", "e = 25.4 mm", "unit"),
         right=(False,) * 6,
-        rows=(("torque", "1", "90.00", "25.4", "7 %", "N m"), ("ratio", "1.5", "30", "50.8 / 76.2", "", "")),
+        rows=(
+            ("torque", "1", "90.00", "25.4", "7 %", "N m"),
+            ("ratio", "1.5", "30", "50.8 / 76.2", "", ""),
+            ("play", "25.4", "", "", "± 50.8", "mm"),
+        ),
     )
     found = block_in_inches(block)
     assert found.heads == ("curve", "least", "at deg", "slider in", "e = 1 in", "unit")
     assert found.rows == (
         ("torque", f"{1 / LBF_IN:.4g}", "90.00", "1", "7 %", "lbf in"),
         ("ratio", "1.5", "30", "2 / 3", "", ""),
+        ("play", "1", "", "", "± 2", "in"),
     )
 
 
@@ -71,6 +86,41 @@ def test_no_topic_tells_a_metric_unit(name: str) -> None:
         assert len(inch.rows) == len(metric.rows)
         text += [inch.sentence, *inch.heads, *(cell for row in inch.rows for cell in row)]
     assert [one for one in text if re.search(rf"(?:^|\s)(?:{METRIC})(?![\w^/²³])", one)] == []
+
+
+def values_of(record: Any, key: str = "") -> Iterator[tuple[str, float]]:
+    """Yield the numbers of a record, each with its key."""
+    if isinstance(record, dict | list):
+        for name, value in record.items() if isinstance(record, dict) else ((key, value) for value in record):
+            yield from values_of(value, name)
+    elif isinstance(record, float):
+        yield key, record
+
+
+MACHINES: dict[str, dict[str, Any]] = {
+    "balance": {"counterweight": Counterweight(mass=1.713, radius=0.0623)},
+    "cylinders": {"arrangement": Arrangement(phases=(0.0, 2.17), places=(-0.0513, 0.0513))},
+    "extremes": {},
+    "friction": {"friction": Friction(guide=0.0837)},
+    "motor": {},
+    "uneven_speed": {"speed_profile": Harmonics(cosines=(0.0, 0.0513))},
+}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_no_topic_writes_a_metric_number_in_inches(name: str) -> None:
+    machine = replace(fronts.MACHINE, **MACHINES[name])
+    topic = TOPICS[name].of(machine, Linkage(0.1237, 0.3519, 0.0811))
+    record = topic.numbers(lambda: False)
+    metric, other = set[str](), set[str]()
+    for key, value in values_of(record):
+        (other if key_in(key, "inch")[1] == 1.0 else metric).update(f"{abs(value):.{n}g}" for n in (4, 5, 6))
+    other |= {f"{abs(value):.{n}g}" for _, value in values_of(record_in(record, "inch")) for n in (4, 5, 6)}
+    blocks = told(topic, record, "inch")
+    text = [*(block.sentence for block in blocks), *(cell for block in blocks for row in block.rows for cell in row)]
+    written = {number for one in text for number in re.findall(r"\d+\.\d+(?:e[-+]\d+)?", one)}
+    assert len(written & other) > 5
+    assert written & (metric - other) == set()
 
 
 def test_a_motor_in_inches_has_the_numbers_of_its_json() -> None:
@@ -96,6 +146,75 @@ def test_axes_of_a_figure_are_changed_with_all_that_is_drawn() -> None:
     np.testing.assert_array_equal(other.lines[0].x, x)
 
 
+def test_the_figure_of_a_topic_has_lengths_and_extremes_in_inches() -> None:
+    from slidercrank.service.topics.extremes.analysis import figure
+
+    metric = figure(fronts.MACHINE, Linkage(0.1237, 0.3519, 0.0811))
+    inch = sheet_in_inches(metric)
+    assert inch.subtitle == "crank 4.87 in, rod 13.85 in, offset 3.193 in"
+    for one, other in zip(metric.panels, inch.panels, strict=True):
+        ends = [(float(line.y.min()), float(line.y.max())) for line in other.lines if line.points]
+        assert ends == [pytest.approx(sorted(other.noted))]
+        assert one.note == other.note
+        assert one.note.count("{}") == 2
+
+
+def test_the_drawn_note_of_a_panel_has_its_values() -> None:
+    line = Line("", np.array([0.0, 360.0]), np.array([1.0, 2.0]))
+    figure = draw_sheet(Sheet("", "", (over_turn("force, lbf", line, note="{} at 3°", noted=(-1.23456,)),)))
+    assert figure.axes[0].get_title(loc="right") == "−1.235 at 3°"
+
+
+def test_heads_of_a_table_have_their_lines_in_both_systems(command: Command) -> None:
+    given = ("analyse", "--crank", "120 mm", "--rod", "350 mm", "--offset", "80 mm", "--speed", "60 rpm")
+    for units, length, speed in (("metric", "mm", "m/s"), ("inch", "in", "in/s")):
+        text = command(*given, "--show", "extremes", "--units", units).stdout
+        assert re.search(rf"at, +slider, +at, +slider, *\n.* deg +{length} +greatest +deg +{length} +unit", text)
+        assert re.search(rf"slider velocity .* {speed} *\n", text)
+
+
+def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() -> None:
+    topic = TOPICS["approximations"].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
+    record = topic.numbers(lambda: False)
+    expected: tuple[tuple[System, str], ...] = (("metric", "115 mm"), ("inch", "4.528 in"))
+    for units, farthest in expected:
+        _, table, note = told(topic, record, units)
+        assert table.heads[3:] == ("error", "0 %", "25 %", "50 %", "75 %", "100 %")
+        assert note.sentence.endswith(f"with other offsets, in % of {farthest}.")
+
+
+def test_sensitivities_are_per_inch_in_text_and_json() -> None:
+    topic = TOPICS["sensitivity"].of(Mechanism(speed=30.0, slider_mass=0.8), Linkage(0.12, 0.35, 0.08))
+    record = topic.numbers(lambda: False)
+    metric, inch = (
+        {row["quantity"]: row for row in of["quantities"]} for of in (record, topic.numbers_in(record, "inch"))
+    )
+    for name, unit, factor in (
+        ("peak_torque", "lbf in", 1.0 / LBF_IN),
+        ("stroke", "in", 1.0 / 25.4),
+        ("time_ratio", "", 1.0),
+    ):
+        assert inch[name]["unit"] == unit
+        assert not [key for key in inch[name] if "_mm" in key]
+        for key, value in metric[name].items():
+            scale = factor * 25.4 if "_per_mm" in key else 1.0 if "percent" in key else factor
+            if isinstance(value, float):
+                assert inch[name][key.replace("_per_mm", "_per_in")] == pytest.approx(scale * value, rel=1e-12)
+    head, table, *_ = told(topic, record, "inch")
+    assert head.sentence.startswith("Change of each quantity for 1 in more of a dimension")
+    stroke = next(row for row in table.rows if row[0] == "stroke")
+    assert stroke[1:4] == (f"{inch['stroke']['value']:.5g}", "in", f"{inch['stroke']['crank_per_in']:+.4g}")
+
+
+@pytest.mark.slow  # every derivative of every quantity
+def test_the_command_line_sends_sensitivities_per_inch(tmp_path: Any, command: Command) -> None:
+    given = ("analyse", fronts.job_file(tmp_path), "--crank", "120 mm", "--rod", "350 mm", "--offset", "80 mm")
+    found = command(*given, "--show", "sensitivity", "--json", "--units", "inch").stdout
+    rows = {row["quantity"]: row for row in json.loads(found)["sensitivity"]["quantities"]}
+    assert rows["rod_to_crank"]["crank_per_in"] == pytest.approx(-350.0 / 120.0**2 * 25.4)
+    assert rows["stroke"]["unit"] == "in"
+
+
 def test_the_command_line_tells_a_topic_in_the_units_that_are_asked_for(tmp_path: Any, command: Command) -> None:
     job = fronts.job_file(tmp_path)
     given = ("analyse", job, "--crank", "120 mm", "--rod", "350 mm", "--offset", "80 mm", "--show", "motor")
@@ -118,10 +237,10 @@ def test_text_in_inches_has_every_digit_of_its_numbers() -> None:
             sentence_in_inches(f'"{one:.4g} mm" typed, {-other:.6g} m')
             == f'"{value:.4g} mm" typed, {-1e-3 * value:.6g} m'
         )
-        rows = (("a", f"{one:.3g}", f"{one:.6g} without it {one:.4g}", f"{one:.2f} x"),)
+        rows = (("a", f"{one:.3g}", f"{one:.6g} mm without it", f"{one:.2f} x"),)
         heads = ("what", "size, mm", "of, mm", f"at {one:.4g} deg")
         block = block_in_inches(Block(heads=heads, right=(False,) * 4, rows=rows))
-        assert block.rows == (("a", f"{inch:.4g}", f"{inch:.6g} without it {value:.4g}", f"{value:.2f} x"),)
+        assert block.rows == (("a", f"{inch:.4g}", f"{inch:.6g} in without it", f"{value:.2f} x"),)
         assert block.heads[1:] == ("size, in", "of, in", f"at {value:.4g} deg")
     assert exact(float("inf")) == np.inf
     assert f"{exact(float('nan')):.4g} {exact(float('-inf')):.3g}" == "nan -inf"

@@ -13,7 +13,7 @@ from ....model.classical.lumped import rotating_and_reciprocating
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ...figures.numerals import shown
-from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn
+from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...text.tables import print_table, table
 
 _TOLD, _DRAWN = 5, 25  # offsets
@@ -69,7 +69,8 @@ def _percent(share: float) -> float | None:
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write one line for each approximation."""
     console.print("Approximate models, inertia alone, at constant speed", style="bold", soft_wrap=True)
-    others = [f">e = {offset:.4g} mm" for offset in numbers["offset_mm"]]
+    farthest = numbers["offset_mm"][-1]
+    others = [f">{100 * k // (_TOLD - 1)} %" for k in range(_TOLD)]
     rows = table("model", ">peak", "unit", ">error", *others, ruled=True)
     for what, unit, key, exact in (
         ("slider acceleration", "m/s^2", "accelerations", "exact_peak_acceleration_m_s2"),
@@ -82,7 +83,12 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
             cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
             rows.add_row(f"  {entry['name']}", f"{peak:.5g}", unit, *cells)
     print_table(console, rows)
-    console.print("Errors: greatest over the cycle, share of the exact peak; right: with other offsets.", style="dim")
+    console.print(
+        "Errors: greatest over the cycle, share of the exact peak; on the right with other offsets, in % of "
+        f"{farthest:.4g} mm.",
+        style="dim",
+        soft_wrap=True,
+    )
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -111,6 +117,6 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
         panels.append(Panel("greatest error of torque, %", "offset, mm", lines))
-    subtitle = f"{lengths(linkage)}, {shown(mechanism.speed)} rad/s; inertia alone"
+    subtitle = f"{linkage.label}, {shown(mechanism.speed)} rad/s; inertia alone"
     title = "Approximate models against the exact one"
     return Sheet(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

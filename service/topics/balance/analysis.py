@@ -62,9 +62,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     lines: list[text.Line] = []
     for name, unit, _ in _CURVES:
         for which in ("peak", "rms"):
-            without = numbers[f"{which}_{name}_without_counterweight_{unit}"]
+            without = f"{which}_{name}_without_counterweight_{unit}"
             remarks = ["over time"] if which == "rms" else []
-            remarks += [] if without is None else [f"{without:.6g} without counterweight"]
+            if numbers[without] is not None:
+                remarks.append(text.compared(numbers, without, "without counterweight"))
             lines.append(text.told(numbers, f"{which}_{name}_{unit}", ", ".join(remarks)))
     title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
     text.show_lines(console, title, lines)

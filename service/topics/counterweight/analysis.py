@@ -81,7 +81,7 @@ def show(screen: Console, numbers: dict[str, Any]) -> None:
             key = f"{which}_{name}_{unit}"
             words = name.replace("_", " ")
             title = f"RMS {words} over time" if which == "rms" else f"{which} {words}"
-            before = f"{numbers['before'][key]:.6g} before"
+            before = text.compared(numbers["before"], key, "before")
             lines.append((title, numbers["after"][key], "N m" if unit == "Nm" else unit, before))
     text.show_lines(screen, f"Balance of least {numbers['measure']} shaking (moment about the crank pivot)", lines)
     line = f'counterweight = {{ mass = "{mass:.6g} kg", radius = "{radius:.6g} mm", angle = "{angle:.6g} deg" }}'

@@ -64,17 +64,16 @@ def _with_angle(name: str, unit: str, extreme: Extreme) -> dict[str, Any]:
 
 def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the numbers for people."""
-    one = numbers["cylinders"][0]["peak_torque_Nm"]
     remarks = {
-        "peak_torque_Nm": f"{one:.6g} of the first alone",
+        "peak_torque_Nm": text.compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first alone"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
         "mean_torque_Nm": "over the crank angle",
         "rms_torque_Nm": "over time, heats the motor",
         "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
         "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
-        "peak_shaking_force_N": f"{numbers['peak_shaking_force_of_one_N']:.6g} of one alone",
+        "peak_shaking_force_N": text.compared(numbers, "peak_shaking_force_of_one_N", "of one alone"),
         "rms_shaking_force_N": "over time",
-        "peak_shaking_moment_Nm": f"{numbers['peak_shaking_moment_of_one_Nm']:.6g} of one alone",
+        "peak_shaking_moment_Nm": text.compared(numbers, "peak_shaking_moment_of_one_Nm", "of one alone"),
         "rms_shaking_moment_Nm": "over time",
         "peak_rocking_couple_Nm": "about the shaft's zero, from the places of the cylinders",
     }

@@ -16,7 +16,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....objectives.needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ...figures.numerals import shown, with_unit
-from ...figures.sheets import Line, Panel, Sheet, lengths, over_turn, turn
+from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...text import tables as text
 from ...text.extremes import show_extremes
 from ...text.tables import plain
@@ -134,7 +134,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
-    return Sheet("Extremes over the turn", lengths(linkage), panels, columns=min(2, len(panels)), width=5.2)
+    return Sheet("Extremes over the turn", linkage.label, panels, columns=min(2, len(panels)), width=5.2)
 
 
 def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
@@ -146,8 +146,10 @@ def _panel(found: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Pan
     lines = [Line("", degrees, factor * values)]
     ends = [end for end in _ends(found) if math.isfinite(end.crank_angle)]
     note = "constant" if math.isfinite(found.least.value) else "undetermined where friction locks"
+    noted: tuple[float, ...] = ()
     if ends:
         angles = np.degrees([end.crank_angle for end in ends])
-        lines.append(Line("", angles, factor * np.array([end.value for end in ends]), points=True))
-        note = ", ".join(f"{shown(factor * end.value)} at {shown(at)}°" for end, at in zip(ends, angles, strict=True))
-    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note)
+        noted = tuple(factor * end.value for end in ends)
+        lines.append(Line("", angles, np.array(noted), points=True))
+        note = ", ".join(f"{{}} at {shown(at)}°" for at in angles)
+    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note, noted=noted)

@@ -84,7 +84,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     if heat:
         parts = [(name, numbers[f"{name}_heat_J"] / heat) for name in _JOINTS if numbers[f"{name}_heat_J"]]
         share = ", ".join(f"{name.replace('_', ' ')} {100.0 * part:.3g} %" for name, part in parts)
-    least = f"least transmission angle {numbers['least_transmission_angle_deg']:.4g} less angles of friction"
+    least = f"least transmission angle {numbers['least_transmission_angle_deg']:.4g} deg less angles of friction"
     lines: list[text.Line] = [
         ("self-locking margin", numbers["self_locking_margin_deg"], "deg", least),
         ("angle of friction, guide", numbers["guide_friction_angle_deg"], "deg", ""),
@@ -96,7 +96,7 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         ("peak guide force", "N", "N"),
     ):
         stem = name.replace(" ", "_")
-        without = f"{numbers[f'{stem}_without_friction_{suffix}']:.6g} without friction"
+        without = text.compared(numbers, f"{stem}_without_friction_{suffix}", "without friction")
         without = f"over the crank angle, {without}" if name == "mean torque" else without
         lines.append((name, numbers[f"{stem}_{suffix}"], unit, without))
     efficiency = numbers["efficiency"]

@@ -18,7 +18,7 @@ from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
 from ...designs.columns import split_unit
 from ...figures.numerals import shown, with_unit
-from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, lengths, over_turn, turn
+from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, over_turn, turn
 from ...text.tables import plain, print_table, table
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
@@ -70,8 +70,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
     head = f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"
     console.print(head, style="bold", soft_wrap=True)
-    rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at\ndeg", "unit", ruled=True)
-    fits = table("curve", ">crank angle\ndeg", ">value", ">RMS left", "unit", ruled=True)
+    rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at,\ndeg", "unit", ruled=True)
+    fits = table("curve", ">crank angle,\ndeg", ">value", ">RMS left", "unit", ruled=True)
     for entry in numbers["curves"].values():
         given, unit = told(entry)
         at = given["largest_at_crank_angle"]
@@ -120,7 +120,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> She
         _panel(found, _curves(mechanism, linkage, found), degrees, measured.values[found.name])
         for found in deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
-    subtitle = f"{lengths(linkage)}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation"
+    subtitle = f"{linkage.label}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation"
     return Sheet("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
@@ -143,9 +143,9 @@ def _panel(found: Deviation, computed: list[Line], at: Array, samples: Array) ->
     there = np.flatnonzero(np.isfinite(samples))
     drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
     lines = [*computed, Line("", at[drawn], factor * samples[drawn], style=SAMPLES)]
-    note = _UNDETERMINED
+    note, noted = _UNDETERMINED, tuple[float, ...]()
     if math.isfinite(found.rms):
         place, sample = np.degrees([found.crank_angle]), factor * np.array([found.sample])
         lines.append(Line("", place, sample, points=True))
-        note = f"RMS {shown(factor * found.rms)}, largest {shown(factor * found.largest)} at {shown(place[0])}°"
-    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note)
+        note, noted = f"RMS {{}}, largest {{}} at {shown(place[0])}°", (factor * found.rms, factor * found.largest)
+    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note, noted=noted)

@@ -13,7 +13,7 @@ from ....model.classical.polygons import Polygons, polygons
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ...figures.numerals import shown
-from ...figures.sheets import Line, Panel, Sheet, lengths
+from ...figures.sheets import Line, Panel, Sheet
 from ...text.tables import print_table, table
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
@@ -81,7 +81,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = CRANK
     speed = mechanism.speed or 1.0
     found = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     subtitle = (
-        f"{lengths(linkage)}; crank angle {shown(math.degrees(crank_angle))}°, "
+        f"{linkage.label}; crank angle {shown(math.degrees(crank_angle))}°, "
         f"{shown(speed)} rad/s, {shown(mechanism.acceleration)} rad/s²"
     )
     return polygon_sheet(found, title="Kinematic polygons", subtitle=subtitle)

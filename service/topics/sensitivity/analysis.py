@@ -10,6 +10,7 @@ from rich.console import Console
 from ....model.linkage.linkage import Linkage
 from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
+from ....objectives.kinds import System, shown_in
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...runs.result import json_ready, rows_of
@@ -34,20 +35,36 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
 
 
+def in_units(numbers: dict[str, Any], system: System) -> dict[str, Any]:
+    """Return the numbers in a system of units: each entry in its unit there, derivatives per mm or per in."""
+    per, length = shown_in("mm", system)
+
+    def entry(row: dict[str, Any]) -> dict[str, Any]:
+        unit, factor = shown_in(row["unit"], system)
+        found: dict[str, Any] = {}
+        for key, value in row.items():
+            scale = factor / length if "_per_mm" in key else factor if "tolerance" in key or key == "value" else None
+            found[key.replace("_per_mm", f"_per_{per}")] = value if scale is None or value is None else scale * value
+        return found | {"unit": unit}
+
+    return {"quantities": [entry(row) for row in numbers["quantities"]]}
+
+
 def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people: change of each quantity for one millimetre more, and in percent per percent."""
-    console.print("Change of each quantity for 1 mm more of a dimension (and in % for 1 % more)", style="bold")
+    """Write the numbers for people: change of each quantity for one mm or in more, and in percent per percent."""
+    per = "mm" if f"{DIMENSIONS[0]}_per_mm" in numbers["quantities"][0] else "in"
+    console.print(f"Change of each quantity for 1 {per} more of a dimension (and in % for 1 % more)", style="bold")
     heads = [head for name in DIMENSIONS for head in (f">{name}", ">")]
     rows = table("quantity", ">value", "unit", *heads)
     kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
     for row in numbers["quantities"]:
-        slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
+        slopes = [row[f"{name}_per_{per}{side}"] for name in DIMENSIONS for side in ("", "_below")]
         if row["quantity"] in plain or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
         cells = []
         for name in DIMENSIONS:
             relative = _sides(row, f"{name}_percent", 3)
-            cells += [_sides(row, f"{name}_per_mm", 4), "" if relative == "-" else f"({relative} %)"]
+            cells += [_sides(row, f"{name}_per_{per}", 4), "" if relative == "-" else f"({relative} %)"]
             kinks = kinks or " / " in cells[-2]
         rows.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
     print_table(console, rows)

@@ -19,7 +19,7 @@ from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.signals import Signal
-from ...figures.sheets import Line, Sheet, lengths, over_turn
+from ...figures.sheets import Line, Sheet, over_turn
 from ...text.tables import print_table, table
 from ..peaks import peak
 
@@ -91,11 +91,11 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     """Write the peaks and the forces every 30 deg."""
     console.print(f"Static forces, without masses and friction ({numbers['load']})", style="bold", soft_wrap=True)
     columns = {
-        ">crank angle\ndeg": "crank_angle_deg",
-        ">load\nN": "load_N",
-        ">rod force\nN": "rod_force_N",
-        ">guide\nN": "guide_reaction_N",
-        ">crank torque\nN m": "crank_torque_Nm",
+        ">crank angle,\ndeg": "crank_angle_deg",
+        ">load,\nN": "load_N",
+        ">rod force,\nN": "rod_force_N",
+        ">guide,\nN": "guide_reaction_N",
+        ">crank torque,\nN m": "crank_torque_Nm",
         ">mechanical\nadvantage": "mechanical_advantage",
     }
     rows = table(*columns, ruled=True)
@@ -134,4 +134,4 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None)
         over_turn("crank torque, N m", Line("", degrees, at.crank_torque)),
         over_turn(f"mechanical advantage, up to {_MOST_ADVANTAGE:g}", Line("", degrees, advantage)),
     )
-    return Sheet("Static forces", f"{lengths(linkage)}; without masses and friction", panels, width=8.0)
+    return Sheet("Static forces", f"{linkage.label}; without masses and friction", panels, width=8.0)

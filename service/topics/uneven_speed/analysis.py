@@ -75,19 +75,20 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     def told(key: str, remark: str = "") -> text.Line:
         return text.told(numbers, key, remark)
 
+    even = "at constant speed"
     lines = [
         *(told(key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
         told("speed_fluctuation", "(greatest - least) / mean over time"),
         ("period", numbers["period_s"], "s", "of a turn"),
         told("peak_crank_acceleration_rad_s2"),
         told("mean_torque_Nm", "over the crank angle"),
-        told("rms_torque_Nm", f"over time, {numbers['rms_torque_at_constant_speed_Nm']:.6g} at constant speed"),
+        told("rms_torque_Nm", f"over time, {text.compared(numbers, 'rms_torque_at_constant_speed_Nm', even)}"),
         told("mean_power_W", "over time"),
     ]
     for name, unit in _UNITS.items():
         suffix = face(unit).suffix
-        even = numbers[f"peak_{name}_at_constant_speed{suffix}"]
-        lines.append(told(f"peak_{name}{suffix}", f"{even:.6g} at constant speed"))
+        remark = text.compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
+        lines.append(told(f"peak_{name}{suffix}", remark))
     text.show_lines(console, "At the speed profile (constant speed: the mean over the crank angle)", lines)
 
 

@@ -54,6 +54,21 @@ def test_numbers_and_text_are_those_of_the_command_line(client: httpx.Client, so
             assert all(word in text for word in " ".join(row[:1]).split())
 
 
+def test_text_in_inches_names_the_unit_of_every_column_and_remark(client: httpx.Client, solved: Solved) -> None:
+    topics = f"{solved.path}/designs/2/topics"
+    forces = client.get(f"{topics}/static_forces", params={"units": "inch"}).json()["told"][1]
+    assert forces["heads"][:5] == [
+        "crank angle, deg",
+        "load, lbf",
+        "rod force, lbf",
+        "guide, lbf",
+        "crank torque, lbf in",
+    ]
+    friction = client.get(f"{topics}/friction", params={"units": "inch"}).json()["told"][1]
+    mean = next(row for row in friction["rows"] if row[0] == "mean torque")
+    assert mean[3] == f"over the crank angle, {mean[1]} lbf in without friction"  # this machine has none
+
+
 def test_other_lengths_have_topics_of_their_own(client: httpx.Client, solved: Solved) -> None:
     row = solved.result.designs[1]
     lengths = {key: float(str(row[key])) for key in ("crank_mm", "rod_mm", "offset_mm")} | {"rod_mm": 590.0}
