@@ -124,7 +124,8 @@ class RoundingSearch:
         """Return what a function gives of designs, block by block."""
         found = []
         for begin in range(0, max(1, len(designs)), size):
-            yield Stage(stage, begin, len(designs))
+            if len(designs):
+                yield Stage(stage, begin, len(designs))
             found.append(of(designs[begin : begin + size]))
         return np.concatenate(found)
 

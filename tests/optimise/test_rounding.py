@@ -338,7 +338,7 @@ def test_progress_is_reported_in_stages_and_what_it_raises_ends_the_search() -> 
     front.rounded(2, 0.0005, progress=stages.append)
     assert stages[0].stage == "screening combinations"
     assert stages[-1].stage == "looking for the nearest"
-    assert all(0 <= one.step <= one.steps for one in stages)
+    assert all(0 <= one.step < one.steps for one in stages)
 
     def end(at: Stage) -> None:
         if at.step:

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
+from slidercrank.model.errors import InputError
+from slidercrank.optimise.job import parse_job
 from slidercrank.service.cli import app
+from slidercrank.service.designs.rounding import steps_of
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.runs.stored_runs import problem_of, read_run
 from tests.service import fronts
 from tests.service.conftest import Command
 
 BAND = 'stroke = { min = "280 mm", max = "282 mm" }'
+RATIO = "friction.guide = [0.05, 0.15]"
 VARYING = "[variables]", '[variables]\n"mechanism.slider.mass" = ["1 kg", "2.05 kg"]'
 
 
@@ -131,6 +137,22 @@ def test_the_option_that_is_suggested_makes_the_nearest_designs_do(kept: Path, c
         assert f"keep every requirement within {option.removeprefix('stroke=')} of stroke" in done.stdout
 
 
+def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    from slidercrank.service.commands import round as module
+
+    shown: list[str] = []
+
+    class Status:
+        def update(self, text: str) -> None:
+            shown.append(text)
+
+    monkeypatch.setattr(module, "waiting", lambda _: contextlib.nullcontext(Status()))
+    done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
+    assert done.exit_code == 3, done.stderr
+    assert shown[0].startswith("screening combinations 0/")
+    assert shown[-1].startswith("looking for the nearest ")
+
+
 def test_a_search_that_is_interrupted_ends_with_exit_code_130(
     kept: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -209,3 +231,11 @@ def test_a_formula_is_named_as_it_is_written(tmp_path: Path, command: Command) -
     assert done.exit_code == 0, done.output
     assert "max(rod, 2 * crank)" in done.stdout
     assert "max rod 2" not in done.stdout
+
+
+def test_a_number_without_a_unit_takes_a_plain_step() -> None:
+    job = fronts.JOB.replace("[variables]", f"[friction]\nguide = 0.1\n[variables]\n{RATIO}")
+    part = parse_job(tomllib.loads(job))
+    assert steps_of(["friction.guide=0.01"], part, key="--to") == {"friction.guide": 0.01}
+    with pytest.raises(InputError, match="--to must be positive"):
+        steps_of(["friction.guide=-0.01"], part, key="--to")
