@@ -98,7 +98,9 @@ class OptionPart(Part):
         "texts to keep with designs, such as a maker", {"maker": "Example Motors"}, default={}
     )
     searched: bool = optional(
-        "whether designs are searched with it; else it is only named where it is the least that serves", default=True
+        "whether designs are searched with it; else it is only named where it is the least that serves",
+        False,
+        default=True,
     )
 
     @property
