@@ -47,6 +47,7 @@ class Kind:
     mistaken unit (80 Mm for 80 mm), and products of several values stay far from the ends of a double.
     metric, inch: how it is shown; inch is None where both systems use the same unit.
     typed: units that a form offers, the SI unit first; usual: the one that it begins with, the metric one if left out.
+    spoken: units that mean something in a value of this kind alone, each with the unit that it means there.
     believed: the least and the greatest magnitude in SI that a number without a unit is believed to mean; None for any.
     amount: whether the unit is a text that stands for itself, such as a currency.
     """
@@ -60,6 +61,7 @@ class Kind:
     typed: tuple[str, ...] = ()
     usual: str = ""
     believed: tuple[float, float] | None = None
+    spoken: tuple[tuple[str, str], ...] = ()
     amount: bool = False
 
     @property
@@ -83,11 +85,12 @@ def _kind(
     metric: Face | None = None,
     usual: str = "",
     believed: tuple[float, float] | None = None,
+    spoken: tuple[tuple[str, str], ...] = (),
 ) -> Kind:
     """Return a kind by the units of a form, separated by commas; shown in the first, SI, unless said."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
-    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual, believed)
+    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual, believed, spoken)
 
 
 _MM = face("in", _PER_INCH), face("mm", 1e3)
@@ -96,7 +99,13 @@ AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1
 _DEG = face("deg", 57.29577951308232)
 ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
 _RPM = face("rpm", 9.549296585513721)
-ANGULAR_SPEED = _kind("an angular speed", "rad/s, rpm, rev/s", "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0))
+_PLATES = (
+    *((unit, "rpm") for unit in ("1/min", "min^-1", "min-1", "min**-1", "U/min", "r/min", "spm", "strokes/min")),
+    ("Hz", "rev/s"),
+)
+"""Units on plates of motors and machines, which count turns."""
+_SPEEDS = "rad/s, rpm, rev/s"
+ANGULAR_SPEED = _kind("an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES)
 ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
 MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, face("lb", 1.0 / _POUND))
 _INERTIA = face("lb in^2", 1.0 / (_POUND * _INCH**2))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as _field
 from enum import Enum
 from typing import Any, ClassVar, Literal
@@ -224,6 +224,15 @@ class Quantity(ABC):
     def of_dimensions(self) -> bool:
         """Whether it follows from crank, rod and offset alone, without a search over the cycle."""
         return False
+
+    def follows_speed(self, mechanism: Mechanism) -> bool:
+        """Return whether the crank speed, its sense, or that there is one, changes the quantity of a machine."""
+        numbers = [item.fullest for item in mechanism.varying]
+        designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
+        still, *others = (
+            self.evaluate(replace(mechanism, speed=speed), designs).values for speed in (0.0, 1.0, -1.0, 1000.0)
+        )
+        return not all(np.allclose(still, other, rtol=1e-9, atol=0.0, equal_nan=True) for other in others)
 
     def reach_for(self, mechanism: Mechanism) -> Reach | None:
         """Return its reach if it holds for the machine."""

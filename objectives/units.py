@@ -1,8 +1,8 @@
 """Physical values as people write them, "80 mm", "300 rpm", "0.05 inch", and their conversion to SI.
 
 A value is one number and one unit; a plain number is in SI. Units come from a short list of this project's own, read
-by pint, instead of pint's default registry, for three reasons. There an angle has no dimension, so that "5 Hz" or
-"5 1/s" would pass for a crank speed in rad/s, wrong by 2 pi; thousands of units of other fields make slips like "mM"
+by pint, instead of pint's default registry, for three reasons. There an angle has no dimension, so that "5 s^-1" or
+"5 Bq" would pass for a crank speed in rad/s, wrong by 2 pi; thousands of units of other fields make slips like "mM"
 or "degC" valid; and it takes 0.14 s to build, this one 3 ms. Conversion is exact rational arithmetic, rounded once:
 "80 mm" is the double 0.08, and 360 deg is the double nearest 2 pi.
 """
@@ -104,8 +104,8 @@ _USUAL: dict[str, tuple[Fraction, tuple[tuple[str, int], ...]]] = {
     "N": (Fraction(1), _FORCE),
     "kN": (Fraction(1000), _FORCE),
 }
+_SPOKEN = frozenset(unit for kind in KINDS for unit, _ in kind.spoken)
 _HINTS = {
-    "Hz": "a rotation is given in rpm, rev/s or rad/s",
     "degC": "temperatures are not used here",
     "°C": "temperatures are not used here",
     "J": "a torque is given in N m",
@@ -122,10 +122,11 @@ _APART = (
 """Kinds of one dimension that are told apart: the SI unit of a kind, symbols of another one, and what that is."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
-PATTERN = rf"^\s*{_NUMBER}\s*[^\d\s.+-].*$"
+PATTERN = rf"^\s*{_NUMBER}\s*(1\s*/\s*)?[^\d\s.+-].*$"
 """Pattern of a value with a unit, for a JSON Schema."""
-_VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*))?\s*", re.ASCII | re.DOTALL)
+_VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*)|\s+(1\s*/.*))?\s*", re.ASCII | re.DOTALL)
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
+_SPREAD = re.compile(rf"({_NUMBER})\s*(.*?)\s*(?:\+/?-|±)\s*({_NUMBER})\s*(.*)", re.DOTALL)
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
 _LONGEST = 60
 _GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
@@ -227,11 +228,32 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
     return number
 
 
+def spread(value: object) -> tuple[str, str] | None:
+    """Return the ends of a range that is stated as its middle and half its width, "180 mm +- 0.5 mm".
+
+    Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None for what
+    states no such range. Raises InputError for units of two kinds.
+    """
+    found = _SPREAD.fullmatch(value.translate(_TYPESET).strip()) if isinstance(value, str) else None
+    if found is None:
+        return None
+    middle, half = Fraction(found[1]), abs(Fraction(found[3]))
+    unit = found[2] or found[4].strip()
+    if (other := found[4].strip() or unit) != unit:
+        (one, dimension), (factor, another) = _unit(unit), _unit(other)
+        if dimension != another:
+            raise InputError(
+                f'both parts of a range have units of one kind; got {shown(value)}; write it like "180 mm +- 0.5 mm"'
+            )
+        half *= factor / one
+    return f"{float(middle - half)!r} {unit}".rstrip(), f"{float(middle + half)!r} {unit}".rstrip()
+
+
 def is_value(text: str) -> bool:
     """Return whether a text is one number, alone or with a unit of whatever kind."""
     parts = number_and_unit(text)
     try:
-        return parts is not None and _unit(parts[1]) is not None
+        return parts is not None and (parts[1] in _SPOKEN or _unit(parts[1]) is not None)
     except InputError:
         return False
 
@@ -239,7 +261,14 @@ def is_value(text: str) -> bool:
 def number_and_unit(text: str) -> tuple[str, str] | None:
     """Return the digits and the unit, whatever it is, of a text that is one number; None of another one."""
     match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
-    return None if match is None else (match[1], (match[2] or "").strip())
+    return None if match is None else (match[1], _unit_in(match))
+
+
+def _unit_in(match: re.Match[str]) -> str:
+    """Return the unit of a value, "" for none; one of `_SPOKEN` without spaces."""
+    unit = (match[2] or match[3] or "").strip()
+    plain = "".join(unit.split())
+    return plain if plain in _SPOKEN else unit
 
 
 def shown(value: object) -> str:
@@ -268,6 +297,7 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     """Return which of some words is meant by a misspelt one; None if none is near."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
+    near = near or sorted((known for known in by_fold if word.casefold() in known.split("_")), key=len)
     return by_fold[near[0]] if near else None
 
 
@@ -282,7 +312,9 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     match = _VALUE.fullmatch(text.translate(_TYPESET))
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
-    number, unit = Fraction(match[1]), match[2] or ""
+    if _SPREAD.fullmatch(text.translate(_TYPESET).strip()):
+        raise InputError(f"{rule}, a single value; got {shown(text)}, which is a range; {write}")
+    number, unit = Fraction(match[1]), dict(kind.spoken).get(_unit_in(match), _unit_in(match))
     if not unit and kind.unit:
         bare = " (in a job file, without quotes)" if "plain number" in write else ""
         raise InputError(f"{rule} with its unit; got {shown(text)}; {write}{bare}")

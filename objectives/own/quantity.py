@@ -78,6 +78,10 @@ class OwnQuantity(Quantity):
     longest: float = field(default=float("inf"), compare=False)
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
+    def follows_speed(self, mechanism: Mechanism) -> bool:
+        """True: a function is not called before a search."""
+        return True
+
     def __post_init__(self) -> None:
         super().__post_init__()
         require_name(self.name)

@@ -19,7 +19,7 @@ from ..cycle_peak import screened
 from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas
 from ..quantity import Array, Quantity, Values
-from .given import countable, given_designs, numbers_of, require_machine
+from .given import countable, given_designs, numbers_of, require_machine, warn_of_lengths
 from .swinging import require_in_motion, require_of_swing
 
 
@@ -66,7 +66,7 @@ def evaluate(
     `peaks` where that does not take the signal or the torque has its peak on a kink. At a tie of two peaks the slope is
     that of one of them. Raises `InputError` for an unknown name, for arrays of another width, for a quantity that the
     machine does not define (a position error without tolerances), for one of a full turn with a swing, and for the
-    gradient of a function that has none.
+    gradient of a function that has none. Warns once for each machine of lengths that are probably in mm.
 
     >>> from slidercrank import Mechanism, evaluate
     >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
@@ -74,6 +74,21 @@ def evaluate(
            [   nan,    nan]])
     """
     require_machine(mechanism)
+    given = given_designs(designs, numbers_of(mechanism))
+    warn_of_lengths(mechanism, given)
+    return evaluated(mechanism, given, quantities, gradients=gradients, own=own, swing=swing)
+
+
+def evaluated(
+    mechanism: Mechanism,
+    given: Array,
+    quantities: Sequence[str],
+    *,
+    gradients: bool = False,
+    own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
+) -> Array | tuple[Array, Array]:
+    """Return what `evaluate` does, of designs (..., 3 + k) as an array."""
     if isinstance(quantities, str):
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
@@ -85,7 +100,6 @@ def evaluate(
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
-    given = given_designs(designs, numbers_of(mechanism))
     rows, shape = np.ascontiguousarray(given.reshape(-1, given.shape[-1])), given.shape[:-1]
     lacking = [item.name for item in chosen if not item.has_gradient]
     if gradients and lacking:

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
 from ...model.arrays import Mask
-from ...model.errors import InputError
+from ...model.errors import InputError, InputWarning
+from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
+from ..kinds import LENGTH
 from ..quantity import Array
 
 _LEAST, _MOST = 1e-50, 1e50
 """Lengths, m: the fifth power of those beyond may be no number in double precision."""
+_WARNED = "lengths warned of"
+"""Kept in a machine or problem: it warns once."""
 
 
 def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
     """Return the names of the numbers of a design of a machine, in their order."""
-    return ("crank", "rod", "offset", *(item.name for item in mechanism.varying))
+    return (*DIMENSIONS, *(item.name for item in mechanism.varying))
 
 
 def require_machine(mechanism: object) -> None:
@@ -56,6 +61,28 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
             f"designs need {len(names)} numbers each ({wanted}), as the last axis; got an array of shape {found.shape}"
         )
     return found
+
+
+def warn_of_lengths(of: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+    """Warn of designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
+
+    Once for each machine or problem `of`, in the name of whoever calls the caller. greatest: crank, rod and offset, m,
+    that are meant, whatever their size.
+    """
+    if _WARNED in vars(of):
+        return
+    sizes = designs[..., :3]
+    limits = np.maximum(greatest, LENGTH.believed[1] if LENGTH.believed else np.inf)
+    found = np.argwhere(np.isfinite(sizes) & (abs(sizes) > limits))
+    if found.size:
+        vars(of)[_WARNED] = True
+        size = sizes[tuple(found[0])]
+        warnings.warn(
+            f"lengths of designs are in m: {DIMENSIONS[found[0][-1]]} {size:g} is {size:g} m = {1e3 * size:.6g} mm; "
+            f"write {1e-3 * size:g} for {size:g} mm",
+            InputWarning,
+            stacklevel=3,
+        )
 
 
 def countable(designs: Array) -> Mask:

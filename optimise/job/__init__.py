@@ -28,7 +28,7 @@ from .file import read, require_plain
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
-from .plain_numbers import plain_numbers
+from .plain_numbers import plain_bounds, plain_numbers
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
@@ -138,7 +138,8 @@ def parse_job(
         stated = with_values(stated, values, "values") if values else stated
         doubts = [item.warning for item in plain_numbers(job, data, values or {}) if item.warning]
         problem = problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
-        return replace(problem, warnings=tuple(doubts)) if doubts else problem
+        doubts += [item.warning for item in plain_bounds(problem, data) if item.warning]
+        return replace(problem, warnings=tuple(dict.fromkeys(doubts))) if doubts else problem
     except ValidationError as error:
         found = explain(error, _schema() if job is Job else schema_of(job))
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"

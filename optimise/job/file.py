@@ -14,6 +14,7 @@ from typing import Any
 from ...model.errors import JobError
 from ...objectives.units import shown
 from .messages import key_of
+from .toml_errors import in_words
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes a fifth of it, notes and comments aside."""
@@ -116,7 +117,8 @@ def toml_tables(text: str) -> dict[str, Any]:
             raise JobError(
                 "the file is no valid TOML: a number of a job has a few digits; got one of thousands; shorten it"
             ) from None
-        raise JobError(f"the file is no valid TOML: {str(error)[:300]}; {_remedy(text, str(error))}") from None
+        said = in_words(text, str(error))
+        raise JobError(said or f"the file is no valid TOML: {str(error)[:300]}; {_remedy(text, str(error))}") from None
 
 
 def _remedy(text: str, error: str) -> str:

@@ -119,8 +119,17 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
             f"it; {possible}"
         ), ""
     near = closest(str(key), allowed)
-    choice = f"did you mean {near}?" if near else possible
+    choice = f"did you mean {near}?" if near else _elsewhere(str(key), schema) or possible
     return f"{place}: unknown key; got {shown(value)}; {choice}", key_of([*path, near]) if near else ""
+
+
+def _elsewhere(key: str, schema: Schema) -> str:
+    """Return in words where a key that its table does not have belongs; "" if no table has it either."""
+    tables = {name: inner for name in schema["properties"] if (inner := _properties(schema, [name]))}
+    if key in schema["properties"] and key not in tables:
+        return f"{key} stands above the first table of the file; move it there"
+    owners = [f"[{name}]" for name, keys in tables.items() if key in keys]
+    return f"{key} is a key of {' or '.join(owners)}; move it there" if owners else ""
 
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
@@ -140,6 +149,9 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
         return str(context["error"])
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
+    if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _properties(schema, [*path, 0]):
+        table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
+        return f"must be a list of tables; got a single one; write [[{table}]], in double brackets, for [{table}]"
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
         said = re.findall(r"'([^']*)'", str(context.get("expected", "")))

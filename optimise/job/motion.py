@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 from pydantic import Field, create_model
 
 from ...model.errors import InputError, JobError
+from ...model.machine.mechanism import Mechanism
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.words import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
+from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
 from ..problem.requirements import Constraint
-from .crank_speed import SPEED_KEYS
+from .crank_speed import SPEED_KEYS, CrankSpeedPart
 from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
@@ -208,23 +210,30 @@ def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part
                 raise JobError(f"{table}.{of.name}: {reason}")
 
 
-def require_speed(swing: Swing | None, stated: bool, varying: Iterable[str]) -> None:
-    """Raise JobError for a crank that turns through at no speed, and for a swing with a varying one.
-
-    stated: whether the job states a crank speed. varying: paths of the numbers that variables and options set.
-    """
-    if swing is None:
-        if not stated:
-            raise JobError(
-                "mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; "
-                'add for example speed = "300 rpm"'
-            )
-        return
+def require_no_speed(varying: Iterable[str]) -> None:
+    """Raise JobError for a swing with a varying crank speed. varying: paths that variables and options set."""
     for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
                 f"{path}: a swing follows [motion] instead; got it as a variable, or in an option; leave it out"
             )
+
+
+def require_speed(mechanism: CrankSpeedPart, machine: Mechanism, asked: Iterable[Quantity], slow_stroke: bool) -> None:
+    """Raise JobError for a crank that turns through without a speed, if something that the job asks for follows it.
+
+    asked: quantities of objectives and constraints. slow_stroke: whether the job asks which stroke is the slow one.
+    """
+    if mechanism.speed_keys:
+        return
+    given = [key for key in ("direction", "acceleration", "speed_profile") if getattr(mechanism, key)]
+    follow = [*given, *(["slow_stroke"] if slow_stroke else [])]
+    follow += [of.name for of in asked if not of.undefined_because([machine]) and of.follows_speed(machine)][:1]
+    if follow:
+        raise JobError(
+            f"mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; {follow[0]} "
+            'follows it; add for example speed = "300 rpm"'
+        )
 
 
 def require_start(varying: Mapping[str, bool]) -> None:

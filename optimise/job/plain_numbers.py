@@ -12,7 +12,9 @@ from pydantic import ValidationError
 
 from ...model.linkage.values import DIMENSIONS
 from ...objectives.kinds import Kind
+from ...objectives.registry import FACTS
 from ...objectives.units import shown
+from ..problem.problem import Problem
 from .messages import key_of, keys_of, toml
 from .paths import with_number
 from .values import PLAIN, Part, plain_in, values_in
@@ -47,10 +49,11 @@ class PlainNumbers:
         text = toml(self.value)
         given = text if len(text) <= _LONGEST else shown(self.value)
         what = "mixes numbers with and without a unit" if mixed else "has no unit"
-        return (
-            f'{self.key} = {given} {what}: {number:g} is {self._reading(number)}; write "{number:g} '
-            f'{self.kind.metric.symbol}" if that is meant, or "{number:g} {self.kind.unit}"'
-        )
+        said = f"{self.key} = {given} {what}: {number:g} is {self._reading(number)}"
+        if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
+            return f"{said}; write it with its unit"
+        usual = self.kind.metric.symbol
+        return f'{said}; write "{number:g} {usual}" if that is meant, or "{number:g} {self.kind.unit}"'
 
     def _is_believed(self, number: float) -> bool:
         return self.kind.believed is None or self.kind.believed[0] <= abs(number) <= self.kind.believed[1]
@@ -84,6 +87,17 @@ def plain_numbers(
     kinds = {path: kind for path, _, _, kind in _placed(job, tried)}
     more = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
     return [*placed.values(), *more]
+
+
+def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
+    """Yield the bounds and targets without a unit of formulas, whose kinds the problem of a job knows."""
+    for table in ("constraints", "objectives"):
+        for name, given in data.get(table, {}).items():
+            if name not in FACTS and isinstance(given, Mapping):
+                kind = problem.quantity(name).kind
+                for word, value in given.items():
+                    if plain_in(value) and kind.unit and not kind.amount:
+                        yield PlainNumbers(key_of([table, name, word]), value, kind)
 
 
 def _placed(job: type[Part], data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, Kind]]:

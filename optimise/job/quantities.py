@@ -31,7 +31,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, shown
+from ...objectives.units import closest, shown, spread
 from ..problem.requirements import SENSES, Constraint, Objective, Word
 from .messages import key_of, toml
 from .values import Part, Physical, optional, required
@@ -43,6 +43,8 @@ class Bounds(Part):
     @model_validator(mode="wrap")
     @classmethod
     def _possible(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if isinstance(data, Mapping) and set(data) == {"equals"} and (ends := spread(data["equals"])):
+            data = dict(zip(("min", "max"), ends, strict=True))
         bounds = handler(data)
         lower, upper, equals = (getattr(bounds, name) for name in ("min", "max", "equals"))
         if lower is None and upper is None and equals is None:

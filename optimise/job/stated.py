@@ -23,7 +23,7 @@ from .amounts import amounts_of
 from .contradictions import require_consistent
 from .messages import key_of
 from .model import Job
-from .motion import require_apart, require_speed, require_start, require_swing_asked, with_margin
+from .motion import require_apart, require_no_speed, require_speed, require_start, require_swing_asked, with_margin
 from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
@@ -43,7 +43,8 @@ def problem_of(
     require_target(job.target_motion, job.objectives, job.constraints)
     motion = job.motion.build()
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
-    require_speed(motion, bool(job.mechanism.speed_keys), {*variables.paths, *chosen})
+    if motion is not None:
+        require_no_speed({*variables.paths, *chosen})
     chosen |= {path for path, given in variables.paths.items() if is_choice(given)}
     require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
     require_swing_asked(motion, job.objectives, job.constraints)
@@ -72,6 +73,9 @@ def problem_of(
         choices, catalogue = (), ()  # what a design is judged by does not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     named = {*asked, *(item.quantity for item in limits)}
+    if motion is None:
+        slow = bool(slow_stroke_of(job.constraints) or any(variant.slow_stroke for variant in variants))
+        require_speed(job.mechanism, machine, [known[name] for name in sorted(named)], slow)
     problem = Problem(
         name=job.name,
         mechanism=machine,

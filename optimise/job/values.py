@@ -26,7 +26,7 @@ from ...model.machine.loads import load
 from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
-from ...objectives.units import Sign, shown, to_si
+from ...objectives.units import Sign, shown, spread, to_si
 from .grids import Grid, grid_schema, read_grid, says_values
 
 SHORTEST = 1e-9
@@ -110,7 +110,7 @@ class _Read:
     def _noted(self, value: object, info: core_schema.ValidationInfo) -> object:
         """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
         found = self.read(value)
-        if info.context == PLAIN and self.kind.unit and plain_in(value):
+        if info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value):
             raise PydanticCustomError(PLAIN, "has no unit", {"kind": self.kind})
         return found
 
@@ -237,7 +237,7 @@ class RangeOf(_Read):
             return read_grid(value, self._length)
         if isinstance(value, Mapping) and set(value) == {"choices"}:
             return self._choices(value["choices"])
-        ends = value if isinstance(value, list | tuple) else (value, value)
+        ends = value if isinstance(value, list | tuple) else spread(value) or (value, value)
         if len(ends) != 2:
             raise InputError(
                 f'must be a range [lower, upper] or one value; got {shown(value)}; write it like ["20 mm", "200 mm"]'

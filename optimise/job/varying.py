@@ -25,7 +25,7 @@ from ...model.machine.varying import Varying
 from ...objectives.amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
-from ...objectives.units import shown
+from ...objectives.units import shown, spread
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
@@ -284,6 +284,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         if len(grid.values) < 2:
             raise JobError(f"{key}: must have two values or more; got one, {grid.rule}; give it in its own place alone")
         given = [grid.values[0], grid.values[-1]]
+    given = spread(given) or given
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
             f"{key}: must be a range [lower, upper] {{ choices = [...] }} or values; got {shown(given)}; "

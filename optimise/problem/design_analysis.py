@@ -24,7 +24,7 @@ from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
 from ...objectives.tables.deviation import deviations
-from ...objectives.tables.given import countable, given_designs, numbers_of, require_machine, shortly
+from ...objectives.tables.given import countable, given_designs, numbers_of, require_machine, shortly, warn_of_lengths
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
 from ...objectives.tables.swinging import require_in_motion, swinging
@@ -216,7 +216,7 @@ def analyse(
 
     own: quantities besides those of the product. swing: what the design need only make, in place of a full turn.
     Raises `AssemblyError` for a design that does not turn fully, and `InputError` for one that is not 3 + k finite
-    numbers or that cannot swing as asked.
+    numbers or that cannot swing as asked. Warns once for each machine of lengths that are probably in mm.
 
     >>> from slidercrank import Mechanism, analyse
     >>> analysis = analyse(Mechanism(slider_mass=0.8, speed=30.0), [0.04, 0.1, 0.02])
@@ -224,6 +224,20 @@ def analyse(
     1.05063
     """
     machine, sizes = one_design(mechanism, design)
+    warn_of_lengths(mechanism, sizes)
+    return analysed(mechanism, machine, sizes, own=own, title=title, swing=swing)
+
+
+def analysed(
+    mechanism: Mechanism,
+    machine: Mechanism,
+    sizes: Array,
+    *,
+    own: Sequence[Quantity] = (),
+    title: str = "",
+    swing: Swing | None = None,
+) -> Analysis:
+    """Return what `analyse` does. machine: of the design with the numbers `sizes` (3 + k,)."""
     given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
     linkage = single(machine, given) if swing is None else require_swing(machine, given, swing)
     values: dict[str, float] = {}

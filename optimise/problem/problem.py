@@ -23,7 +23,8 @@ from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
 from ...objectives.reach import Reach
 from ...objectives.registry import QUANTITIES, listed
-from ...objectives.tables.evaluate import evaluate
+from ...objectives.tables.evaluate import evaluated
+from ...objectives.tables.given import given_designs, numbers_of, warn_of_lengths
 from ...objectives.tables.swinging import (
     require_in_motion,
     require_loads,
@@ -32,7 +33,7 @@ from ...objectives.tables.swinging import (
     why_not,
 )
 from .costs import Costs
-from .design_analysis import Analysis, analyse, one_design
+from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
 from .requirements import Constraint, Objective, Range, Word, merged
 from .table_columns import choice_field, least_field, require_own_columns
@@ -273,9 +274,9 @@ class Problem:
         """
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
-        if gradients:
-            return evaluate(self.mechanism, designs, names, gradients=True, own=self.own, swing=self.motion)
-        return evaluate(self.mechanism, designs, names, own=self.own, swing=self.motion)
+        given = given_designs(designs, numbers_of(self.mechanism))
+        warn_of_lengths(self, given, self._greatest)
+        return evaluated(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
         """Return everything about one design (3 + k,), crank, rod, offset, m, and the varying numbers, SI.
@@ -284,7 +285,9 @@ class Problem:
         problem with choices.
         """
         self._require_chosen()
-        return analyse(self.mechanism, design, own=self.own, title=self.name, swing=self.motion)
+        machine, sizes = one_design(self.mechanism, design)
+        warn_of_lengths(self, sizes, self._greatest)
+        return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
 
     def swing(
         self,
@@ -334,6 +337,11 @@ class Problem:
                 f"a design of a problem with choices ({', '.join(self.choices)}) is one of an option; got the problem "
                 f"of all {len(self.variants)}; take one of problem.parts()"
             )
+
+    @property
+    def _greatest(self) -> list[float]:
+        """Greatest magnitudes of crank, rod and offset within the ranges, m."""
+        return [max(abs(ends.lower), abs(ends.upper)) for ends in (self.crank, self.rod, self.offset)]
 
     @property
     def ranges(self) -> dict[str, Range]:

@@ -28,6 +28,7 @@ from ..text.options import (
     Runs,
     Speed,
     Units,
+    require_ending,
     speed_option,
 )
 from ..text.screen import console, give, say, waiting
@@ -84,6 +85,7 @@ def analyse(
     have a topic, the reason is given after everything else; the exit code is then 2 if the topic was named, and 0
     with `--show all`.
     """
+    require_ending("--cycle", cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(at, limit, fluctuation, topics)
     mechanism, linkage, problem = machine_of("analyse", job, size, design, runs, put=put or (), turning=True)
@@ -183,8 +185,6 @@ def _draw(
 def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
     from ..designs.cycle_table import cycle_csv
 
-    if str(file) == "-":
-        raise InputError("--cycle writes a file; got -; name one")
     text = cycle_csv(mechanism, linkage, units, machine=machine)
     write_file(file, text)
     say(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")

@@ -14,7 +14,7 @@ from ..designs.selection import chosen_rows, none_meets, numbered, part_of
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import Angle, File, Output, Run, Runs, Units, given_value
+from ..text.options import Angle, File, Output, Run, Runs, Units, given_value, require_ending
 from ..text.screen import give, say, waiting
 from .ending import end_without_design
 from .run_choice import Choice, Where, run_of, shown_result
@@ -22,7 +22,14 @@ from .run_choice import Choice, Where, run_of, shown_result
 if TYPE_CHECKING:
     from ..designs.stored_designs import StoredDesign
 
-_FILES = ("--dxf", "--svg", "--motion", "--gif", "--cycle")
+_FILES = {
+    "--dxf": (".dxf",),
+    "--svg": (".svg",),
+    "--motion": (".html", ".htm"),
+    "--gif": (".gif",),
+    "--cycle": (".csv",),
+}
+"""Options that write one design, and how their files may end."""
 
 
 def export(
@@ -70,8 +77,9 @@ def export(
         )
     angle = given_value("--at", at, ANGLE)
     for option, file in files.items():
-        if str(file) == "-":
-            raise InputError(f"{option} writes a file; got -; name one")
+        require_ending(option, file, *_FILES[option])
+    for option, name in (("--csv", csv), ("--json", json)):
+        require_ending(option, None if name in (None, "-") else Path(str(name)), option.replace("--", "."))
     folder, result = run_of(run, runs)
     made: dict[Path, bytes] = {}
     if files:

@@ -11,7 +11,7 @@ from ...model.errors import InputError, RunError
 from ..designs.turning import require_turning
 from ..runs.run_folder import slug, write_file
 from ..runs.stored_runs import problem_of
-from ..text.options import File, Run, Runs, Units
+from ..text.options import File, Run, Runs, Units, require_ending
 from ..text.screen import say, waiting
 from .run_choice import Choice, Where, run_of
 
@@ -35,8 +35,7 @@ def report(
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
-    if out is not None and out.suffix.lower() not in ("", ".html", ".htm", ".pdf"):
-        raise InputError(f"a report is HTML or PDF; got --out {out}; let its name end in .html or .pdf")
+    require_ending("--out", out, ".html", ".htm", ".pdf", "")
     folder, result = run_of(run, runs)
     number = choice.number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")

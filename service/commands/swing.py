@@ -6,13 +6,24 @@ from typing import Annotated
 
 import typer
 
-from ...model.errors import InputError
 from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ..designs.shown_units import record_in, rows_in
 from ..runs.result import csv_text
 from ..runs.run_folder import disk, write_file
-from ..text.options import DesignOfRun, Dimensions, File, JobOrRun, Json, Length, Runs, Units, drawable, given_value
+from ..text.options import (
+    DesignOfRun,
+    Dimensions,
+    File,
+    JobOrRun,
+    Json,
+    Length,
+    Runs,
+    Units,
+    drawable,
+    given_value,
+    require_ending,
+)
 from ..text.screen import answer, say, waiting
 from .job_or_run import machine_of
 
@@ -79,11 +90,8 @@ def swing(
     from ..swing.record import show_swing, swing_record
 
     drawable(figure)
-    if "-" in (str(curves), str(figure)):
-        raise InputError("--curves and --figure write files; got -; name one")
-    for option, file, ending in (("--curves", curves, ".csv"), ("--figure", figure, ".png")):
-        if file is not None and (file.is_dir() or file.suffix.lower() != ending):
-            raise InputError(f"{option} writes a file that ends with {ending}; got {file}; name one")
+    require_ending("--curves", curves, ".csv")
+    require_ending("--figure", figure, ".png")
     mechanism, linkage, problem = machine_of("swing", job, size, design, runs)
     given = AskedSwing(
         start=given_value("--from", start, ANGLE),

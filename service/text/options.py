@@ -142,6 +142,22 @@ def speed_option(text: str) -> float:
     return value_of("--speed", text, ANGULAR_SPEED)
 
 
+def require_ending(option: str, file: Path | None, *endings: str) -> None:
+    """Refuse a file to write whose name does not end as its content does, a directory, and standard output.
+
+    endings: of its names, with their points, "" among them where the option completes a name.
+    """
+    if file is None:
+        return
+    first = next(filter(None, endings))
+    if str(file) == "-":
+        raise InputError(f"{option} writes a file; got -; name one")
+    if file.is_dir() or file.suffix.lower() not in endings:
+        name = file / f"name{first}" if file.is_dir() or not file.stem else file.with_suffix(first)
+        said = " or ".join(filter(None, endings))
+        raise InputError(f"{option} writes a file that ends with {said}; got {file}; name it {name}")
+
+
 def given_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
     """Return an option's value as `value_of` does, None without one."""
     return None if text is None else value_of(option, text, kind, sign=sign)

@@ -13,6 +13,7 @@ from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import closest, kind_of, shown, to_si
 
+PLATES = ["1/min", "min^-1", "U/min", "r/min", "spm", "strokes/min", "Hz"]
 GOOD = [
     ("80 mm", kinds.LENGTH, 0.08),
     ("80mm", kinds.LENGTH, 0.08),
@@ -93,6 +94,10 @@ GOOD = [
     ("2500 cm^2", kinds.AREA, 0.25),
     (3.2, kinds.RATIO, 3.2),
     ("3.2", kinds.RATIO, 3.2),
+    *((f"300 {unit}", kinds.ANGULAR_SPEED, 10.0 * math.pi) for unit in PLATES[:-1]),
+    ("-300 1 / min", kinds.ANGULAR_SPEED, -10.0 * math.pi),
+    ("300 min⁻¹", kinds.ANGULAR_SPEED, 10.0 * math.pi),
+    ("5 Hz", kinds.ANGULAR_SPEED, 10.0 * math.pi),
 ]
 
 
@@ -108,9 +113,11 @@ def test_what_is_read_matches_the_pattern_of_the_schema(value: str) -> None:
 
 BAD = [
     ("300 mm", kinds.ANGULAR_SPEED, ["angular speed", '"300 mm"', "is a length", '"300 rpm"']),
-    ("5 Hz", kinds.ANGULAR_SPEED, ["Hz", "rpm"]),
+    *((f"5 {unit}", kind, [f'"5 {unit}"']) for unit in PLATES for kind in (kinds.LENGTH, kinds.TIME, kinds.JERK)),
     ("5 s^-1", kinds.ANGULAR_SPEED, ["frequency", "turns", "radians"]),
-    ("300 1/min", kinds.ANGULAR_SPEED, ["one number and one unit", "300 rpm"]),
+    ("300 1/h", kinds.ANGULAR_SPEED, ["no unit", "300 rpm"]),
+    ("3001/min", kinds.ANGULAR_SPEED, ["300 rpm"]),
+    ("2 kHz", kinds.ANGULAR_SPEED, ["kHz", "300 rpm"]),
     ("5 /s", kinds.ANGULAR_SPEED, ["no unit", "300 rpm"]),
     ("3 mN", kinds.TORQUE, ["torque", "is a force", "25 N m"]),
     ("3 J", kinds.TORQUE, ["torque", "is an energy", "25 N m"]),

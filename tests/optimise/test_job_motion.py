@@ -235,7 +235,7 @@ def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothin
     job = changed()
     del job["motion"]
     with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required"):
-        parse_job(job | {"objectives": {"stroke": "maximise"}, "constraints": {}})
+        parse_job(job | {"objectives": {"peak_torque": "minimise"}, "constraints": {}})
 
 
 def test_quantities_of_a_swing_are_refused_without_one() -> None:

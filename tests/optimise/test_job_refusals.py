@@ -32,7 +32,8 @@ BAD: list[tuple[str, str, list[str]]] = [
     # Keys
     (SPEED, 'spede = "300 rpm"', ["mechanism.spede", "unknown key", '"300 rpm"', "did you mean speed?"]),
     (SPEED, "", ["mechanism.speed: is missing", 'speed = "300 rpm"']),
-    (SPEED, SPEED + "\nmotor = 3", ["mechanism.motor", "unknown key", "possible here: speed,"]),
+    (SPEED, SPEED + "\nmotor = 3", ["mechanism.motor: unknown key; got 3; motor is a key of [drive]; move it there"]),
+    (SPEED, SPEED + "\nxyz = 3", ["mechanism.xyz", "unknown key", "possible here: speed,"]),
     ("[objectives]", "[objective]", ["objective: unknown key", "did you mean objectives?"]),
     ("[variables]", "[[variables]]", ["variables: must be a table", "a list of 1", "crank ="]),
     ('name = "Vibrating sieve"', "", ["name: is missing", "add for example name ="]),
@@ -42,7 +43,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     ('name = "Vibrating sieve"', f'name = "{"x" * 90}"', ["name", "at most 80", "shorten"]),
     # Units and values
     (SPEED, 'speed = "300 mm"', ["mechanism.speed", '"300 mm", which is a length', '"300 rpm"']),
-    (SPEED, 'speed = "5 Hz"', ["mechanism.speed", "Hz", "rpm, rev/s or rad/s"]),
+    (SPEED, 'speed = "5 s^-1"', ["mechanism.speed", "s^-1", "of turns or radians", '"300 rpm"']),
     (SPEED, "speed = nan", ["mechanism.speed", "finite", "nan", '"300 rpm"']),
     (SPEED, "speed = inf", ["mechanism.speed", "finite", "inf"]),
     (SPEED, "speed = true", ["mechanism.speed", "angular speed", "true"]),
@@ -126,6 +127,13 @@ BAD: list[tuple[str, str, list[str]]] = [
         ["variables", "full rotation", "offset of at least 600 mm", "reduce the other two"],
     ),
     # Constraints
+    (STROKE, 'height = { max = "280 mm" }', ["constraints.height", "did you mean envelope_height?"]),
+    (STROKE, "seed = 3", ["constraints.seed: unknown key; got 3; seed is a key of [optimiser]; move it there"]),
+    (
+        STROKE,
+        'description = "late"',
+        ["constraints.description: unknown key", "description stands above the first table of the file; move it there"],
+    ),
     (STROKE, 'strok = { min = "280 mm" }', ["constraints.strok", "did you mean stroke?"]),
     (STROKE, 'stroke = "280 mm"', ["constraints.stroke", "must be a table", '"280 mm"', "min ="]),
     (STROKE, "stroke = {}", ["constraints.stroke", "min, max or equals", "empty"]),
@@ -191,7 +199,11 @@ BAD: list[tuple[str, str, list[str]]] = [
     ("seed = 1", "seed = -1", ["optimiser.seed", "at least 0", "-1"]),
     # Syntax
     (SPEED, "speed = ", ["no valid TOML", f"line {LINE}"]),
-    (SPEED, SPEED + "\n" + SPEED, ["no valid TOML", f"line {LINE + 1}"]),
+    (
+        SPEED,
+        SPEED + "\n" + SPEED,
+        [f"mechanism.speed: each key may come once; got it again in line {LINE + 1}; remove"],
+    ),
     (SPEED, SPEED + "\nx = " + "[" * 20 + "]" * 20, ["nest at most 8 deep", "flatten"]),
     (SPEED, SPEED + "\nx = " + "[" * 5000 + "]" * 5000, ["nest at most 8 deep", "flatten"]),
 ]

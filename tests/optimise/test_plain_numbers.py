@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import warnings
+from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
@@ -54,6 +55,7 @@ def put(path: str, value: Any) -> dict[str, Any]:
         ("load.0.positions", [0.1, 200], "load #1.positions = [0.1, 200] has no unit: 200 is 200 m = 200000 mm"),
         ("tolerances.crank", 0.015, 'tolerances.crank = 0.015 has no unit: 0.015 is 0.015 m = 15 mm; write "0.015 mm"'),
         ("tolerances.crank_angle", 30, "tolerances.crank_angle = 30 has no unit: 30 is 30 rad = 1718.87 deg"),
+        ("constraints", {"rod - crank": {"max": 40}}, 'constraints."rod - crank".max = 40 has no unit: 40 is 40 m'),
         ("variables.mechanism.speed", [30, 60], "variables.mechanism.speed = [30, 60] has no unit: 30 is 30 rad/s"),
     ],
 )
@@ -122,3 +124,26 @@ def test_a_warning_is_that_of_users_and_can_be_silenced() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         assert sc.problem(put("mechanism.speed", 120)).warnings
+
+
+@pytest.mark.parametrize("ask", ["evaluate", "analyse"])
+def test_designs_in_mm_are_warned_of_once_for_each_machine_and_problem(ask: str) -> None:
+    problem, machine = sc.problem(PRESS), sc.Mechanism(speed=12.0, slider_mass=2.0)
+    calls: dict[str, tuple[Callable[[list[float]], object], ...]] = {
+        "evaluate": (lambda sizes: problem.evaluate(sizes), lambda sizes: sc.evaluate(machine, sizes, ["stroke"])),
+        "analyse": (lambda sizes: problem.analyse(sizes), lambda sizes: sc.analyse(machine, sizes)),
+    }
+    for call in calls[ask]:
+        call([0.04, 0.3, 0.02])
+        with pytest.warns(InputWarning) as found:
+            call([40.0, 300.0, 20.0])
+        call([41.0, 300.0, 20.0])
+        assert [str(warning.message) for warning in found] == [
+            "lengths of designs are in m: crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm"
+        ]
+        assert found[0].filename == __file__
+
+
+def test_lengths_within_ranges_with_units_never_warn() -> None:
+    ranges = {"crank": ["11 m", "12 m"], "rod": ["40 m", "60 m"], "offset": ["0.01 mm", "20 m"]}
+    assert sc.problem(PRESS | {"variables": ranges}).evaluate([11.5, 50.0, 15.0]).shape == (2,)

@@ -13,7 +13,7 @@ from tests.service.conftest import Command
 
 
 def test_a_design_is_written_in_all_ways_at_once(kept: Path, tmp_path: Path, command: Command) -> None:
-    names = {option: tmp_path / f"a.{option}" for option in ("dxf", "svg", "motion", "gif")}
+    names = {option: tmp_path / f"a.{option}" for option in ("dxf", "svg", "gif")} | {"motion": tmp_path / "a.html"}
     options = [part for name, file in names.items() for part in (f"--{name}", file)]
     done = command("export", "latest", "--runs", kept, "--design", 3, *options, "--csv", tmp_path / "a.csv")
     assert (done.exit_code, done.stdout) == (0, ""), done.stderr
@@ -57,6 +57,12 @@ def test_the_knee_and_a_crank_angle_may_be_asked_for(kept: Path, tmp_path: Path,
         (("--cycle", "a.csv"), "a design is named by --design NO, --knee"),
         (("--design", 1, "--cycle", "a.csv", "--sort", "crank"), "--sort and --reverse are for --csv and --json"),
         (("--design", 1, "--cycle", "a.csv", "--where", "stroke > 1 mm"), "a design is chosen in one way"),
+        (("--design", 1, "--dxf", "x.dwg"), "--dxf writes a file that ends with .dxf; got x.dwg; name it x.dxf"),
+        (("--design", 1, "--svg", "x.png"), "name it x.svg"),
+        (("--design", 1, "--motion", "x.gif"), "--motion writes a file that ends with .html or .htm; got x.gif"),
+        (("--design", 1, "--gif", "x"), "name it x.gif"),
+        (("--csv", "x.xlsx"), "--csv writes a file that ends with .csv; got x.xlsx; name it x.csv"),
+        (("--json", "x.csv"), "name it x.json"),
         (("--csv", "a.csv", "--sort", "torqe"), "did you mean"),
         (("--design", 1, "--svg", "none/there/a.svg"), "must be a folder that can be written"),
     ],
@@ -170,7 +176,7 @@ def test_a_report_is_written_as_html_and_as_pdf(
         (("--design", 1, "--where", "time_ratio > 1"), 2, "a design is chosen in one way"),
         (("--knee", "--where", "time_ratio > 9"), 3, "none of the 8 designs meets time_ratio > 9"),
         (("--knee", "--pdf", "--out", "a.html"), 2, "--pdf writes PDF; got --out a.html"),
-        (("--knee", "--out", "a.docx"), 2, "HTML or PDF; got --out a.docx; let its name end in"),
+        (("--knee", "--out", "a.docx"), 2, "--out writes a file that ends with .html or .htm or .pdf; got a.docx"),
         (("--knee", "--out", "none/there/a.html"), 2, "must be a folder that can be written"),
     ],
 )

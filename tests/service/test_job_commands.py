@@ -79,6 +79,22 @@ def test_doubtful_numbers_come_first_in_a_check_and_are_said_by_every_command(tm
     assert f"warning: {speed}" in done.stderr
 
 
+def test_speeds_of_plates_are_checked_in_rpm_and_one_that_nothing_follows_may_be_left_out(
+    tmp_path: Path, command: Command
+) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text()
+    for plate in ("300 1/min", "300 U/min", "5 Hz"):
+        job.write_text(text.replace("300 rpm", plate))
+        assert "crank speed 300 rpm (counter-clockwise)" in command("check", job).stdout
+    job.write_text(text.replace('speed = "300 rpm"\n', ""))
+    assert "no crank speed: static" in command("check", job).stdout
+    job.write_text(job.read_text() + 'peak_torque = "minimise"\n')
+    done = command("check", job)
+    assert done.exit_code == 2  # peak_torque stands in the last table, [optimiser]
+    assert "peak_torque is a key of [constraints] or [objectives]; move it there" in done.stderr
+
+
 def test_a_number_of_another_unit_is_said_before_a_search(tmp_path: Path, runs: Path, command: Command) -> None:
     job = fronts.job_file(tmp_path)
     job.write_text(job.read_text().replace('"300 rpm"', "30"))

@@ -42,9 +42,11 @@ def test_a_valid_job_is_understood_as_check_understands_it(shared: httpx.Client,
 
 
 def test_a_number_that_probably_means_another_unit_is_among_the_warnings(shared: httpx.Client, feeder: Job) -> None:
-    job = feeder | {"mechanism": feeder["mechanism"] | {"speed": 251}}
+    job = feeder | {"mechanism": feeder["mechanism"] | {"speed": -251}}
     (warning,) = preview(shared, job)["understood"]["warnings"]
-    assert warning.startswith("mechanism.speed = 251 has no unit: 251 is 251 rad/s = 2396.87 rpm; write")
+    plate = {"mechanism": feeder["mechanism"] | {"speed": "2400 1/min"}}
+    assert "crank speed 2400 rpm (counter-clockwise)" in preview(shared, feeder | plate)["understood"]["given"]
+    assert warning.startswith("mechanism.speed = -251 has no unit: -251 is -251 rad/s = -2396.87 rpm; write")
 
 
 @pytest.mark.parametrize(

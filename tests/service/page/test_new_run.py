@@ -554,6 +554,14 @@ def test_a_number_without_its_unit_is_warned_of_first_and_apart_from_notes(form:
     expect(warning).to_contain_text("120 is 120 rad/s = 1145.92 rpm", timeout=30_000)
     assert warning.evaluate("node => node.previousElementSibling === null")
     expect(facts.locator(".note")).to_contain_text("Masses are given but no gravity")
+    job["mechanism"]["speed"] = "120 U/min"
+    job["variables"]["offset"] = "10 mm +- 2 mm"
+    content = json.dumps(job).encode()
+    page.locator("#job-import").set_input_files({"name": "own.json", "mimeType": "application/json", "buffer": content})
+    expect(facts).to_contain_text("crank speed 120 rpm", timeout=30_000)
+    expect(facts.locator(".warning")).to_have_count(0)
+    ready(page)
+    assert text_of(page) == job
 
 
 def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: Open, store: Store) -> None:
