@@ -301,6 +301,21 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     return by_fold[near[0]] if near else None
 
 
+def squeezed(unit: str) -> str:
+    """Return the letters and digits of a unit: Nm for N_m, N m and N·m."""
+    return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
+
+
+def symbol_in(text: str, kind: Kind) -> str | None:
+    """Return a unit of a kind, as the head of a column has it, in the spelling of jobs; None for what is none."""
+    faces = [each.symbol for each in (kind.metric, kind.inch) if each is not None]
+    known = next((symbol for symbol in (*kind.typed, *faces) if squeezed(symbol) == squeezed(text)), None)
+    try:
+        return known or (text.strip() if to_si(f"1 {text}", kind) else None)
+    except InputError:
+        return None
+
+
 def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     """Return the exact value in SI of a string."""
     if len(text) > _LONGEST:

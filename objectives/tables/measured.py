@@ -16,6 +16,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ..kinds import ANGLE, SHOWN, TIME, Face, Kind
 from ..quantity import Array
+from ..units import squeezed
 from .curve_extremes import every_curve, undefined_because
 
 if TYPE_CHECKING:
@@ -213,11 +214,6 @@ def _units_of(kind: Kind) -> str:
 def _after(said: str, text: str) -> str:
     """Return the rest of a text after a name, whose words anything may separate."""
     return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(said.split("_")), "", text, count=1, flags=re.IGNORECASE)
-
-
-def squeezed(unit: str) -> str:
-    """Return the letters and digits of a unit: Nm for N_m, N m and N·m."""
-    return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
 
 
 def _plain(text: str) -> str:

@@ -23,8 +23,10 @@ from ...model.machine.strength import Material
 from ...objectives.units import shown
 from ..problem.problem import Problem
 from ..sizing.section_limits import SectionLimits
+from .beside import Files
 from .catalogue import catalogues, with_catalogues, with_options
 from .file import read, require_plain
+from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
@@ -93,9 +95,17 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
         return with_files(read(file), file.parent)
 
 
-def with_files(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a job with the content of the files that it names, found in `folder`, in their place. Raises JobError."""
-    return with_catalogues(with_speeds(with_points(data, folder), folder), folder)
+def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+    """Return a job with the content of the files that it names in their place. Raises JobError.
+
+    files: the folder in which they lie, or their contents by name: texts, or bytes as they are on a disk.
+    """
+    try:
+        return with_catalogues(with_speeds(with_loads(with_points(data, files), files), files), files)
+    except JobError:
+        raise
+    except InputError as error:
+        raise JobError(str(error)) from None
 
 
 @contextlib.contextmanager
@@ -109,10 +119,10 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
 
 
 def files_beside(path: str | PathLike[str]) -> list[Path]:
-    """Return the files beside a job file that it needs: points, speeds, catalogues, modules of its own functions."""
+    """Return the files beside a job file that it needs: tables, and modules of its own functions."""
     file = path_from_text(path)
     data, folder = read(file), file.parent
-    files = [*(name for name in (points_file(data), speeds_file(data)) if name), *catalogues(data)]
+    files = [name for name in (points_file(data), speeds_file(data), *load_files(data), *catalogues(data)) if name]
     return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *modules_beside(data, folder)]
 
 

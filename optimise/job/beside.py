@@ -1,52 +1,55 @@
-"""Files beside a job file that it names."""
+"""Files that a job names: beside the job file, or sent with it."""
 
 from __future__ import annotations
 
-import csv
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path, PurePath
 
-from ...model.errors import JobError
+from ...model.errors import InputError, JobError
 from ...model.file_names import path_from_text
 from ...objectives.units import shown
+from .table_file import TableFile, bytes_of, read_table, text_of
 
-MOST_POINTS = 1000
-"""Points of a curve over the crank angle, in a job or in a file."""
-_LARGEST = 1_000_000  # bytes
+Files = Path | Mapping[str, str | bytes]
+"""The folder in which the files lie, or their contents by name."""
+MOST_POINTS = 10_000
+"""Points of a curve in a job, thinned ones if it comes from a file."""
+LARGEST = 10_000_000
+"""Bytes of a file."""
+SOURCE = "source"
+"""Key of a table that was filled from a file: what was understood of it, in words; no part of the problem."""
 
 
-def beside(folder: Path, key: str, file: str) -> tuple[Path, str]:
-    """Return the path of a file that a job names under a key, and what messages begin with. Raises `JobError`."""
+def table_beside(files: Files, key: str, file: str) -> TableFile:
+    """Return the table in a file that a job names under a key. Raises `InputError`."""
+    return read_table(text_beside(files, key, file), f"{key}: {shown(file)}")
+
+
+def text_beside(files: Files, key: str, file: str) -> str:
+    """Return the text of a file that a job names under a key. Raises `InputError`."""
+    name = f"{key}: {shown(file)}"
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
         raise JobError(f"{key}: must lie beside the job file; got {shown(file)}; copy it there")
-    return folder / path_from_text(file), f"{key}: {shown(file)}"
+    if isinstance(files, Path):
+        return text_of(bytes_of(files / path_from_text(file), name, LARGEST), name)
+    if file not in files:
+        raise JobError(f"{name} must be among the files that are sent; got {', '.join(files) or 'none'}; send it too")
+    content = files[file]
+    return content if isinstance(content, str) else text_of(content, name)
 
 
-def require_few_points(count: int, name: str, of: str = "") -> None:
-    """Raise `JobError` for more points than a job takes. name: of the file, for messages. of: what has the points."""
+def unread(file: str, instead: str) -> InputError:
+    """Return the refusal of a file that nobody read. instead: what may be given in its place."""
+    return InputError(
+        "a file lies beside the job file, or its content is sent with the job (API: files), and is instead of "
+        f"{instead}; got file {shown(file)}; send it, or give the {instead} alone"
+    )
+
+
+def require_few_points(count: int, name: str) -> None:
+    """Raise `InputError` for more points than a job takes. name: of the file, for messages."""
     if count > MOST_POINTS:
-        raise JobError(
-            f"{name} must have at most {MOST_POINTS:,} points{of}; got {count:,}; thin it out: keep one line in "
-            f"{math.ceil(count / MOST_POINTS)}, and the last one"
+        raise InputError(
+            f"{name} must have at most {MOST_POINTS:,} points that count; got {count:,}; smooth the curve, or keep one "
+            f"line in {-(-count // MOST_POINTS)} and the last one"
         )
-
-
-def table_of(path: Path, name: str, headers: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], list[list[str]]]:
-    """Return the first line of a file of comma-separated values, one of some, and the lines below. Raises `JobError`.
-
-    name: of the file, for messages.
-    """
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise JobError(f"{name} must have at most 1 MB; is it the right file?")
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            header, *lines = [[cell.strip() for cell in line] for line in csv.reader(file, strict=True) if line] or [[]]
-    except OSError as error:
-        raise JobError(f"{name} cannot be read: {error.strerror}; put it beside the job file") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise JobError(f"{name} must be a CSV file, text with commas; got: {error}; save it as CSV") from None
-    if tuple(header) not in headers:
-        choice = " or ".join(",".join(one) for one in headers)
-        raise JobError(f"{name} must begin with the line {choice}; got {shown(','.join(header))}")
-    return tuple(header), lines

@@ -17,9 +17,9 @@ from .messages import key_of
 from .toml_errors import in_words
 
 LARGEST = 1_000_000
-"""Bytes. A job of as many values as are allowed takes a fifth of it, notes and comments aside."""
-MOST = 10_000
-"""Values, lists and tables of a job: enough for four [[load]] tables of 1,000 points. Each takes up to 30 us."""
+"""Bytes. A job of as many values as are allowed takes half of it, of ten characters each."""
+MOST = 50_000
+"""Values, lists and tables of a job: enough for two [[load]] tables of 10,000 points. Each takes up to 30 us."""
 DEEPEST = 8
 """Tables within tables; a job has five at most."""
 # Possessive, and a text that is not closed ends with the file: the search takes a time in proportion to its length.

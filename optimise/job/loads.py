@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import (
     BeforeValidator,
     Discriminator,
+    Field,
     Tag,
     ValidatorFunctionWrapHandler,
     WrapValidator,
@@ -21,7 +22,9 @@ from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import kinds
 from ...objectives.units import shown
 from . import values
+from .beside import MOST_POINTS, SOURCE, unread
 from .kinds import Kinds
+from .load_file import tables_of_points
 from .values import Checked, optional
 
 
@@ -62,6 +65,8 @@ class LoadPart(Checked[model.Load]):
 def _part(table: model.Table) -> type[LoadPart]:
     """Return the table of a job file that a kind of load declares."""
     fields: dict[str, Any] = {entry.name: (_type(entry), _field(entry)) for entry in table.entries}
+    if any(entry.several for entry in table.entries):
+        fields[SOURCE] = (values.Source, values.source())
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
     part.model_config["json_schema_extra"] = {
         "x-load": {"key": table.key, "title": table.title, "first": dict(table.first), "motion": table.motion}
@@ -78,13 +83,34 @@ def _type(entry: model.Entry) -> Any:
 
 
 def _field(entry: model.Entry) -> Any:
-    shape: Any = {"min_length": 2, "max_length": 1000} if entry.several else {}
+    shape: Any = {"min_length": 2, "max_length": MOST_POINTS} if entry.several else {}
     default = ... if entry.default is None else entry.default
     words = isinstance(default, str)
     return optional(entry.description, entry.example, default=default, validate_default=words, **shape)
 
 
-PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables}
+def _file_part() -> type[LoadPart]:
+    """Return the load whose points are in a file, with the entries of all tables that may be there."""
+    entries: dict[str, list[model.Entry]] = {}
+    for table, *_ in tables_of_points():
+        for entry in table.entries:
+            if not entry.several:
+                entries.setdefault(entry.name, []).append(entry)
+    file = optional("a table beside the job file: forces, torques or pressures, told by their units", "trace.csv")
+    fields: dict[str, Any] = {"file": (Annotated[str, Field(max_length=200)], file)}
+    for name, several in entries.items():
+        kind: Any = reduce(or_, map(_type, several)) | None
+        fields[name] = (kind, optional(several[0].description, several[0].example))
+    part = create_model("FileLoad", __base__=LoadPart, __doc__="A load whose points are in a file.", **fields)
+    part.makes = staticmethod(_refused)
+    return part
+
+
+def _refused(file: str, **_: object) -> model.Load:
+    raise unread(file, "points")
+
+
+PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
 """By the key that tells a kind of load, in the order in which kinds are told apart."""
 
 
@@ -93,7 +119,7 @@ def _choice() -> str:
     required = [
         [entry.name for entry in table.entries if entry.default is None] for kind in kinds() for table in kind.tables
     ]
-    shapes = [f"{{ {', '.join(names)} }}" for names in required]
+    shapes = [f"{{ {', '.join(names)} }}" for names in [*required, ["file"]]]
     return f"{', '.join(shapes[:-1])} or {shapes[-1]}"
 
 

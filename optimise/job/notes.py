@@ -7,7 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...objectives.counted import counted
+from ...objectives.units import shown
+from .beside import SOURCE
 from .catalogue import Catalogue, with_options
+from .messages import key_of
 from .model import Job, job_with
 from .own import declared
 from .plain_numbers import plain_numbers
@@ -79,6 +82,20 @@ def _all(names: Sequence[str]) -> str:
 
 def _some(lines: Sequence[str]) -> str:
     return ", ".join(lines[:_MOST]) + (f" and {len(lines) - _MOST} more" if len(lines) > _MOST else "")
+
+
+def sources_of(data: Mapping[str, Any]) -> list[str]:
+    """Return what was understood of each file of a valid job, the key of its table first."""
+    mechanism = data["mechanism"]
+    places: list[tuple[list[object], Any]] = [
+        (["mechanism", "speed_profile"], mechanism.get("speed_profile")),
+        (["target_motion"], data.get("target_motion")),
+        *((["load", n], part) for n, part in enumerate(data.get("load", ()))),
+    ]
+    return [
+        *(f"{key_of(path)}, {part[SOURCE]}" for path, part in places if isinstance(part, Mapping) and part.get(SOURCE)),
+        *(f"choice {shown(table.name)}: {table.understood}" for table in with_options(data)[1]),
+    ]
 
 
 def _pins(job: Job) -> list[str]:

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
-from ...model.errors import InputError, JobError
+from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
-from ...objectives.units import shown
-from .beside import MOST_POINTS, beside, require_few_points, table_of
-from .values import Angle, AngularSpeed, Checked, Number, optional
+from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
+from ...objectives.units import per_si
+from .beside import MOST_POINTS, SOURCE, Files, require_few_points, table_beside, unread
+from .curve_file import Curve, curve_in, opened
+from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
 
-HEADERS = ("crank_angle_deg", "speed_rpm"), ("time_s", "speed_rpm")
-"""First line of a file of speeds."""
 _TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
 
 
 def _profile(**given: Any) -> Profile:
     if given.get("file") is not None:
-        raise InputError(
-            f"a file is read beside a job file only, and instead of points; got file {shown(given['file'])}; give "
-            "crank_angles and speeds, or the file alone in a job file"
-        )
+        raise unread(given["file"], "points")
     table = {name: given[name] for name in ("crank_angles", "speeds") if given.get(name) is not None}
     waves = {name: given[name] for name in ("cosines", "sines") if given.get(name) is not None}
     if bool(table) == bool(waves):
@@ -60,9 +55,11 @@ class SpeedProfilePart(Checked[Profile]):
         max_length=MOST_POINTS,
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
-        f"instead of points: a CSV file beside the job file, with columns {' or '.join(map(' and '.join, HEADERS))}",
+        "instead of points: a table beside the job file, of speed_rpm over crank_angle_deg, or over time_s from crank "
+        "angle 0 on",
         "speed.csv",
     )
+    source: Source = source()
 
     def require_mean(self, speed: float) -> None:
         """Raise `InputError` unless the mean of points is the given speed, rad/s."""
@@ -83,59 +80,52 @@ def speeds_file(data: Mapping[str, Any]) -> str | None:
     return file if isinstance(file, str) else None
 
 
-def with_speeds(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a job with the points of its profile's file, found in `folder`, in place of the file. Raises JobError."""
+def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+    """Return a job with the points of its profile's file in place of the file. Raises `InputError`."""
     file, job = speeds_file(data), dict(data)
     if file is None:
         return job
-    path, name = beside(folder, "mechanism.speed_profile.file", file)
-    (of, _), lines = table_of(path, name, HEADERS)
-    values: list[tuple[float, float]] = []
-    for number, line in enumerate(lines, start=2):
-        try:
-            at, speed = map(float, line)
-            if not (math.isfinite(at) and math.isfinite(speed)):
-                raise ValueError
-        except ValueError:
-            raise JobError(
-                f"{name} must have two finite numbers per line; got {','.join(line)!r} in line {number}; correct it"
-            ) from None
-        values.append((at, speed))
-    try:
-        angles, speeds = _points(of, [at for at, _ in values], [speed for _, speed in values])
-    except InputError as error:
-        raise JobError(f"{name}: {error}") from None
-    require_few_points(len(angles), name, " in a turn")
-    profile = {"crank_angles": [f"{angle!r} deg" for angle in angles], "speeds": [f"{speed!r} rpm" for speed in speeds]}
+    curve = curve_in(table_beside(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
+    curve = opened(_over_turn(curve) if curve.over.kind is TIME else curve)
+    require_few_points(len(curve.at), curve.name)
+    angles, speeds = curve.texts()
+    profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.source(file)}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
 
 
-def _points(of: str, at: list[float], speeds: list[float]) -> tuple[list[float], list[float]]:
-    """Return crank angles, deg, and speeds, rpm; over time, those of the first turn, from crank angle 0 on."""
-    if of != "time_s":
-        return at, speeds
+def _over_turn(curve: Curve) -> Curve:
+    """Return a curve over time as one over the crank angle, deg: the first turn, from crank angle 0 on."""
     from scipy.interpolate import CubicSpline
 
-    if len(at) < 4 or any(after <= before for before, after in pairwise(at)):
-        raise InputError(f"times must increase, four at least; got {len(at)}; sort them and drop what repeats")
-    curve = CubicSpline(at, speeds)
-    angles = 6.0 * curve.antiderivative()(at)  # deg, of rpm and s
+    at, rpm = curve.at / per_si(curve.over.unit), curve.values / per_si(curve.of.unit) * (30.0 / math.pi)
+    if len(at) < 4 or np.any(np.diff(at) <= 0.0):
+        raise InputError(
+            f"{curve.name}: times must increase, four at least; got {len(at)}; sort them and drop what repeats"
+        )
+    angles = 6.0 * CubicSpline(at, rpm).antiderivative()(at)  # deg, of rpm and s
     way = 1.0 if angles[-1] >= 0.0 else -1.0
     turned = way * angles
-    if any(after <= before for before, after in pairwise(turned)):
-        raise InputError("the speed must not be zero or change its sign; got a record that stops; give one that runs")
+    if np.any(np.diff(turned) <= 0.0):
+        raise InputError(
+            f"{curve.name}: the speed must not be zero or change its sign; got a record that stops; give one that runs"
+        )
     last = max(1, int(np.argmin(abs(turned - 360.0))))
     near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is mistaken for rounding
     if 360.0 - near <= turned[-1] < 360.0:
         turned *= 360.0 / turned[-1]
     if turned[-1] < 360.0 - near:
-        raise InputError(f"a record over time must cover at least one turn; got {turned[-1]:.6g} deg; record longer")
-    kept = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
-    end = float(CubicSpline(turned, speeds)(360.0))
-    if abs(end - speeds[0]) > 0.02 * abs(speeds[0]):
         raise InputError(
-            f"the speed must repeat after a turn, to 2 %; got {speeds[0]:.6g} rpm at its start and {end:.6g} rpm at "
-            "its end; record steady running"
+            f"{curve.name}: a record over time must cover at least one turn; got {turned[-1]:.6g} deg; record longer"
         )
-    points = sorted((float(way * turned[k]) % 360.0, speeds[k]) for k in kept)
-    return [angle for angle, _ in points], [speed for _, speed in points]
+    kept = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
+    end = float(CubicSpline(turned, rpm)(360.0))
+    if abs(end - rpm[0]) > 0.02 * abs(rpm[0]):
+        raise InputError(
+            f"{curve.name}: the speed must repeat after a turn, to 2 %; got {rpm[0]:.6g} rpm at its start and "
+            f"{end:.6g} rpm at its end; record steady running"
+        )
+    angles = np.mod(way * turned[kept], 360.0)
+    order = np.argsort(angles, kind="stable")
+    over, of = curve.over._replace(kind=ANGLE, unit="deg"), curve.of._replace(unit="rpm")
+    said = (*curve.said, f"the first of {turned[-1] / 360.0:.4g} turns over the time")
+    return Curve(curve.name, over, of, angles[order], rpm[kept][order], said)

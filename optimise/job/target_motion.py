@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field, WrapValidator
 
 from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
+from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
-from ...objectives.units import shown
-from .beside import MOST_POINTS, beside, require_few_points, table_of
+from .beside import MOST_POINTS, SOURCE, Files, require_few_points, table_beside, unread
+from .curve_file import curve_in, opened, over_angle
 from .loads import increasing
-from .values import Angle, Checked, Length, Part, optional
-
-HEADER = ("crank_angle_deg", "position_mm")
-"""First line of a file of points."""
+from .stated_speed import stated_speed
+from .values import Angle, Checked, Length, Part, Source, optional, source
 
 
 class TargetMotionPart(Checked[TargetMotion]):
@@ -38,8 +36,9 @@ class TargetMotionPart(Checked[TargetMotion]):
         max_length=MOST_POINTS,
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
-        f"instead of the two: a CSV file beside the job file, with the columns {' and '.join(HEADER)}", "motion.csv"
+        "instead of the two: a table beside the job file, of position_mm over crank_angle_deg or time_s", "motion.csv"
     )
+    source: Source = source()
     phase: Freedom = optional(
         "whether the crank may sit on its shaft at any angle: the best one counts", "free", default="fixed"
     )
@@ -50,10 +49,7 @@ class TargetMotionPart(Checked[TargetMotion]):
     def build(self) -> TargetMotion:
         """Return the target motion as the model has it."""
         if self.file is not None:
-            raise InputError(
-                f"a file is read beside a job file only, and instead of points; got file {shown(self.file)}; "
-                "give crank_angles and positions, or the file alone in a job file"
-            )
+            raise unread(self.file, "points")
         if self.crank_angles is None or self.positions is None:
             raise InputError("a target motion needs crank_angles and positions, or a file; got neither; add them")
         return super().build()
@@ -77,20 +73,15 @@ def points_file(data: Mapping[str, Any]) -> str | None:
     return file if isinstance(file, str) else None
 
 
-def with_points(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a job with the points of its file, found in `folder`, in place of the file. Raises JobError."""
+def with_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+    """Return a job with the points of its target motion's file in place of the file. Raises `InputError`."""
     file, job = points_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job
-    path, name = beside(folder, "target_motion.file", file)
-    _, lines = table_of(path, name, [HEADER])
-    for number, line in enumerate(lines, start=2):
-        if len(line) != 2:
-            raise JobError(f"{name} must have two values a line; got {len(line)} in line {number}; correct it")
-    require_few_points(len(lines), name)
-    points = {
-        "crank_angles": [f"{angle} deg" for angle, _ in lines],
-        "positions": [f"{position} mm" for _, position in lines],
-    }
+    curve = curve_in(table_beside(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
+    curve = opened(over_angle(curve, stated_speed(data, curve.name)) if curve.over.kind is TIME else curve)
+    require_few_points(len(curve.at), curve.name)
+    angles, positions = curve.texts()
     rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
+    points = {"crank_angles": angles, "positions": positions, SOURCE: curve.source(file)}
     return {**job, "target_motion": rest | points}

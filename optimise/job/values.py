@@ -27,6 +27,7 @@ from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
 from ...objectives.units import Sign, shown, spread, to_si
+from .beside import SOURCE
 from .grids import Grid, grid_schema, read_grid, says_values
 
 SHORTEST = 1e-9
@@ -49,6 +50,15 @@ def optional(description: str, *examples: object, default: Any = None, **rules: 
     return required(description, *examples, default=default, **rules)
 
 
+Source = Annotated[str, Field(max_length=2000)] | None
+"""Type of the key of what was understood of a file."""
+
+
+def source() -> Any:
+    """Return the entry of what was understood of a file whose content a table has; it says nothing of the problem."""
+    return optional("what was read from the file that the values come from", "motion.csv: 360 rows")
+
+
 Made = TypeVar("Made")
 Table = TypeVar("Table", bound=Part)
 
@@ -64,7 +74,8 @@ class Built(Part, Generic[Made]):
 
     def build(self) -> Made:
         """Return the part of the model that the table states. Raises InputError for values that exclude each other."""
-        given = {self.renamed.get(name, name): getattr(self, name) for name in type(self).model_fields}
+        names = [name for name in type(self).model_fields if name != SOURCE]
+        given = {self.renamed.get(name, name): getattr(self, name) for name in names}
         parts = {name: part.build() if isinstance(part, Built) else part for name, part in given.items()}
         return cast(Made, type(self).makes(**{name: part for name, part in parts.items() if part is not None}))
 

@@ -17,7 +17,7 @@ from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import shown
 from .amounts import Amounts
-from .catalogue import LARGEST
+from .beside import LARGEST, unread
 from .file import DEEPEST
 from .grids import says_values
 from .quantities import ConstraintsPart
@@ -146,10 +146,7 @@ class ChoicePart(Part):
     @model_validator(mode="after")
     def _given(self) -> Self:
         if self.file is not None and self.table is None:
-            raise InputError(
-                f"a file is read beside a job file only, and instead of options; got file {shown(self.file)}; "
-                "give the options, or the file alone in a job file"
-            )
+            raise unread(self.file, "options")
         if len(self.option) < (2 if self.rows is None and self.table is None else 1):
             raise InputError(
                 f"must have two options or more, or a file; got {len(self.option)}; add [[choice.option]] tables"
@@ -171,6 +168,14 @@ def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
             found |= dict(leaves_of({key: value}, ""))
     return found
+
+
+def set_by_options(tables: Mapping[str, Any]) -> set[str]:
+    """Return the paths of numbers that options of an incomplete job's choices set."""
+    choices = tables.get("choice")
+    parts = [part for part in choices or () if isinstance(part, Mapping)] if isinstance(choices, list | tuple) else []
+    options = [one for part in parts for one in part.get("option") or () if isinstance(one, Mapping)]
+    return {path for one in options if isinstance(one.get("values"), Mapping) for path in one["values"]}
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:

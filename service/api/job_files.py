@@ -98,6 +98,7 @@ class Understood(BaseModel):
         description="of each load its size, sign, effect and range",
         examples=[["200 N inward, resists the outward stroke, throughout"]],
     )
+    files: list[str] = Field(description="what was read from each file that the job names", examples=[[]])
     tolerances: list[str] = Field(examples=[["crank 0.05 mm"]])
     costs: list[str] = Field(examples=[[]])
     variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])
@@ -197,7 +198,7 @@ def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
     """Return a problem in words, as it was understood from the tables that state it."""
-    from ...optimise.job.notes import notes_of
+    from ...optimise.job.notes import notes_of, sources_of
     from ..text.summary import summarise
 
-    return Understood(**summarise(problem), notes=notes_of(tables))
+    return Understood(**summarise(problem), files=sources_of(tables), notes=notes_of(tables))

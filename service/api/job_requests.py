@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64decode
 from collections.abc import Collection, Mapping
 from dataclasses import astuple, dataclass
 from http import HTTPStatus
@@ -61,6 +62,12 @@ class Submission(BaseModel, extra="forbid", strict=True):
     """A job and how it is to be solved."""
 
     job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
+    files: dict[str, str] = Field(
+        default={},
+        max_length=100,
+        description="contents of the files that the job names, by name: texts, or bytes as data:text/csv;base64,...",
+        examples=[{"trace.csv": "crank angle (deg),force (N)\n0,-200\n180,0\n"}],
+    )
     priority: Priority = 0
     limits: AskedLimits = AskedLimits()
     origin: int | None = Field(
@@ -116,7 +123,8 @@ async def asked_for(request: Request) -> Asked:
         found = error.errors(include_url=False)
         raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None
     limits = within(stated.limits, settings.limits)
-    return Asked(tables=stated.job, priority=stated.priority, limits=limits, origin=stated.origin)
+    tables = await in_turn(request.app, body, filled, stated) if stated.files else stated.job
+    return Asked(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
 def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
@@ -135,6 +143,20 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
     return tables
 
 
+def filled(stated: Submission) -> dict[str, Any]:
+    """Return the tables of a job with the contents of the files that were sent in their place. Raises `JobError`."""
+    from ...optimise.job import with_files
+
+    contents: dict[str, str | bytes] = {}
+    for name, content in stated.files.items():
+        mark, _, encoded = content.partition(";base64,")
+        try:
+            contents[name] = b64decode(encoded, validate=True) if mark.startswith("data:") and encoded else content
+        except ValueError:
+            raise JobError(f"files.{name[:60]}: must be a text or base64; got a broken one; send it again") from None
+    return with_files(stated.job, contents)
+
+
 def within(asked: AskedLimits, most: Limits) -> Limits:
     """Return limits of a job: those asked for, else the highest of the service. Raises `InputError` for higher ones."""
     limits = Limits(seconds=asked.seconds, evaluations=asked.evaluations, memory=asked.memory_bytes)
@@ -142,19 +164,6 @@ def within(asked: AskedLimits, most: Limits) -> Limits:
         if wanted is not None and highest is not None and wanted > highest:
             raise InputError(f"limits.{name}: is at most {highest} here; got {wanted}; ask for less, or leave it out")
     return limits.within(most)
-
-
-def require_no_file(tables: Mapping[str, Any]) -> None:
-    """Refuse a job whose target motion is in a file: it would be one of the service. Raises `JobError`."""
-    from ...objectives.units import shown
-    from ...optimise.job.target_motion import points_file
-
-    file = points_file(tables)
-    if file is not None:
-        raise JobError(
-            f"target_motion.file: the service opens no file that a client names; got {shown(file)}; give the points "
-            "as crank_angles and positions"
-        )
 
 
 def given_problem(
@@ -168,9 +177,8 @@ def given_problem(
 
     allowed: functions, "module:function", that it may name as quantities. values: numbers to put in place of those
     that it gives, by their paths. require_feasible: whether a job that no design can meet is refused. Raises
-    `JobError`, also for a job that names a file.
+    `JobError`, also for a job that names a file that was not sent.
     """
-    require_no_file(tables)
     return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_ANSWER)
 
 

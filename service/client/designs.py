@@ -109,9 +109,9 @@ class Designs:
 
         csv: the path of a CSV file, or its text, which has more than one line.
         """
-        from ..designs.measured_file import text_of
+        from ..designs.measured_file import measured_text
 
-        text = csv if isinstance(csv, str) and "\n" in csv else text_of(Path(csv))
+        text = csv if isinstance(csv, str) and "\n" in csv else measured_text(Path(csv))
         return self._asked(number, design, "measured", body={"csv": text})
 
     def rounded(

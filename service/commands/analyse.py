@@ -136,10 +136,10 @@ def analyse(
 
 
 def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesign:
-    from ..designs.measured_file import read_measured, text_of
+    from ..designs.measured_file import measured_text, read_measured
     from ..topics.measured import MEASURED
 
-    return MEASURED.of(mechanism, linkage, {"measured": read_measured(text_of(file), mechanism, linkage)})
+    return MEASURED.of(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
 
 
 def _topic_options(

@@ -18,7 +18,7 @@ def check(
     """Check a job file and say what was understood of it."""
     from ...objectives.own.quantity import OwnQuantity
     from ...optimise.job import load_job, read_job
-    from ...optimise.job.notes import notes_of
+    from ...optimise.job.notes import notes_of, sources_of
     from ..text.summary import freedom_in_words, summarise
 
     with warnings.catch_warnings():
@@ -27,14 +27,15 @@ def check(
     for own in problem.own:
         if isinstance(own, OwnQuantity):
             own.require_function()
-    summary = summarise(problem) | {"notes": notes_of(read_job(job))}
+    tables = read_job(job)
+    summary = summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
     if json:
         give(json_text(summary))
         return
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
     parts: dict[str, list[str]] = {
-        **{name: summary[name] for name in ("given", "tolerances", "costs", "variables")},
+        **{name: summary[name] for name in ("given", "files", "tolerances", "costs", "variables")},
         "requirements": summary["rules"],
         "objectives": summary["objectives"],
         "freedom": [freedom_in_words(summary)],

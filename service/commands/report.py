@@ -42,7 +42,7 @@ def report(
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with waiting("writing the report"):
-        from ..designs.measured_file import read_measured, text_of
+        from ..designs.measured_file import measured_text, read_measured
         from ..report.design_report import design_report
         from ..report.html import html_file
         from ..report.pdf import pdf_file
@@ -54,7 +54,7 @@ def report(
         if measured is not None:
             design = subject.design
             require_turning(design.part, "what --measured compares")
-            samples = read_measured(text_of(measured), design.mechanism, design.linkage)
+            samples = read_measured(measured_text(measured), design.mechanism, design.linkage)
             subject = replace(subject, measured=samples)
         made = design_report(subject)
         content = pdf_file(made) if pdf else html_file(made)

@@ -125,7 +125,7 @@ def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) 
 
 def test_a_file_has_no_place_in_tables_of_a_request() -> None:
     tables = {"name": "motor", "file": "gearmotors.csv"}
-    with pytest.raises(JobError, match="a file is read beside a job file only"):
+    with pytest.raises(JobError, match="a file lies beside the job file"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [tables]})
     with pytest.raises(JobError, match="must have two options or more, or a file; got 0"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [{"name": "motor"}]})
@@ -138,18 +138,18 @@ ROW = "A,10,5,1"
     ("text", "words"),
     [
         ("", "must begin with a line that names its columns; got an empty file; fill it"),
-        (HEADER, "must have a row below the names of its columns; got none; add it"),
+        (HEADER, "must have rows below the names of its columns; got none; add them"),
         (
             "name,mechanism.slider.mass (kg)\nA,1\nB,",
-            'row 3, column "mechanism.slider.mass (kg)": must have a number; got an empty cell',
+            'row 3, column "mechanism.slider.mass (kg)": must be a number; got an empty cell',
         ),
         (f"{HEADER}\n{ROW}\nB,=2*B2,5,1", 'must be a number; got the formula "=2*B2"; save values instead of formulas'),
         (f"{HEADER}\n=A1,10,5,1", "row 2, column name: must be a name"),
         (
-            f'{HEADER}\nA,"10,5",5,1',
-            'row 2, column "peak_torque max (N m)": must be a number; got "10,5"; write a decimal point',
+            f'{HEADER}\nA,"10,500",5,1',
+            "must show its decimal sign; got 10,500, which may mean a thousand times as much",
         ),
-        (f"{HEADER}\nA,10 N m,5,1", "write the number alone; its unit stands in the header"),
+        (f"{HEADER}\nA,10 N m,5,1", "write the number alone, its unit stands in the first line"),
         (f"{HEADER}\nA,nan,5,1", 'got "nan"'),
         (f"{HEADER}\nA,1e999,5,1", 'got "1e999"'),
         (f"{HEADER}\n{ROW}\n\nA,11,5,1", 'row 4, column name: names must differ; got "A" of row 2 again; rename one'),
@@ -166,8 +166,8 @@ ROW = "A,10,5,1"
         ("name,(mm)\nA,1", "must be a quantity or formula with min, max or equals, or the path of a number"),
         ("name,# price\nA,1", "must have a column beside the name"),
         ("motor,stroke max (mm)\nA,1", 'must have the column name first; got "motor"'),
-        ('name,stroke max (mm)\n"A,1', "must be a line of CSV"),
-        ("name,stroke max (mm)\nA\0,1", "got a byte 0"),
+        ('name,stroke max (mm)\n"A,1', "must be a table in CSV; got unexpected end of data in row 2"),
+        ("name,stroke max (mm)\nA\0,1", "must be text; got a byte 0"),
         (
             "name,mechanism.slider.mas (kg)\nA,1",
             'column "mechanism.slider.mas (kg)": must name a number that the job gives; got mechanism.slider.mas; did ',
@@ -234,13 +234,10 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     job = written(tmp_path, "")
     with (tmp_path / "gearmotors.csv").open("wb") as file:
         file.truncate(50_000_000)
-    with pytest.raises(JobError, match="must have at most 10 MB; got 50 MB; keep the rows"):
-        load_job(job)
-    (tmp_path / "gearmotors.csv").write_bytes("näme".encode("latin-1"))
-    with pytest.raises(JobError, match="must be UTF-8 text"):
+    with pytest.raises(JobError, match="must have at most 10 MB; got more; keep the rows"):
         load_job(job)
     (tmp_path / "gearmotors.csv").unlink()
-    with pytest.raises(JobError, match="must be a file; got none of that name; put it beside the job file"):
+    with pytest.raises(JobError, match="must be a file; got none of that name; check the name and the folder"):
         load_job(job)
     for elsewhere in ("/etc/passwd", "../gearmotors.csv"):
         job.write_text(JOB.replace("gearmotors.csv", elsewhere))

@@ -99,14 +99,20 @@ motion_deviation = "minimise"
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (None, "No such file"),
-        ("angle,position\n0,1\n", "must begin with the line crank_angle_deg,position_mm"),
-        ("crank_angle_deg,position_mm\n0,100\n90\n", "two values a line; got 1 in line 3"),
-        ("crank_angle_deg,position_mm\n0,100\n90,wide\n180,120\n", "positions #2"),
+        (None, "got none of that name"),
+        (
+            "angle,position\n0,1\n",
+            r"must have one column of an angle \(deg\) or a time \(s\), its unit in brackets or at the end",
+        ),
+        ("crank_angle_deg,position_mm\n0,100\n90\n", "row 3 must have 2 cells, as the first line; got 1"),
+        (
+            "crank_angle_deg,position_mm\n0,100\n90,wide\n180,120\n",
+            'row 3, column "position_mm": must be a number; got "wide"',
+        ),
         ("crank_angle_deg,position_mm\n0,100\n90,110\n80,120\n", "must increase"),
         ("crank_angle_deg,position_mm\n0,100\n90,110\n", "at least 3 entries"),
-        ('crank_angle_deg,position_mm\n"0,100\n', "must be a CSV file"),
-        ("", "must begin with the line"),
+        ('crank_angle_deg,position_mm\n"0,100\n', "must be a table in CSV; got unexpected end of data in row 2"),
+        ("", "must begin with a line that names its columns"),
     ],
 )
 def test_a_wrong_file_of_points_is_refused(content: str | None, said: str, tmp_path: Path) -> None:
@@ -118,10 +124,10 @@ def test_a_wrong_file_of_points_is_refused(content: str | None, said: str, tmp_p
 
 
 def test_a_file_of_too_many_points_is_named_with_what_to_do(tmp_path: Path) -> None:
-    lines = [f"{0.2 * place},100" for place in range(1800)]
+    lines = [f"{0.03 * place:.2f},100" for place in range(11_000)]
     (tmp_path / "motion.csv").write_text("\n".join(["crank_angle_deg,position_mm", *lines]), encoding="utf-8")
     given = job({"file": "motion.csv"}, {"motion_deviation": "minimise"})
-    said = r"target_motion\.file: \"motion\.csv\" must have at most 1,000 points; got 1,800; .* keep one line in 2"
+    said = r"target_motion\.file: \"motion\.csv\" must have at most 10,000 points that count; got 11,000; .* line in 2"
     with pytest.raises(JobError, match=said):
         problem(given, folder=tmp_path)
 
@@ -131,7 +137,7 @@ def test_a_file_elsewhere_is_refused(tmp_path: Path) -> None:
         (tmp_path / "job.toml").write_text(TOML.replace("motion.csv", file))
         with pytest.raises(JobError, match="must lie beside the job file"):
             load_job(tmp_path / "job.toml")
-    with pytest.raises(JobError, match="beside a job file only"):
+    with pytest.raises(JobError, match="a file lies beside the job file"):
         parse_job(job({"file": "motion.csv"}, {"motion_deviation": "minimise"}))
 
 

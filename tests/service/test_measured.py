@@ -18,7 +18,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.tables.deviation import deviations
 from slidercrank.service.designs import measured_file
-from slidercrank.service.designs.measured_file import read_measured, text_of
+from slidercrank.service.designs.measured_file import measured_text, read_measured
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.topics.measured import MEASURED
@@ -103,27 +103,30 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "begins with a line that names its columns; got an empty one"),
-        ("\n\n# only this\n", "begins with a line that names its columns; got an empty one"),
-        ("crank_angle_deg,slider_position_mm\n", "has rows below its first line; got none"),
-        ("0,430\n90,300\n", "begins with a line that names its columns; got '0, 430'; add one such as crank_angle_deg"),
-        (PLAIN.replace("300.5", "abc"), "'slider_position_mm' has numbers; got 'abc' in line 3"),
-        (PLAIN.replace("300.5", "inf"), "'slider_position_mm' has numbers; got 'inf' in line 3"),
-        (PLAIN.replace("300.5", "1e999"), "'slider_position_mm' has numbers; got '1e999' in line 3"),
-        (PLAIN.replace("300.5", "3_00"), "'slider_position_mm' has numbers; got '3_00' in line 3"),
-        (PLAIN.replace("300.5", "0x1F"), "'slider_position_mm' has numbers; got '0x1F' in line 3"),
+        ("", "must begin with a line that names its columns; got an empty file"),
+        ("\n\n# only this\n", "must begin with a line that names its columns; got an empty file"),
+        ("crank_angle_deg,slider_position_mm\n", "must have rows below the names of its columns; got none"),
+        (
+            "0,430\n90,300\n",
+            "must begin with a line that names its columns, with units; got '0, 430'; add one such as crank_angle_deg",
+        ),
+        (PLAIN.replace("300.5", "abc"), 'row 3, column "slider_position_mm": must be a number; got "abc"'),
+        (PLAIN.replace("300.5", "inf"), 'row 3, column "slider_position_mm": must be a number; got "inf"'),
+        (PLAIN.replace("300.5", "1e999"), 'row 3, column "slider_position_mm": must be a number; got "1e999"'),
+        (PLAIN.replace("300.5", "3_00"), 'row 3, column "slider_position_mm": must be a number; got "3_00"'),
+        (PLAIN.replace("300.5", "0x1F"), 'row 3, column "slider_position_mm": must be a number; got "0x1F"'),
         (PLAIN.replace("300.5", "1e90"), "'slider_position_mm' is at most 10000 m in size; got 1e+90 in row 2"),
-        (PLAIN.replace("\n0,", "\ndeg,"), "'crank_angle_deg' has numbers; got 'deg' in line 2"),
+        (PLAIN.replace("\n0,", "\ndeg,"), 'row 2, column "crank_angle_deg": must be a number; got "deg"'),
         (
             PLAIN.replace("300.5", "300,5"),
-            "got 3 for 2 columns in line 3; where numbers have a decimal comma, separate",
+            "row 3 must have 2 cells, as the first line; got 3; correct it; where numbers have a decimal comma,",
         ),
         (
             PLAIN.replace("300.5", '"300,5"').replace("240", "240.5"),
-            "one decimal sign and none for thousands; got '300,5",
+            "must have one decimal sign; got 300,5 and 240.5; write all numbers alike",
         ),
-        (PLAIN.replace("300.5", '"1,300.5"'), "'slider_position_mm' has numbers; got '1,300.5' in line 3"),
-        (PLAIN.replace("300.5", '"300"x'), "is CSV; got ',' expected after '\"' in line 3; correct it"),
+        (PLAIN.replace("300.5", '"1,300"'), "must show its decimal sign; got 1,300, which may mean a thousand times"),
+        (PLAIN.replace("300.5", '"300"x'), "must be a table in CSV; got ',' expected after '\"' in row 3; correct it"),
         (
             PLAIN.replace("slider_position_mm", "crank_angle_deg"),
             "is measured once; got the columns 'crank_angle_deg'",
@@ -132,10 +135,10 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("slider_position_mm", "slider_position_kg"), "got 'slider_position_kg', a mass"),
         (PLAIN.replace("slider_position_mm", "pressure_bar"), "no column is a curve with its unit"),
         (PLAIN.replace("crank_angle_deg", "angle"), "has the column crank_angle_deg, or time_s"),
-        (PLAIN + "\0", "is text; got a byte 0"),
-        ("a," * 2000 + "\n", "has at most 1000 columns; got 2001"),
-        ("%PDF-1.4 binary", "has the column crank_angle_deg"),
-        ('{"crank_angle_deg": [1]}', "has the column crank_angle_deg"),
+        (PLAIN + "\0", "must be text; got a byte 0"),
+        ("a," * 2000 + "\n", "must have at most 1000 columns; got 2001"),
+        ("%PDF-1.4 binary", "must begin with a line that names its columns"),
+        ('{"crank_angle_deg": [1]}', "must have rows below"),
     ],
 )
 def test_a_file_that_cannot_be_is_refused_in_a_sentence(text: str, words: str) -> None:
@@ -168,19 +171,15 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
 
 def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measured_file, "_LARGEST", 1000)
-    latin, wide, large = tmp_path / "latin.csv", tmp_path / "wide.csv", tmp_path / "large.csv"
+    large, sheet = tmp_path / "large.csv", tmp_path / "sheet.xlsx"
     large.write_text(PLAIN + "\n" * 1000)
-    latin.write_bytes("crank angle [°],slider_position_mm\n0,430\n".encode("latin-1"))
-    wide.write_bytes(PLAIN.encode("utf-16"))
+    sheet.write_bytes(b"PK\x03\x04\x14\0")
     for file, words in (
-        (latin, "is UTF-8 text; got other bytes"),
-        (wide, "is UTF-8 text; got other bytes"),
-        (tmp_path, "got the folder"),
-        (large, "has at most 0 MB; got more in"),
-        (tmp_path / "none.csv", "No such file"),
+        (tmp_path, "must be a file; got a folder"),
+        (large, "must have at most 0.001 MB; got more"),
+        (tmp_path / "none.csv", "got none of that name"),
+        (sheet, "must be text; got a spreadsheet or another binary file; save"),
     ):
-        with pytest.raises(InputError, match=words):
-            text_of(file)
         done = command("analyse", *SIEVE, "--measured", file)
         assert (done.exit_code, done.stdout) == (2, "")
         assert words in done.stderr.replace("\n", " ")
@@ -241,7 +240,7 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     for words in ("Measured minus computed, 200 rows", f"{position['rms_mm']:.6g}", "-8 ", "left out: room"):
         assert words in told.stdout
     assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
-    sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(text_of(file), fronts.MACHINE, LINKAGE))
+    sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(measured_text(file), fronts.MACHINE, LINKAGE))
     assert [len(panel.lines) for panel in sheet.panels] == [4, 4]
     assert overlaps(draw_sheet(sheet)) == []
     for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):

@@ -182,7 +182,7 @@ def test_check_says_what_the_command_line_says(solved: Solved, client: httpx.Cli
     ("change", "words"),
     [
         ({"variables": {"crank": ["20 mm", "10 mm"]}}, "variables"),
-        ({"target_motion": {"file": "/etc/passwd"}}, "opens no file"),
+        ({"target_motion": {"file": "/etc/passwd"}}, "a file lies beside the job file, or its content is sent"),
         ({"quantity": {"evil": {"function": "os:system", "unit": "mm", "title": "x"}}}, "quantity.evil"),
         ({"mechanism": {"speed": "nan rpm"}}, "speed"),
     ],

@@ -107,7 +107,8 @@ def test_a_file_of_the_client_is_not_opened(shared: httpx.Client) -> None:
     for path, body in (("/jobs", {"job": job}), ("/check", {"job": job})):
         sentence = refused(shared.post(path, json=body), 422)
         assert "target_motion" in sentence
-        assert "crank_angles and positions" in sentence
+        assert "its content is sent with the job (API: files)" in sentence
+        assert 'got file "/etc/passwd"; send it, or give the points alone' in sentence
 
 
 def test_functions_of_a_job_run_only_if_the_operator_allows_them(serve: Serve) -> None:

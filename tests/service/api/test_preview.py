@@ -210,8 +210,8 @@ def test_an_empty_job_says_what_is_missing(shared: httpx.Client) -> None:
 def test_a_job_that_names_a_file_of_the_service_is_refused(shared: httpx.Client, feeder: Job) -> None:
     feeder["target_motion"] = {"file": "/etc/passwd"}
     (wrong,) = preview(shared, feeder)["wrong"]
-    assert wrong["path"] == "target_motion.file"
-    assert "the service opens no file" in wrong["sentence"]
+    assert wrong["path"] == "target_motion"
+    assert "a file lies beside the job file, or its content is sent" in wrong["sentence"]
 
 
 def hostile(feeder: Job) -> dict[str, Job]:

@@ -86,7 +86,7 @@ def test_the_command_writes_them_and_refuses_a_bad_file(tmp_path: Path, kept: Pa
     file.write_text("crank_angle_deg,slider_position_mm\n0,300\n90,x\n")
     refused = command(*arguments)
     assert refused.exit_code == 2
-    assert "got 'x' in line 3" in refused.stderr
+    assert 'row 3, column "slider_position_mm": must be a number; got "x"' in refused.stderr
     assert not out.exists()
     file.write_text("crank_angle_deg,slider_position_mm\n0,300\n90,200\n")
     assert command(*arguments).exit_code == 0

@@ -1,0 +1,225 @@
+"""Curves in files that a job names: values over the crank angle, a time or a slider position, found by their units.
+
+A head has its unit in brackets or at its end: "force (N)", "force [N]", "force_N". A column whose head begins with # is
+passed over. Rows may go down instead of up, begin at any angle, run over 360 deg to 0 deg, and repeat the first one at
+the end.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.errors import InputError
+from ...objectives.kinds import ANGLE, TIME, Kind
+from ...objectives.units import per_si, shown, symbol_in
+from .table_file import TableFile
+
+_BRACKETED = re.compile(r".*[\[(]([^\])]*)[\])]\s*", re.DOTALL)
+_CLOSE = 1e-3  # relative: a record that ends this near to whole turns ends with them, unless half its last step is less
+_TURNS = {"deg": 360.0}  # exactly
+SHARE = 5e-4
+"""Greatest change of a thinned curve over the difference of its greatest and its least value."""
+MOST_KEPT = 1000
+"""Points of a curve that stays as it is."""
+
+
+class Head(NamedTuple):
+    """A column of a table: its place, its head, the kind of its values and their unit as jobs write it."""
+
+    place: int
+    text: str
+    kind: Kind
+    unit: str
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Values over places, both in the units of their heads. said: what was read and made of it, in words."""
+
+    name: str
+    over: Head
+    of: Head
+    at: Array
+    values: Array
+    said: tuple[str, ...]
+
+    @property
+    def turn(self) -> float:
+        """A turn of the crank in the unit of its angle."""
+        return _TURNS.get(self.over.unit, 2.0 * math.pi * per_si(self.over.unit))
+
+    @property
+    def span(self) -> float:
+        """Turns from the first point to the last one."""
+        return float(self.at[-1] - self.at[0]) / self.turn
+
+    def texts(self) -> tuple[list[str], list[str]]:
+        """Return places and values as a job has them."""
+        found = ((self.over.unit, self.at), (self.of.unit, self.values))
+        places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in found)
+        return places, values
+
+    def source(self, file: str) -> str:
+        """Return what was understood of a file, in words."""
+        return f"{file}: {'; '.join(self.said)}"
+
+
+def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curve:
+    """Return the curve of a table's columns with units of some kinds. Raises `InputError` for none or several."""
+    kinds = (*over, *of)
+    heads = [head for place, text in enumerate(table.heads) if (head := _head(place, text, kinds)) is not None]
+    angles = [head for head in heads if head.kind is ANGLE and ANGLE in over]
+    x = _one(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
+    y = _one(table, [head for head in heads if head.kind in of and head is not x], of)
+    at, values = table.numbers([x.place, y.place])
+    again = np.flatnonzero((np.diff(at) == 0.0) & (np.diff(values) == 0.0))
+    at, values = np.delete(at, again + 1), np.delete(values, again + 1)
+    curve = Curve(table.name, x, y, at, values, (table.understood([x.place, y.place]),))
+    return _rising(curve, table) if x.kind is not TIME else curve
+
+
+def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
+    """Return the meaning of a head by its unit, in brackets or at its end; None without one of some kinds."""
+    if text.startswith("#"):
+        return None
+    bracketed = _BRACKETED.fullmatch(text)
+    words = re.split(r"[\s_,:]+|\s/\s", text)
+    endings = [" ".join(words[n:]) for n in range(1, len(words))]
+    for unit in [bracketed[1]] if bracketed else endings:
+        for kind in kinds:
+            symbol = symbol_in(unit, kind)
+            if symbol is not None:
+                return Head(place, text, kind, symbol)
+    return None
+
+
+def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
+    """Return the only one of some columns, or of several of one kind the only one that names it."""
+    named = [head for head in heads if head.kind.plain.split()[-1] in head.text.casefold()]
+    found = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
+    if len(found) == 1:
+        return found[0]
+    choice = " or ".join(f"{kind.name} ({kind.metric.symbol})" for kind in kinds)
+    what = f"{table.name} must have one column of {choice}"
+    if not found:
+        raise InputError(
+            f"{what}, its unit in brackets or at the end of its name; got {', '.join(map(shown, table.heads[:6]))}; "
+            "name the unit"
+        )
+    raise InputError(
+        f"{what}; got {' and '.join(shown(head.text) for head in found[:3])}; let the names of the others begin with #"
+    )
+
+
+def _rising(curve: Curve, table: TableFile) -> Curve:
+    """Return a curve whose places go up: turned round where they go down, over full turns where they begin again."""
+    at, values, said = curve.at, curve.values, curve.said
+    steps = np.diff(at)
+    if (steps < 0.0).sum() > (steps > 0.0).sum():
+        at, values, said = at[::-1], values[::-1], (*said, "sorted upwards")
+    if curve.over.kind is ANGLE:
+        wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.turn)])
+        if wraps[-1]:
+            at, said = at + curve.turn * wraps, (*said, "angles counted on beyond a turn")
+    wrong = np.flatnonzero(np.diff(at) < 0.0)
+    if len(wrong):
+        n = int(wrong[0])
+        raise InputError(
+            f"{table.name}: {shown(curve.over.text)} must increase; got {at[n + 1]:g} after {at[n]:g}; sort the rows, "
+            "and keep one stroke of a position that goes back and forth"
+        )
+    return replace(curve, at=at, values=values, said=said)
+
+
+def over_angle(curve: Curve, speed: float) -> Curve:
+    """Return a curve over time as one over the crank angle at a constant speed, rad/s; others as they are."""
+    if curve.over.kind is not TIME:
+        return curve
+    wrong = np.flatnonzero(np.diff(curve.at) < 0.0)
+    if len(wrong):
+        raise InputError(f"{curve.name}: times must increase; got {curve.at[wrong[0] + 1]:g} later; sort the rows")
+    turns = curve.at / per_si(curve.over.unit) * speed / (2.0 * math.pi)
+    said = (*curve.said, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
+    order = slice(None, None, -1 if speed < 0.0 else 1)
+    head = curve.over._replace(kind=ANGLE, unit="deg")
+    return replace(curve, over=head, at=360.0 * turns[order], values=curve.values[order], said=said)
+
+
+def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
+    """Return the first cycle of a curve over the crank angle, and its turns: those given, else one or two.
+
+    A record that ends nearly with whole turns ends with them. Raises `InputError` for one between one turn and two.
+    """
+    near = min(_CLOSE, 0.5 * float(curve.at[-1] - curve.at[-2]) / curve.turn) if len(curve.at) > 1 else 0.0
+    whole = round(curve.span)
+    if whole >= 1 and 0.0 < abs(curve.span - whole) <= near:
+        at = curve.at[0] + (curve.at - curve.at[0]) * (whole / curve.span)
+        at[-1] = curve.at[0] + whole * curve.turn
+        curve = replace(curve, at=at)
+    if turns is None:
+        turns = 1 if curve.span <= 1.0 else 2
+        step = float(np.max(np.diff(curve.at))) / curve.turn
+        if turns == 2 and not 2.0 - 2.0 * step <= curve.span <= 2.0:
+            raise InputError(
+                f"{curve.name} must cover one turn or two, unless the job gives the cycle; got {curve.span:.4g} turns; "
+                'give cycle = "360 deg" or "720 deg", of which the file has the first one'
+            )
+    if curve.span > turns:
+        kept = curve.at < curve.at[0] + (turns - near) * curve.turn
+        said = (*curve.said, f"the first cycle of {curve.span / turns:.4g}")
+        curve = replace(curve, at=curve.at[kept], values=curve.values[kept], said=said)
+    return curve, turns
+
+
+def opened(curve: Curve) -> Curve:
+    """Return a curve over one turn without a last point that repeats the first one.
+
+    Raises `InputError` if the two differ by more than a thousandth of the curve's range.
+    """
+    curve, _ = of_cycle(curve, 1)
+    if curve.span < 1.0:
+        return curve
+    first, last = curve.values[0], curve.values[-1]
+    if abs(last - first) > _CLOSE * np.ptp(curve.values):
+        raise InputError(
+            f"{curve.name}: the last row is the first one a turn later, and must have its value; got {first:g} and "
+            f"{last:g} {curve.of.unit}; correct one of them, or leave out the last row"
+        )
+    said = (*curve.said, "the last row repeats the first one and is left out")
+    return replace(curve, at=curve.at[:-1], values=curve.values[:-1], said=said)
+
+
+def thinned(curve: Curve) -> Curve:
+    """Return a curve of more than `MOST_KEPT` points without those that straight lines replace; steps stay.
+
+    No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1
+    (1972) 244, with the deviation along the values, which is greatest at a point that is left out.
+    """
+    if len(curve.at) <= MOST_KEPT:
+        return curve
+    bound = SHARE * float(np.ptp(curve.values))
+    kept = np.zeros(len(curve.at), dtype=bool)
+    ends = [0, *(np.flatnonzero(np.diff(curve.at) == 0.0) + 1).tolist(), len(curve.at)]
+    left = [(a, b - 1) for a, b in pairwise(ends)]
+    while left:
+        a, b = left.pop()
+        kept[[a, b]] = True
+        if b - a < 2:
+            continue
+        x, y = curve.at[a : b + 1], curve.values[a : b + 1]
+        off = np.abs(y[0] + (y[-1] - y[0]) * ((x - x[0]) / (x[-1] - x[0])) - y)
+        far = int(np.argmax(off[1:-1])) + 1
+        if off[far] > bound:
+            left += [(a, a + far), (a + far, b)]
+    count = int(kept.sum())
+    share = f"{bound:.3g} {curve.of.unit}, {100.0 * SHARE:g} % of its range"
+    said = f"{count:,} points kept, which changes no value by more than {share}"
+    return replace(curve, at=curve.at[kept], values=curve.values[kept], said=(*curve.said, said))

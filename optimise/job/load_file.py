@@ -1,0 +1,75 @@
+"""Loads whose points are in a file: a table of forces, torques or pressures, told by the units of its columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ...model.errors import InputError
+from ...model.machine.loads.load import ANGLE_DATUM, CYCLE, Entry, Table
+from ...model.machine.loads.registry import kinds
+from ...objectives.kinds import ANGLE, TIME, Kind
+from ...objectives.units import shown
+from . import values
+from .beside import SOURCE, Files, require_few_points, table_beside
+from .curve_file import curve_in, of_cycle, over_angle, thinned
+from .messages import key_of
+from .stated_speed import stated_speed
+
+
+def load_files(data: Mapping[str, Any]) -> list[str]:
+    """Return the files that loads of a job name."""
+    loads = data.get("load")
+    parts = loads if isinstance(loads, list | tuple) else ()
+    return [part["file"] for part in parts if isinstance(part, Mapping) and isinstance(part.get("file"), str)]
+
+
+def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+    """Return a job with the points of its loads' files in place of the files. Raises `InputError`."""
+    job = dict(data)
+    if load_files(data):
+        job["load"] = [_filled(part, place, files, data) for place, part in enumerate(job["load"])]
+    return job
+
+
+def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
+    file = part.get("file") if isinstance(part, Mapping) else None
+    tables = {(_kind(at), _kind(of)): table for table, at, of in tables_of_points()}
+    if not isinstance(file, str) or any(entry.name in part for _, *pair in tables_of_points() for entry in pair):
+        return part  # the model refuses both
+    name = key_of(["load", place, "file"])
+    over = (*dict.fromkeys(at for at, _ in tables), TIME)
+    curve = curve_in(table_beside(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))
+    found = tables.get((ANGLE if curve.over.kind is TIME else curve.over.kind, curve.of.kind))
+    if found is None:
+        raise InputError(
+            f"{curve.name} must be a table of a load; got {shown(curve.of.text)} over {shown(curve.over.text)}; give "
+            "torques over the crank angle"
+        )
+    at, of = (entry.name for entry in found.entries if entry.several)
+    rest = {key: value for key, value in part.items() if key != "file"}
+    if curve.over.kind is TIME:
+        signed = ANGLE_DATUM in found.entries and rest.get(ANGLE_DATUM.name, ANGLE_DATUM.default) == ANGLE_DATUM.default
+        speed = stated_speed(data, curve.name)
+        curve = over_angle(curve, speed if signed else abs(speed))
+    if curve.over.kind is ANGLE:
+        curve, turns = of_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
+        rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
+    curve = thinned(curve)
+    require_few_points(len(curve.at), curve.name)
+    places, sizes = curve.texts()
+    return rest | {at: places, of: sizes, SOURCE: curve.source(file)}
+
+
+def tables_of_points() -> list[tuple[Table, Entry, Entry]]:
+    """Return the tables of loads with points, each with its entries of where they are and of their values."""
+    every = [table for kind in kinds() for table in kind.tables]
+    pairs = [(table, [entry for entry in table.entries if entry.several]) for table in every]
+    return [(table, pair[0], pair[1]) for table, pair in pairs if len(pair) == 2]
+
+
+def _kind(entry: Entry) -> Kind:
+    """Return the kind of the values of an entry."""
+    marked: Any = getattr(values, str(entry.kind))
+    kind: Kind = marked.__metadata__[0].kind
+    return kind

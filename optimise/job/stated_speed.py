@@ -1,0 +1,33 @@
+"""The constant crank speed of a job that is not validated yet, for files over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from ...model.errors import InputError
+from .crank_speed import SPEED_KEYS, CrankSpeedPart
+from .variables import set_by_options, varying_in
+
+
+def stated_speed(data: Mapping[str, Any], name: str) -> float:
+    """Return the constant speed that the tables of a job state, rad/s, for a file over time. Raises `InputError`.
+
+    name: of the file, for messages.
+    """
+    mechanism, loads = data.get("mechanism"), data.get("load")
+    given = mechanism if isinstance(mechanism, Mapping) else {}
+    varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(varying_in(data)) | set_by_options(data))
+    if "speed_profile" in given or given.get("acceleration") or varies:
+        raise InputError(f"{name} is over time, which needs one constant crank speed; give crank angles instead")
+    stated = {key: given[key] for key in (*SPEED_KEYS, "direction") if key in given}
+    try:
+        part = CrankSpeedPart.model_validate(stated)
+    except ValidationError:
+        stated = {}
+    if not stated:
+        raise InputError(f"{name} is over time, which needs the crank speed; got none; give speed in [mechanism]")
+    long = [one for one in loads or () if isinstance(one, Mapping) and one.get("cycle") == "720 deg"]
+    return part.crank_speed(2 if long else 1)

@@ -1,0 +1,395 @@
+"""Tables in text files as loggers and spreadsheets of any language write them: every file that a job or command names.
+
+The first line with content names the columns; a commented one does where no other line can. Empty lines and lines that
+begin with #, % or // are passed over. Between cells stand commas, semicolons, tabs, bars or blanks: the sign by which
+most lines have as many cells as the first, unless a line such as "sep=;" says it. `csv` splits the cells. Its own
+`Sniffer`, which pandas uses too, takes a decimal comma for a separator and cannot name the line of a wrong cell.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import itertools
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.errors import InputError
+from ...objectives.units import shown
+
+_SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
+"""In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
+_COMMENT = re.compile(r"\s*(?:#|%|//)+\s*")
+_SAID = re.compile(r'"?sep=(\\t|.)"?', re.IGNORECASE)
+_SAMPLE = 200  # lines by which separators are told apart
+_MOST_COLUMNS = 1000
+_AT_ONCE = 50_000  # rows of which the cells are kept as single texts
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_BINARY = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"%PDF")
+_MISSING = ("", "nan", "na", "n/a", "#n/a", "#nv", "null", "-")
+_EXPONENT = r"(?:[eE][+-]?\d{1,3})?"
+_BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a cell in quotes
+_NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}", re.ASCII)
+_LIKE_A_NUMBER = re.compile(rf"[+-]?[.,]?\d[\d.,]*{_EXPONENT}", re.ASCII)
+_BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))")
+"""Signs that part thousands and mean nothing else."""
+
+
+def bytes_of(path: Path, name: str, most: int) -> bytes:
+    """Return the content of a file of at most `most` bytes. Raises `InputError`; name: how messages call the file."""
+    try:
+        if path.is_dir():
+            raise InputError(f"{name} must be a file; got a folder; name a file in it")
+        with path.open("rb") as file:
+            content = file.read(most + 1)
+    except FileNotFoundError:
+        raise InputError(f"{name} must be a file; got none of that name; check the name and the folder") from None
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{name} cannot be read: {why}; name another file, or permit it") from None
+    if len(content) > most:
+        raise InputError(
+            f"{name} must have at most {most / 1e6:.3g} MB; got more; keep the rows and columns that matter"
+        )
+    return content
+
+
+def text_of(content: bytes, name: str) -> str:
+    """Return a file's text: in the encoding that its mark says, else UTF-8, else Latin-1 as Windows has it."""
+    if content.startswith(_BINARY):
+        raise InputError(f"{name} must be text; got a spreadsheet or another binary file; save the sheet as CSV")
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return _decoded(content.removeprefix(mark), encoding, name)
+    even, odd = (content[place:2000:2].count(0) for place in (0, 1))
+    if bool(even) != bool(odd) and not len(content) % 2:  # UTF-16 without a mark: one byte of each Latin letter is zero
+        return _decoded(content, "utf-16-be" if even else "utf-16-le", name)
+    try:
+        return content.decode()
+    except UnicodeDecodeError:
+        return content.decode("cp1252", "replace")
+
+
+def _decoded(content: bytes, encoding: str, name: str) -> str:
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError:
+        raise InputError(f"{name} must be text; got bytes that are not {encoding.upper()}; save it as CSV") from None
+
+
+@dataclass(frozen=True)
+class _Portion:
+    """Some rows: the numbers of their lines, and the cells of each column as one text, a line each."""
+
+    lines: Array
+    columns: list[str]
+
+
+@dataclass
+class TableFile:
+    """A table that was read. name: of the file, for messages. heads: of its columns. said: of separator and signs.
+
+    signs: the decimal one and the one that parts thousands, once numbers were asked for.
+    """
+
+    name: str
+    heads: tuple[str, ...]
+    said: list[str]
+    separator: str
+    portions: list[_Portion] = field(repr=False)
+    signs: tuple[str, str] = (".", ",")
+
+    def __len__(self) -> int:
+        return sum(len(portion.lines) for portion in self.portions)
+
+    def understood(self, places: Sequence[int]) -> str:
+        """Return what was read in words: rows, some of the columns, first and last row as numbers, signs."""
+        ends = ((self.portions[0], 0), (self.portions[-1], -1))
+        first, last = (
+            ", ".join(self._number_in_words(of.columns[place].split("\n")[n]) for place in places) for of, n in ends
+        )
+        heads = ", ".join(self.heads[place] for place in places)
+        return "; ".join([f"{len(self):,} rows of {heads}", f"first {first}", f"last {last}", *self.said])
+
+    def _number_in_words(self, cell: str) -> str:
+        decimal, grouping = self.signs
+        digits = _plain(cell).replace(grouping, "").replace(decimal, ".")
+        return f"{float(digits):.6g}" if _NUMBER.fullmatch(digits) else cell
+
+    @property
+    def rows(self) -> list[int]:
+        """Line of each row in the file."""
+        return [int(line) for portion in self.portions for line in portion.lines]
+
+    def texts(self, place: int) -> list[str]:
+        """Return the cells of a column."""
+        return [cell for portion in self.portions for cell in portion.columns[place].split("\n")]
+
+    def numbers(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[Array]:
+        """Return columns of numbers, NaN for cells without one in columns that may be `missing` some.
+
+        Raises `InputError` for other cells.
+        """
+        if not places:
+            return []
+        parts = self._with_points(places)
+        return [
+            np.concatenate([self._floats(n, portion, cells[n], missing=n in missing) for portion, cells in parts])
+            for n in places
+        ]
+
+    def digits(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[list[str]]:
+        """Return columns of numbers as they are written, with decimal points; some of those `missing` may be empty.
+
+        Raises `InputError` for other cells.
+        """
+        numbers, parts = self.numbers(places, missing=missing), self._with_points(places)
+        found = [[cell for _, of in parts for cell in of[n].split("\n")] for n in places]
+        for place, column, cells in zip(places, numbers, found, strict=True):
+            for n in np.flatnonzero(np.isnan(column)):
+                if cells[n]:
+                    where = self.at(self.rows[n], place)
+                    raise InputError(f"{where}: must be a number or empty; got {shown(cells[n])}; correct it")
+        return found
+
+    def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
+        """Return the cells of columns with decimal points and without signs that part thousands."""
+        parts = [(portion, {n: _plain(portion.columns[n]) for n in places}) for portion in self.portions]
+        signs = _Signs([text for _, cells in parts for text in cells.values()])
+        decimal, grouping = self.signs = self._decimal(signs)
+        example = signs.first(_group(decimal))
+        word = "comma" if decimal == "," else "point"
+        said = f"decimal {word}"
+        if example is not None:
+            said += f", so that {example} is {float(example.replace(decimal, '.')):g}"
+        if said not in (*self.said, "decimal point"):
+            self.said.append(said)
+        wrong = re.compile(rf"^(?!{_whole(grouping, decimal)}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
+        for _, cells in parts:
+            for n, text in cells.items():
+                if grouping in text:  # what is not parted in threes is no number
+                    text = wrong.sub(lambda cell: cell[0].replace(grouping, "?"), text).replace(grouping, "")
+                cells[n] = text.replace(decimal, ".")
+        return parts
+
+    def _decimal(self, signs: _Signs) -> tuple[str, str]:
+        """Return the decimal sign of a file's numbers and the one that parts thousands."""
+        point, comma = signs.first(_sure(".", ",")), signs.first(_sure(",", "."))
+        if point is not None and comma is not None:
+            raise InputError(
+                f"{self.name} must have one decimal sign; got {comma} and {point}; write all numbers alike"
+            )
+        if point is not None or comma is not None:
+            return (".", ",") if comma is None else (",", ".")
+        comma, point = signs.first(_group(",")), signs.first(_group("."))
+        if comma is not None and (point is not None or self.separator == ","):
+            other = f" and {point}" if point is not None else ""
+            raise InputError(
+                f"{self.name} must show its decimal sign; got {comma}{other}, which may mean a thousand times as much; "
+                "leave out the sign that parts thousands"
+            )
+        return (".", ",") if comma is None else (",", ".")
+
+    def _floats(self, place: int, portion: _Portion, text: str, *, missing: bool) -> Array:
+        """Return the numbers of cells that have decimal points, the quick way where all are numbers."""
+        cells = text.split("\n")
+        try:
+            found = np.array([float(cell) if cell else np.nan for cell in cells])
+            if "_" not in text and np.isfinite(found).all():
+                return found
+        except ValueError:
+            pass
+        return np.array([self._one(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)])
+
+    def _one(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
+        if _NUMBER.fullmatch(cell) and np.isfinite(float(cell)):
+            return float(cell)
+        if missing and cell.casefold() in _MISSING:
+            return float("nan")
+        got = portion.columns[place].split("\n")[n]
+        if not got:
+            why = "an empty cell; fill it, or leave out the row"
+        elif got.startswith("="):
+            why = f"the formula {shown(got)}; save values instead of formulas"
+        else:
+            why = f"{shown(got)}; write the number alone, its unit stands in the first line"
+        raise InputError(f"{self.at(int(portion.lines[n]), place)}: must be a number; got {why}")
+
+    def at(self, line: int, place: int) -> str:
+        """Return the words for a cell in messages."""
+        return f"{self.name}, row {line}, column {shown(self.heads[place])}"
+
+
+def _plain(text: str) -> str:
+    """Return cells without blanks that part thousands, and with plain minus signs."""
+    return _BLANKS.sub("", text).replace("\u2212", "-")
+
+
+class _Signs:
+    """Texts of cells in which the first one of a form is looked for."""
+
+    def __init__(self, texts: Sequence[str]) -> None:
+        self._texts = [text for text in texts if "." in text or "," in text]
+
+    def first(self, pattern: str) -> str | None:
+        """Return the first cell of a form; None if there is none."""
+        cells = re.compile(rf"^(?:{pattern})$", re.MULTILINE | re.ASCII)
+        return next((hit[0] for hit in map(cells.search, self._texts) if hit), None)
+
+
+def _group(sign: str) -> str:
+    """Return the form of a number whose one sign is decimal or parts thousands: 1.300, but not 0.300."""
+    return rf"[+-]?[1-9]\d{{0,2}}\{sign}\d{{3}}"
+
+
+def _whole(grouping: str, decimal: str) -> str:
+    """Return the form of a number that is parted in threes."""
+    return rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{_EXPONENT}"
+
+
+def _sure(decimal: str, grouping: str) -> str:
+    """Return the form of a number whose decimal sign is certain: 0.3, .3, 1.3000, 1,300.5, and 1,000,000."""
+    one = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){_EXPONENT}"
+    parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{_EXPONENT}"
+    return rf"{one}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
+
+
+def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
+    """Return the table of a text. Raises `InputError`, naming row and remedy, for what is none.
+
+    name: of the file, for messages. ragged: whether rows may end before their last cells.
+    """
+    text = text.removeprefix("\ufeff")
+    if "\0" in text:
+        raise InputError(f"{name} must be text; got a byte 0 in it; save it as CSV in UTF-8")
+    try:
+        return _read(text, name, ragged=ragged)
+    except csv.Error as error:
+        raise InputError(f"{name} must be a table in CSV; got {error}; correct it") from None
+
+
+def _read(text: str, name: str, *, ragged: bool) -> TableFile:
+    separator = _separator(text)
+    lines = _split(_content(text), separator)
+    head = next(lines, None)
+    if head is None:
+        raise InputError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
+    heads = [cell.strip() for cell in head[1]]
+    first = next(lines, None)
+    width = len(heads) if first is None else len(first[1])
+    rows = lines if first is None else itertools.chain([first], lines)
+    if of_numbers(heads):
+        rows = itertools.chain([head], rows)
+        heads = _commented(text, separator, len(heads)) or heads
+    elif len(heads) != width:
+        line = next(line for line in _content(text) if line.strip())
+        heads = _named(line, separator, width) or heads
+    if of_numbers(heads):
+        raise InputError(
+            f"{name} must begin with a line that names its columns, with units; got {', '.join(heads)[:60]!r}; add one "
+            "such as crank_angle_deg,force_N"
+        )
+    if len(heads) > _MOST_COLUMNS:
+        raise InputError(f"{name} must have at most {_MOST_COLUMNS} columns; got {len(heads)}; keep those that matter")
+    found = list(_portions(rows, len(heads), name, ragged=ragged))
+    if not found:
+        raise InputError(f"{name} must have rows below the names of its columns; got none; add them")
+    said = [f"separated by {_SEPARATORS.get(separator, shown(separator))}"] if len(heads) > 1 else []
+    return TableFile(name, tuple(heads), said, separator, found)
+
+
+def _content(text: str) -> Iterator[str]:
+    """Yield the lines of a text, empty ones in place of comments and of a first one that says the separator."""
+    for n, line in enumerate(io.StringIO(text, newline="")):
+        yield "\n" if _COMMENT.match(line) or (not n and _SAID.fullmatch(line.strip())) else line
+
+
+def _split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the cells of each line with content."""
+    if separator == " ":
+        lines = (line.replace("\t", " ") for line in lines)
+    reader = csv.reader(lines, delimiter=separator, strict=True)
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                yield reader.line_num, [cell for cell in cells if cell] if separator == " " else cells
+    except csv.Error as error:
+        why = str(error).encode("unicode_escape").decode()  # it names the sign between the values, perhaps a tab
+        raise csv.Error(f"{why} in row {reader.line_num}") from None
+
+
+def _separator(text: str) -> str:
+    """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
+    first = _SAID.fullmatch(text[: text.find("\n") if "\n" in text else None].strip())
+    if first is not None:
+        return "\t" if first[1] == "\\t" else first[1]
+    sample = [line for line in itertools.islice(_content(text), 10 * _SAMPLE) if line.strip()][:_SAMPLE]
+    best, separator = 0.0, ","
+    for sign in _SEPARATORS:
+        try:
+            rows = [cells for _, cells in _split(sample, sign)]
+        except csv.Error:
+            continue
+        widths = [len(row) for row in rows]
+        width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
+        if sign != " ":
+            width = widths[0] if widths else 1
+        elif not all(of_numbers(row) for row in rows[1:]):
+            continue
+        alike = widths.count(width) / len(widths) if width > 1 else 0.0
+        if alike > best:
+            best, separator = alike, sign
+    return separator
+
+
+def of_numbers(cells: Sequence[str]) -> bool:
+    """Whether all of some cells are numbers, with any signs."""
+    return any(cells) and all(_LIKE_A_NUMBER.fullmatch(_plain(cell.strip())) for cell in cells if cell)
+
+
+def _commented(text: str, separator: str, width: int) -> list[str] | None:
+    """Return the names of columns in the last comment before the numbers that has as many; None without one."""
+    found = None
+    for line in io.StringIO(text):
+        comment = _COMMENT.match(line)
+        if comment:
+            found = _named(line[comment.end() :], separator, width) or found
+        elif line.strip() and not _SAID.fullmatch(line.strip()):
+            break
+    return found
+
+
+def _named(line: str, separator: str, width: int) -> list[str] | None:
+    """Return the names of so many columns in a line, also of more words than one between blanks; None without them."""
+    ways = [[cell.strip() for _, cells in _split([line], separator) for cell in cells]]
+    if separator == " ":
+        ways += [re.split(apart, line.strip()) for apart in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
+    return next((heads for heads in ways if len(heads) == width and not of_numbers(heads)), None)
+
+
+def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
+    """Yield some rows at a time, each of `width` cells; short ones are filled up if they may be `ragged`."""
+    rows = iter(rows)
+    while some := list(itertools.islice(rows, _AT_ONCE)):
+        for place, cells in some:
+            if len(cells) != width and (any(cell.strip() for cell in cells[width:]) or not (ragged or cells[width:])):
+                raise InputError(
+                    f"{name}, row {place} must have {width} cells, as the first line; got {len(cells)}; correct it; "
+                    "where numbers have a decimal comma, separate them by semicolons"
+                )
+        full = [cells[:width] + [""] * (width - len(cells)) for _, cells in some]
+        columns = ["\n".join([_BREAK.sub(" ", cell.strip()) for cell in column]) for column in zip(*full, strict=True)]
+        yield _Portion(np.array([place for place, _ in some]), columns)
