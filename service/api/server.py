@@ -95,15 +95,26 @@ def config_of(app: FastAPI) -> Config:
     )
 
 
-def run_server(app: FastAPI, listening: socket.socket, *, stopping: Callable[[], None] = lambda: None) -> None:
+def run_server(
+    app: FastAPI,
+    listening: socket.socket,
+    *,
+    asked: Callable[[], bool] = lambda: False,
+    stopping: Callable[[], None] = lambda: None,
+) -> None:
     """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before.
 
-    stopping: called when that is to end, before the requests under way have their time to.
+    asked: whether one of them came before the server had handlers of its own. stopping: called when that is to end,
+    before the requests under way have their time to.
     """
     import uvicorn
 
     class Server(uvicorn.Server):
         """Ends the streams of events first: they would wait until they are cut."""
+
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            self.should_exit = self.should_exit or asked()
+            await super().startup(sockets)
 
         async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
             stopping()

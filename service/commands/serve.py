@@ -68,13 +68,13 @@ def serve(
         allowed_quantities=frozenset(work.terms.allowed_quantities),
         limits=work.terms.limits,
     )
-    with Interruption(service=True), listen(host, port) as socket, open_store(store) as opened:
+    with Interruption(service=True) as termination, listen(host, port) as socket, open_store(store) as opened:
         opened.most_queued = most_queued
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
         set_up_logs(work.log_format)
         with Supervisor(work, processes) as supervisor:
-            run_server(app, socket, stopping=supervisor.leave)
+            run_server(app, socket, asked=termination.asked, stopping=supervisor.leave)
     _leave_requests()
 
 

@@ -22,6 +22,7 @@ from .kills import kills
 from .pauses import pauses
 from .restarts import restarts
 from .runaway import runaway
+from .starts import starts
 from .verdict import Verdict
 
 app = typer.Typer(add_completion=False, help=__doc__)
@@ -44,6 +45,7 @@ def _all(context: typer.Context) -> None:
         _full,
         lambda: _disk(5),
         lambda: _runaway(1),
+        lambda: _starts(24),
         lambda: _commits("sqlite"),
         lambda: _commits("postgresql"),
         _dask,
@@ -92,6 +94,12 @@ def _disk(count: Annotated[int, typer.Option(help="How often each disk is filled
 def _runaway(count: Annotated[int, typer.Option(help="Rounds of all kinds.")] = 1, seed: Seed = 1) -> None:
     """Let own functions loop: before and after records, cancelled, killed, ended."""
     _report(f"own functions that loop, {count} rounds", lambda: runaway(count, seed))
+
+
+@app.command("starts")
+def _starts(count: Annotated[int, typer.Option(help="How many services.")] = 24, seed: Seed = 1) -> None:
+    """End services while they start, by SIGTERM and Ctrl-C."""
+    _report(f"{count} services ended while they start", lambda: starts(count, seed))
 
 
 @app.command("commits")

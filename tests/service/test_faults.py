@@ -17,6 +17,7 @@ from tests.faults.places import Kind
 from tests.faults.restarts import restarts
 from tests.faults.runaway import runaway
 from tests.faults.small_disk import small_disk
+from tests.faults.starts import starts
 from tests.service.store import postgresql
 
 pytestmark = [
@@ -77,6 +78,11 @@ def test_functions_that_loop_end_with_their_job_their_worker_and_their_service()
     verdict = runaway(1, seed=1, short=True)
     assert verdict.violations == []
     assert verdict.resumptions == 3
+
+
+def test_a_service_ends_by_a_signal_right_after_it_prints_its_address() -> None:
+    verdict = starts(2, seed=1, random_moments=False)
+    assert verdict.violations == []
 
 
 def test_a_service_on_a_full_disk_says_so_and_goes_on_when_there_is_room() -> None:
