@@ -63,6 +63,7 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     advice="Held at one value it leaves one choice fewer, and the search meets it exactly.",
     formula="l / |e|, infinite without offset",
     picture="offset",
+    better="high",
     domain=_ABOVE_ONE,
     in_line=math.inf,
     reach=Reach(

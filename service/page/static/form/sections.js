@@ -117,8 +117,9 @@ function adding(form) {
   select.addEventListener("change", () => {
     if (!select.value) return;
     const name = select.value;
-    form.put(["constraints", name], { max: "" });
-    form.redraw(`f-constraints-${name}-max`);
+    const side = form.quantity(name).better === "high" ? "min" : "max";
+    form.put(["constraints", name], { [side]: "" });
+    form.redraw(`f-constraints-${name}-${side}`);
   });
   return h("p", { class: "row" }, h("label", { for: "add-requirement" }, "Another requirement"), select);
 }

@@ -14,9 +14,9 @@ export function strength(form) {
   const table = form.schema.property(PATH);
   const on = form.at(PATH) !== undefined;
   const select = choice(
-    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => given(form, value ? structuredClone(table?.examples?.[0]) : undefined), register: () => {} },
+    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => given(form, value ? { material: form.schema.property([...PATH, "material"])?.examples?.[0], pins: {} } : undefined), register: () => {} },
     ["sections", "on"],
-    { options: ["yes"], label: "with material and pins", fallback: "no", why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for. The first values are an example, a common steel.", changed: () => form.redraw() },
+    { options: ["yes"], label: "with material and pins", fallback: "no", why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for.", changed: () => form.redraw() },
   );
   if (!on) return [select];
   const missing = ["crank", "rod"].filter((link) => !isTable(form.at(["mechanism", link])) || at(form.job, ["mechanism", link, "width"]) === undefined);
@@ -24,6 +24,7 @@ export function strength(form) {
   return [
     select,
     missing.length ? h("p", { class: "quiet wide" }, `Stresses and safety need ${missing.join(" and ")} as a bar of rectangular section, above.`) : null,
+    h("p", { class: "quiet wide" }, "The material begins as a common steel; give the values of yours. Pins have no size until you give one."),
     byschema(form, [...PATH, "material"]),
     h("fieldset", { class: "inner" }, h("legend", {}, "pins"), h("div", { class: "fields" }, keysOf(form, [...PATH, "pins"]).map((key) => held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`)))),
     h("details", { class: "more" }, h("summary", {}, "Safety, and sizes that can be made"), h("div", { class: "fields" }, rest.map((key) => byschema(form, [...PATH, key])), RANGES.map((key) => range(form, [...PATH, key], { label: `${key} that can be made`, why: form.schema.property([...PATH, key])?.description ?? "" })))),
