@@ -94,6 +94,10 @@ class OfBars(Quantity):
     links: tuple[str, ...] = ("rod", "crank")
     least: bool = False
 
+    def allowable(self, mechanism: Mechanism) -> float:
+        """Return 1, below which a safety fails; what is no safety says its own; see `Quantity`."""
+        return 1.0
+
     @abstractmethod
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return the parts that count for designs (n, 3 + k). kept: pieces wanted of each."""

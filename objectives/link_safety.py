@@ -91,6 +91,7 @@ FATIGUE_SAFETY = FatigueSafety(
     picture="rod",
     example=1.5,
     better="high",
+    allowed_by="fatigue strength of the material",
     needs=(STRENGTH, EVEN_SPEED, ONE_TURN, A_BAR, LOADED),
 )
 BUCKLING_SAFETY = BucklingSafety(
@@ -108,6 +109,7 @@ BUCKLING_SAFETY = BucklingSafety(
     picture="rod",
     example=3.0,
     better="high",
+    allowed_by="load at which the bar buckles",
     endless="crank and rod are never compressed",
     needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )

@@ -154,6 +154,7 @@ STATIC_SAFETY = LinkStress(
     picture="rod",
     example=2.0,
     better="high",
+    allowed_by="yield strength of the material",
     signed=True,
     needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import PINS, of_numbers
-from .bars import LINKS, NEAR, Formula, OfBars, Part, over, pin_force
+from .bars import LINKS, NEAR, Formula, OfBars, Part, over, pin_force, strength_of
 from .kinds import PRESSURE
 from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
 from .quantity import Array
@@ -28,6 +28,10 @@ class PinPressure(OfBars):
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
         return [over(force, of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas]
 
+    def allowable(self, mechanism: Mechanism) -> float:
+        """Return the bearing pressure of the material, Pa."""
+        return strength_of(mechanism).material.bearing_pressure
+
 
 @dataclass(frozen=True, kw_only=True)
 class PinShear(OfBars):
@@ -41,6 +45,13 @@ class PinShear(OfBars):
         force = pin_force(mechanism, designs, self.pin, kept, gradients)
         area = of_numbers(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients)
         return [over(force, area)]
+
+    def allowable(self, mechanism: Mechanism) -> float:
+        """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins are of the bars' material.
+
+        Shigley, Mechanical Engineering Design, 9th ed., eq. 5-21.
+        """
+        return strength_of(mechanism).material.yield_strength / math.sqrt(3.0)
 
 
 def projected(pin: str, name: str) -> Formula:
@@ -71,6 +82,7 @@ _pressure = partial(
     PinPressure,
     kind=PRESSURE,
     formula="max F / (D d) over the crank angle",
+    allowed_by="bearing pressure of the material",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-5 (projected area)",
     example="15 MPa",
 )
@@ -78,6 +90,7 @@ _shear = partial(
     PinShear,
     kind=PRESSURE,
     formula="max F / (pi D^2 / 4) over the crank angle, in one section",
+    allowed_by="shear yield strength of the material",
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 3-11",
     example="40 MPa",
 )

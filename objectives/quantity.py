@@ -138,14 +138,15 @@ class Quantity(ABC):
     what it trades against. formula: in plain text, its symbols those of docs/theory.md. section: of docs/theory.md.
     source: of the equations. picture: what a picture of the linkage points out.
 
-    example: a usual value as job files have it, that of the kind if left out. better: the usual direction. signed:
-    whether it may be negative. instead_of_quotient: the quantity to use where a formula would divide by it. domain:
-    values that some linkage has. floor: least value that holds where a job sets none, SI. in_line: its value for every
-    design without offset. endless: why it may be infinite for every design, as a sentence. needs: of the machine.
-    instead: quantities that serve where a need is not met. reach: bounds within ranges of the dimensions.
-    about_tolerances: whether it includes tolerances already. offered: parts of a form that ask for it. on_sheet:
-    whether the sheet of a design has it. plain: whether it follows from others at a glance, so that a short table
-    leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
+    example: a usual value as job files have it, that of the kind if left out. better: its good side, low or high, on
+    which a requirement or an objective usually asks for it. signed: whether it may be negative. instead_of_quotient:
+    the quantity to use where a formula would divide by it. domain: values that some linkage has. floor: least value
+    that holds where a job sets none, SI. in_line: its value for every design without offset. endless: why it may be
+    infinite for every design, as a sentence. needs: of the machine. instead: quantities that serve where a need is not
+    met. reach: bounds within ranges of the dimensions. allowed_by: what sets its allowable value, in words; empty for
+    one without. about_tolerances: whether it includes tolerances already. offered: parts of a form that ask for it.
+    on_sheet: whether the sheet of a design has it. plain: whether it follows from others at a glance, so that a short
+    table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
     """
 
     name: str
@@ -172,6 +173,7 @@ class Quantity(ABC):
     needs: tuple[Need, ...] = fact(())
     instead: str = fact("")
     reach: Reach | None = fact(None)
+    allowed_by: str = fact("")
     about_tolerances: bool = fact(False)
     offered: tuple[Offer, ...] = fact(())
     on_sheet: bool = fact(False)
@@ -237,6 +239,10 @@ class Quantity(ABC):
     def reach_for(self, mechanism: Mechanism) -> Reach | None:
         """Return its reach if it holds for the machine."""
         return self.reach
+
+    def allowable(self, mechanism: Mechanism) -> float:
+        """Return the greatest value that a machine withstands, the least if high is better, SI; see `allowed_by`."""
+        raise NotImplementedError(f"{self.name} has no allowable value")
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:

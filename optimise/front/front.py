@@ -14,12 +14,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Array
+from ...model.arrays import Array, Mask
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ...objectives.quantity import Quantity
+from ...objectives.registry import QUANTITIES
+from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
 from ..problem.requirements import Objective
 from .answer import Answer
@@ -139,6 +141,25 @@ class ParetoFront:
     def mechanism(self, row: int) -> Mechanism:
         """Return the machine of a design: with the choices and the varying numbers that it has."""
         return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
+
+    @property
+    def violated(self) -> dict[str, Array]:
+        """By how much (n,) each design goes beyond an allowable value, SI, by quantity; see `Analysis.violated`.
+
+        Zero for a design that does not; quantities of which none does are left out.
+        """
+        variants = np.array(self.variants or [0] * len(self))
+        found: dict[str, Array] = {}
+        for variant in dict.fromkeys(variants.tolist()):
+            rows = variants == variant
+
+            def values_of(name: str, rows: Mask = rows) -> Array | None:
+                of = QUANTITIES[name]
+                return self.columns[of.field][rows] / of.unit.factor if of.field in self.columns else None
+
+            for name, beyond in violations(self.problem.part(variant).mechanism, values_of).items():
+                found.setdefault(name, np.zeros(len(self)))[rows] = beyond
+        return found
 
     def extremes(self) -> dict[str, int]:
         """Return for each objective the row of its best design; ties go to the better in the other objectives."""

@@ -28,6 +28,7 @@ from ...objectives.tables.given import countable, given_designs, numbers_of, req
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
 from ...objectives.tables.swinging import require_in_motion, swinging
+from ...objectives.tables.violations import violations
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -97,6 +98,15 @@ class Analysis(Mapping[str, float]):
 
     def __len__(self) -> int:
         return len(self.found)
+
+    @property
+    def violated(self) -> dict[str, float]:
+        """By how much the design goes beyond each allowable value that it violates, SI, by the name of its quantity.
+
+        At the pins these are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material, in the
+        bars safeties of 1. Without material there are none.
+        """
+        return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.found.get).items()}
 
     def table(self) -> pd.DataFrame:
         """Return a table with a row for each quantity, by name: title, value and unit as shown, reason if undefined."""
@@ -178,16 +188,20 @@ class Analysis(Mapping[str, float]):
     def _repr_html_(self) -> str:
         """Picture of the linkage and table of its quantities, for notebooks."""
         table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
-        return f"<div><p>{escape(self.title)}</p>{self.linkage._repr_html_() or ''}{table}</div>"
+        lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._beyond()) if line)
+        return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
 
     def __repr__(self) -> str:
         shown = [item for item in self.quantities if item.name in self.found][:4]
         numbers = ", ".join(
             f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip() for item in shown
         )
-        return (
-            f"Analysis({self.linkage.label}: {numbers}; {len(self.found)} quantities, {len(self.undefined)} undefined)"
-        )
+        parts = [numbers, f"{len(self.found)} quantities, {len(self.undefined)} undefined", self._beyond()]
+        return f"Analysis({self.linkage.label}: {'; '.join(filter(None, parts))})"
+
+    def _beyond(self) -> str:
+        titles = [QUANTITIES[name].title for name in self.violated]
+        return f"beyond what is allowed: {', '.join(titles)}" if titles else ""
 
 
 def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:

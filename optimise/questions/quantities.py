@@ -10,10 +10,11 @@ from ..problem.problem import Problem, require_problem
 
 
 def quantities(problem: Problem | None = None) -> pd.DataFrame:
-    """Return a table of quantities by name: title, display unit, column in tables of designs, needs.
+    """Return a table of quantities by name: title, display unit, column in tables of designs, good side, needs.
 
-    problem: adds its own quantities. In Python values are in SI; `factor` converts SI to the display unit. needs: what
-    a job must contain; empty if every job has it.
+    problem: adds its own quantities. In Python values are in SI; `factor` converts SI to the display unit. better: the
+    good side, low or high, on which a requirement usually asks for it. needs: what a job must contain; empty if every
+    job has it.
 
     >>> from slidercrank import quantities
     >>> quantities().loc["peak_torque", "title"]
@@ -28,6 +29,7 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
             "unit": item.unit.symbol,
             "factor": item.unit.factor,
             "column": item.field,
+            "better": item.better,
             "needs": _needs(item),
         }
         for item in known

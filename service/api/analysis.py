@@ -22,12 +22,13 @@ from ..designs.requirements import names_of, ranges_of, requirements_of, speed_r
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_numbers
+from ..designs.violations import violated_by
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, determined, numbers_of, numbers_of_swing
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .cycle import CurvesModel, CycleModel, cycle_model
-from .fronts import Cells, ColumnModel, OfDesign, column_models
+from .fronts import Cells, ColumnModel, OfDesign, Violated, column_models
 from .job_requests import given_problem
 from .models import PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
@@ -51,8 +52,8 @@ _EXAMPLE = {"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1
 class AnalysisModel(BaseModel):
     """All numbers of a design.
 
-    analysis: what `slidercrank analyse --json` prints: every quantity, and of every topic an object. notes: what is
-    left out, and why.
+    analysis: what `slidercrank analyse --json` prints: every quantity, of every topic an object, and as `violated` by
+    how much the design goes beyond allowable values. notes: what is left out, and why.
     """
 
     analysis: dict[str, Any] = Field(examples=[_EXAMPLE])
@@ -144,7 +145,8 @@ class WhatIfModel(OfDesign):
     design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
     requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
     designs of the front that are as good in every objective and better in one; dominates: of those that it beats so;
-    the greatest difference first, at most 20. cycle: null if no curves were asked for.
+    the greatest difference first, at most 20. violated: as of a design of the front. cycle: null if no curves were
+    asked for.
     """
 
     columns: list[ColumnModel]
@@ -152,6 +154,7 @@ class WhatIfModel(OfDesign):
     undefined: dict[str, str] = Field(examples=[{"position_error_mm": "a position error comes from tolerances"}])
     broken: list[str] = Field(examples=[["stroke_mm"]])
     outside: list[str] = Field(examples=[[]])
+    violated: Violated
     dominated_by: list[int] = Field(examples=[[12, 4]])
     dominated_by_count: int = Field(examples=[2])
     dominates: list[int] = Field(examples=[[]])
@@ -168,7 +171,7 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
         if topics:
             require_turning(stored.part, f"the analysis {', '.join(topics)}")
         row, undefined = numbers_of_swing(stored)
-        record = json_ready(row | {"undefined": undefined})
+        record = json_ready(row | {"violated": violated_by(stored.mechanism, row), "undefined": undefined})
         return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=[])
     record, notes = _with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
     return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
@@ -254,6 +257,7 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
         undefined=undefined,
         broken=changed.broken,
         outside=changed.outside,
+        violated=json_ready(violated_by(stored.mechanism, row)),
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
         dominated_by_count=len(changed.dominated_by),
         dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],

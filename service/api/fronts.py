@@ -15,6 +15,7 @@ from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets
+from ..designs.violations import violated_by
 from ..page.router import tagged
 from ..runs.result import Cell, json_ready
 from .models import PLAIN_DIGITS, JobNumber
@@ -90,6 +91,11 @@ class FrontModel(BaseModel):
     )
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
     warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
+    violated: dict[str, list[float | str]] = Field(
+        {},
+        description="allowable values that designs go beyond, by column: by how much each design does, 0 where not",
+        examples=[{"pin_shear_crank_pin_MPa": [440.2, 0.0]}],
+    )
     discrete: dict[str, Any] | None = Field(
         None,
         description="how designs of discrete values were found, and the best of each objective with continuous ones",
@@ -123,11 +129,21 @@ class DesignsModel(BaseModel):
     designs: list[Cells] = Field(examples=[[_EXAMPLE]])
 
 
+Violated = Annotated[
+    dict[str, float | str],
+    Field(
+        description="allowable values that the design goes beyond, by column: by how much",
+        examples=[{"pin_shear_crank_pin_MPa": 440.2}],
+    ),
+]
+
+
 class DesignModel(OfDesign):
     """A design with all its numbers."""
 
     columns: list[ColumnModel]
     design: Cells = Field(examples=[_EXAMPLE])
+    violated: Violated
 
 
 class ColumnsModel(BaseModel):
@@ -219,7 +235,8 @@ def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
     columns = column_models(found.columns)
-    return DesignModel(job=found.job.id, number=design, columns=columns, design=json_ready(row))
+    violated = json_ready(violated_by(found.design(design).mechanism, row))
+    return DesignModel(job=found.job.id, number=design, columns=columns, design=json_ready(row), violated=violated)
 
 
 @router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))

@@ -33,7 +33,11 @@ class QuantityModel(BaseModel):
     section: str = Field(examples=["2. Closed forms"])
     source: str
     picture: str = Field(examples=["stroke"])
-    better: str = Field(description='the usual direction, low or high; "" for a dimension', examples=["low"])
+    better: str = Field(
+        description='its good side, on which requirements usually ask for it, low or high; "" for a dimension',
+        examples=["low"],
+    )
+    allowed_by: str = Field(description='what sets its allowable value; "" for one without', examples=[""])
     offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
     motion: str = Field(description="of the crank that it is of, turn or swing; empty for either", examples=["turn"])
 
@@ -126,7 +130,7 @@ def list_quantities() -> QuantityList:
     )
 
 
-_STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better")
+_STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")
 """Facts of a quantity that are sent as they are."""
 
 
@@ -144,7 +148,7 @@ def _quantity(of: Quantity) -> QuantityModel:
 
 _LENGTH: dict[str, Any] = {
     **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
-    **{"better": "", "offered": [], "motion": ""},
+    **{"better": "", "allowed_by": "", "offered": [], "motion": ""},
 }
 """Facts that the dimensions have in common."""
 

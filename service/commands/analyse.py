@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, LENGTH, System
 from ..designs.requirements import judged
 from ..designs.selection import value_of
-from ..designs.shown_units import row_in
+from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -32,7 +32,7 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, give, say, waiting
-from ..text.tables import show_design, show_rules, show_undefined
+from ..text.tables import show_design, show_rules, show_undefined, show_violated
 from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
@@ -119,6 +119,7 @@ def analyse(
         show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
         reasons = (found.undefined or {}).items()
         show_undefined(screen, {key: why for key, why in reasons if key not in TOLD_THERE}, own)
+        show_violated(screen, record_in(found.violated, units), row_in(row, units))
         show_rules(screen, rules)
         if problem is not None and not topics:
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")

@@ -18,6 +18,7 @@ from ...model.extras import is_installed, required
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.shown_units import result_in
+from ..designs.violations import front_violations_in_words
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import Result, json_text, result_of
 from ..runs.run_folder import RunFolder, disk, runs_place
@@ -199,7 +200,7 @@ def show_result(result: Result) -> None:
         screen.print("\nAt the knee:")
         for sentence in result.trade_offs:
             screen.print(f"  {sentence}", soft_wrap=True)
-    for sentence in result.warnings:
+    for sentence in (*front_violations_in_words(result), *result.warnings):
         screen.print(f"\nWarning: {sentence}.", style="yellow", soft_wrap=True)
     sys.stdout.flush()
 

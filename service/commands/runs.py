@@ -12,7 +12,7 @@ from ..designs.selection import chosen_rows, none_meets, part_of
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give
-from ..text.tables import ROWS, show_design, show_front
+from ..text.tables import ROWS, show_design, show_front, show_violated
 from .ending import NoDesigns, end_without_design
 from .optimise import show_files, show_result
 from .run_choice import Choice, run_of, shown_result
@@ -68,6 +68,8 @@ def front(
         screen = console()
         screen.print(f"{result.name}: design {one + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
         show_design(screen, result.designs[one], only=names)
+        of_one = {key: by[one] for key, by in result.violated.items() if by[one] > 0.0}
+        show_violated(screen, of_one, result.designs[one])
     elif not (where or sort or reverse or columns or rows != ROWS):
         show_result(result)
         show_files(folder)

@@ -207,6 +207,7 @@ def part_of(result: Result, rows: Sequence[int]) -> Result:
         extremes={name: place[row] for name, row in result.extremes.items() if row in place},
         knee=knee,
         trade_offs=[] if knee is None else result.trade_offs,
+        violated={key: part for key, by in result.violated.items() if any(part := [by[row] for row in rows])},
     )
 
 

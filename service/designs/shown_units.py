@@ -55,6 +55,7 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
         result,
         objectives=tuple(wanted_in(wanted, system) for wanted in result.objectives),
         designs=rows_in(result.designs, system),
+        violated=record_in(result.violated, system),
         discrete=record_in(result.discrete, system),
         trade_offs=[] if problem is None or not result.trade_offs else _trade_offs(problem, result, system),
     )

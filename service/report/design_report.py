@@ -64,6 +64,7 @@ def _summary(subject: Subject) -> Section:
         "Lengths": [", ".join(lengths)],
         "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
         "Choices": [_chosen(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
+        "Beyond what is allowed": [unit_text(line) for line in subject.violated],
         "Machine": _machine(subject),
         "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
     }

@@ -33,6 +33,7 @@ def design_section(subject: Subject) -> Section:
         (
             Picture("The linkage, to scale", partial(_drawing, subject)),
             *_rules(subject),
+            *(Paragraph(f"Beyond what is allowed: {unit_text(line)}.", "bad") for line in subject.violated),
             *_optimality(subject),
             Picture(
                 "The design over a turn of the crank"

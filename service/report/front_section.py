@@ -6,6 +6,7 @@ from functools import partial
 
 from ...objectives.kinds import unit_text
 from ..designs.columns import DIMENSIONS, find_column
+from ..designs.violations import front_violations_in_words
 from ..figures.numerals import measured, rounded
 from ..figures.parallel import parallel_coordinates
 from ..figures.scatter import scatter_matrix
@@ -20,7 +21,8 @@ _MANY = 400
 def front_section(subject: Subject) -> Section:
     """Return the ranges of the objectives, the marked designs, and the figures of the front."""
     result = subject.result
-    blocks: list[Block] = [_ranges(subject), _marked(subject)]
+    beyond = (Paragraph(f"Warning: {unit_text(line)}.", "bad") for line in front_violations_in_words(result))
+    blocks: list[Block] = [*beyond, _ranges(subject), _marked(subject)]
     raster = len(result.designs) > _MANY
     if len(result.designs) > 1:
         if len(result.objectives) > 1:

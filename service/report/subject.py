@@ -12,10 +12,11 @@ from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.columns import key_in
-from ..designs.shown_units import result_in, row_in
+from ..designs.shown_units import record_in, result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.toleranced import toleranced, tolerances_of
 from ..designs.variation import Variation
+from ..designs.violations import violated_by, violations_in_words
 from ..figures.numerals import rounded
 from ..runs.result import Cell, Result, Row
 
@@ -91,6 +92,13 @@ class Subject:
     def row(self) -> Row:
         """All numbers of the design."""
         return self.result.designs[self.number - 1] if self.changed is None else row_in(self.changed.row, self.system)
+
+    @cached_property
+    def violated(self) -> list[str]:
+        """Sentences on the allowable values that the design violates."""
+        row = self.metric.designs[self.number - 1] if self.changed is None else self.changed.row
+        violated = record_in(violated_by(self.design.mechanism, row), self.system)
+        return violations_in_words(violated, self.row)
 
     @property
     def label(self) -> str:

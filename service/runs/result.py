@@ -80,7 +80,8 @@ class Result:
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
-    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words. exact: the designs as
+    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words. violated: by column,
+    by how much each design goes beyond an allowable value, zero where it does not. exact: the designs as
     the search left them; None for a run read from its files, and from stores of early versions. discrete: how the
     designs of discrete values were found, see `discrete_record`; None without such values.
     """
@@ -99,6 +100,7 @@ class Result:
     knee: int | None
     trade_offs: list[str]
     warnings: tuple[str, ...] = ()
+    violated: Mapping[str, Sequence[float]] = field(default_factory=dict)
     discrete: Mapping[str, Any] | None = None
     exact: Exact | None = field(default=None, repr=False, compare=False)
 
@@ -154,9 +156,16 @@ def result_of(front: ParetoFront, run: str) -> Result:
             *front_warnings(front),
             *idle_rules(front.problem),
         ),
+        violated=_violated(front),
         discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )
+
+
+def _violated(front: ParetoFront) -> dict[str, list[float]]:
+    """Return by how much designs go beyond allowable values, by the columns of these."""
+    known = ((front.problem.quantity(name), beyond) for name, beyond in front.violated.items())
+    return {of.field: [of.unit.factor * float(by) for by in beyond] for of, beyond in known}
 
 
 def unsearched_result(error: InfeasibleError, run: str = "") -> Result:

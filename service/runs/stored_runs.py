@@ -60,6 +60,7 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
         knee=None if record["knee"] is None else int(record["knee"]),
         trade_offs=[str(sentence) for sentence in record["trade_offs"]],
         warnings=tuple(str(sentence) for sentence in record.get("warnings", ())),  # runs of earlier versions have none
+        violated={str(key): [float(by) for by in each] for key, each in record.get("violated", {}).items()},
         discrete=record.get("discrete"),
         exact=exact,
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
 from ..designs.columns import DIMENSIONS, Column, chosen_columns, find_column, metric_key, split_unit
+from ..designs.violations import violations_in_words
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -226,6 +227,14 @@ def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
     steps = [round(index * (len(rest) - 1) / max(1, free - 1)) for index in range(free)]
     chosen = marked | {rest[step] for step in steps}
     return [row for row in rows if row in chosen]
+
+
+def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> None:
+    """Print which allowable values a design violates, and by how much."""
+    if violated:
+        screen.print()
+    for sentence in violations_in_words(violated, row):
+        screen.print(f"Beyond what is allowed: {sentence}.", style="bold yellow", soft_wrap=True)
 
 
 def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:

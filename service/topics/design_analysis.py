@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.shown_units import record_in, row_in
+from ..designs.violations import violated_by
 from ..runs.result import Row, rows_of
 from .discovery import TOPICS
 from .topic import TopicOfDesign
@@ -27,7 +28,8 @@ class Analysis:
     """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why.
 
     refused: topics that the design does not have, each with the reason. undefined: why quantities have no value, by
-    their columns; None without a job, which defines next to nothing.
+    their columns; None without a job, which defines next to nothing. violated: by how much the design goes beyond
+    allowable values, by column.
     """
 
     row: Row
@@ -36,12 +38,13 @@ class Analysis:
     notes: list[str]
     refused: list[str]
     undefined: dict[str, str] | None = None
+    violated: dict[str, float] = field(default_factory=dict)
 
     def record(self, units: System = "metric") -> dict[str, Any]:
-        """Return all numbers of the design and of its topics, for JSON, and the reasons of those that are undefined."""
+        """Return all numbers of the design and of its topics, for JSON, with what is undefined and what is violated."""
         topics = {topic.name: topic.numbers_in(self.found[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
-        return row_in(self.row, units) | topics | undefined
+        return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)}
 
 
 def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> tuple[Row, dict[str, str]]:
@@ -122,4 +125,5 @@ def analysis_of(
             if not lenient:
                 raise InputError(reason) from None
             refused.append(reason)
-    return Analysis(row, found, tuple(topic for topic in design if topic.name in found), said, refused, undefined)
+    shown = tuple(topic for topic in design if topic.name in found)
+    return Analysis(row, found, shown, said, refused, undefined, violated_by(mechanism, row))

@@ -24,13 +24,13 @@ export function sense({ sense: way, target, unit }) {
 }
 
 /**
- * Put the objectives of the design into `place`; front: values of every design by column; designs: the first is told of.
+ * Put the objectives of the design into `place`; front: values of every design by column; row: of the design; whose: whose objectives they
+ * are, "" for those of the design that the page is of.
  * @param {HTMLElement} place
- * @param {{ objectives: Api.Objective[], front: Api.Row[], designs: { row: Api.Row }[], names: Record<string, string> }} given
+ * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, whose: string, names: Record<string, string> }} given
  */
-export function showObjectives(place, { objectives, front, designs, names }) {
-  const [{ row }] = designs;
-  fill(place, objectives.map((objective) => {
+export function showObjectives(place, { objectives, front, row, whose, names }) {
+  fill(place, whose && h("p", { class: "whose" }, whose), objectives.map((objective) => {
     const value = row[objective.column];
     const own = rankOf(value, objective);
     const ranks = front.map((one) => rankOf(one[objective.column], objective));

@@ -1,6 +1,7 @@
 /** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
 
 import { analyses } from "../design/analyses.js";
+import { showBeyond } from "../design/beyond.js";
 import { endsOf } from "../design/extremes.js";
 import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
@@ -51,11 +52,12 @@ export async function show(place, { parts, query, signal }) {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
   };
-  const places = Object.fromEntries(["objectives", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics", "analyses"].map((name) => [name, h("section", { class: name })]));
+  const places = Object.fromEntries(["objectives", "beyond", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics", "analyses"].map((name) => [name, h("section", { class: name })]));
   const files = takeAway(job, number, { signal });
+  const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () => h("p", { class: "quiet unchanged", hidden: true }, `Of design ${number} itself, without the change:`));
   const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
-  fill(place, top(shared), files.node, places.objectives,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, places["trade-offs"], places.rounding), places["what-if"]), strip, places.curves, places["way-back"], places.numbers, places.topics, places.analyses);
+  fill(place, top(shared), files.node, places.objectives, places.beyond,
+    h("div", { class: "design-columns" }, h("div", {}, places.stage, ofPlace, places["trade-offs"], places.rounding), places["what-if"]), strip, places.curves, ofWay, places["way-back"], places.numbers, ofTopics, places.topics, places.analyses);
   for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
   const machines = stage(places.stage, strip, angle, turns);
   let over = query.get("over") ?? "";
@@ -76,9 +78,17 @@ export async function show(place, { parts, query, signal }) {
   const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
+  /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
+  const glance = (designs) => {
+    const [shown] = designs;
+    showObjectives(places.objectives, { objectives, front: rows, row: shown.row, whose: shown === main ? "" : `What if: design ${number}, changed`, names });
+    showBeyond(places.beyond, designs);
+    for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
+  };
   const draw = () => {
-    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, ...cycleOf(changed.cycle) };
+    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, violated: changed.violated, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
+    glance(moving);
     machines.show(moving);
     machines.fade(false);
     series = asked ? [asked, main, ...others] : moving;
@@ -101,13 +111,13 @@ export async function show(place, { parts, query, signal }) {
       for (const each of [files.show, charts.of]) each(kept);
       keepAll();
     },
-    refused: () => machines.fade(true),
+    refused() {
+      machines.fade(true);
+      glance([main, ...others]);
+    },
   });
   const steps = rounding(places.rounding, { job, number, base: main.row, columns: main.columns, requirements, objectives, applied: sliders.apply, signal });
-  const drawAll = () => {
-    showObjectives(places.objectives, { objectives, front: rows, designs: [main], names });
-    draw()();
-  };
+  const drawAll = () => draw()();
   drawAll();
   tradeOffs(places["trade-offs"], shared);
   wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(placeOf(main, at, angle.angle), true), signal });

@@ -1,0 +1,63 @@
+"""Allowable values that designs go beyond: by how much, and in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from ..runs.result import Result, Row
+from .columns import metric_key, split_unit
+
+if TYPE_CHECKING:
+    from ...model.machine.mechanism import Mechanism
+
+
+def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
+    """Return by how much a design goes beyond each allowable value that it violates, by the quantity's column.
+
+    row: metric, as what is returned.
+    """
+    from ...objectives.registry import QUANTITIES
+    from ...objectives.tables.violations import violations
+
+    def value_of(name: str) -> float | None:
+        value = row.get(QUANTITIES[name].field)
+        return value / QUANTITIES[name].unit.factor if isinstance(value, float) else None
+
+    known = ((QUANTITIES[name], beyond) for name, beyond in violations(mechanism, value_of).items())
+    return {of.field: of.unit.factor * float(beyond[0]) for of, beyond in known}
+
+
+def violations_in_words(violated: Mapping[str, float], row: Row) -> list[str]:
+    """Return a sentence on each allowable value that a design violates. Both are of one system of units."""
+    return [_sentence(key, row, by, "is") for key, by in violated.items()]
+
+
+def front_violations_in_words(result: Result) -> list[str]:
+    """Return a sentence on each allowable value that designs of a front violate, in the units of the result."""
+    count, found = len(result.designs), []
+    for key, violated in result.violated.items():
+        worst = max(range(count), key=violated.__getitem__)
+        broken = sum(by > 0.0 for by in violated)
+        verb = f"is beyond what is allowed in {broken} of {count} designs, at worst" if count > 1 else "is"
+        found.append(_sentence(key, result.designs[worst], violated[worst], verb))
+    return found
+
+
+def _sentence(key: str, row: Row, by: float, verb: str) -> str:
+    """Return a violated allowable value in words: "shear of the crank pin is 642 MPa, 440 MPa more than ..."."""
+    from ...objectives.registry import QUANTITIES
+
+    of = next(of for of in QUANTITIES.values() if of.field == metric_key(key))
+    value, unit = row[key], split_unit(key)[1]
+    assert isinstance(value, float)
+    low = of.better == "low"
+    allowed = value - by if low else value + by
+    limit = f" the allowed {_with_unit(allowed, unit)}" if math.isfinite(allowed) else " what is allowed"
+    more = "more" if low else "less"
+    return f"{of.title} {verb} {_with_unit(value, unit)}, {_with_unit(by, unit)} {more} than{limit} ({of.allowed_by})"
+
+
+def _with_unit(value: float, unit: str) -> str:
+    return f"{float(f'{value:.4g}'):.10g} {unit}".rstrip()
