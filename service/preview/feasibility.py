@@ -96,7 +96,7 @@ def possible(problem: Problem) -> Possible:
         slow_strokes=_slow_strokes(light, found[feasible] if feasible.any() else box[turning]),
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
-        hardest=_hardest(problem, box[turning]),
+        hardest=_hardest(light, box[turning]) if made is None else _hardest_of_all(problem, box[turning]),
         example=lengths_of(example_of(found, violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if made is None else (),
@@ -253,7 +253,7 @@ def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
 
 
 def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
-    good = np.isfinite(values)
+    good = ~np.isnan(values)
     if constraint.lower is not None:
         good &= values >= constraint.lower - _CLOSE * abs(constraint.lower)
     if constraint.upper is not None:
@@ -261,14 +261,19 @@ def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
     return np.asarray(good)
 
 
+def _hardest_of_all(problem: Problem, designs: Array) -> tuple[str, float] | None:
+    """Return what `_hardest` does, from the first designs that turn; None if they take longer than a moment."""
+    return within(PATIENCE, lambda: _hardest(problem, designs[:_BATCH]))
+
+
 def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
-    """Return the requirement on the dimensions, equalities aside, that the fewest designs meet, and their share."""
+    """Return the requirement, equalities aside, that the fewest designs meet, and their share."""
     shares = {
         constraint.quantity: float(
             _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
         )
-        for constraint in problem.constraints
-        if is_closed(constraint.quantity) and not constraint.equality and len(designs)
+        for constraint in constraints_of(problem)
+        if not constraint.equality and len(designs)
     }
     return min(shares.items(), key=lambda item: item[1]) if shares else None
 

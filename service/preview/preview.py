@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -106,7 +106,8 @@ def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     if stated is None:
         return Look(wrong, whole, None, None, [], [])
     found = possible(stated)
-    return Look(wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found))
+    held = () if whole is None else tuple(item.name for item in whole.mechanism.varying)
+    return Look(wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found, held))
 
 
 def _places(error: InputError) -> list[Wrong]:
@@ -122,8 +123,11 @@ def _places(error: InputError) -> list[Wrong]:
     return found
 
 
-def said(problem: Problem, found: Possible) -> list[str]:
-    """Return a sentence for each requirement that is out of reach, and one if no sample meets everything."""
+def said(problem: Problem, found: Possible, held: Sequence[str]) -> list[str]:
+    """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
+
+    held: names of the numbers that the search varies besides the lengths, which have one value in the samples.
+    """
     sentences = []
     asked = {constraint.quantity: constraint for constraint in problem.constraints}
     for name in ("stroke", "time_ratio", "transmission_angle"):
@@ -137,8 +141,9 @@ def said(problem: Problem, found: Possible) -> list[str]:
         if found.hardest is not None and found.hardest[1] < 1.0:
             title = problem.quantity(found.hardest[0]).title
             hardest = f"; on its own, {title} is met by {_percent(found.hardest[1])} of those that turn"
+        values = f" with the job's values of {', '.join(held)}" if held else ""
         sentences.append(
-            f"none of {counted(found.sampled, 'design')} tried meets every requirement{hardest}; "
+            f"none of {counted(found.sampled, 'design')} tried{values} meets every requirement{hardest}; "
             "the search looks more closely"
         )
     return sentences

@@ -18,6 +18,7 @@ from slidercrank.optimise.job.file import MOST
 from slidercrank.optimise.search.polish import polish
 from slidercrank.service.preview import feasibility
 from tests.service.api.serving import refused
+from tests.service.weak_pins import TABLES
 
 Job = dict[str, Any]
 
@@ -153,6 +154,45 @@ def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: 
         "time ratio at least 2 is asked, at most 1.28521 can be had" in sentence
         for sentence in found["allowed"]["said"]
     )
+
+
+def test_a_requirement_that_no_design_meets_is_blamed_and_not_one_that_most_meet(
+    shared: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the safety that none has, not the transmission angle: that is met by many."""
+    monkeypatch.setattr(feasibility, "PATIENCE", 60.0)
+    for safety in ({"min": 500.0}, {"max": 0.01}):
+        job = {**TABLES, "constraints": {"transmission_angle": {"min": "70 deg"}, "static_safety": safety}}
+        allowed = preview(shared, job)["allowed"]
+        assert (allowed["hardest"], allowed["hardest_share"], allowed["feasible_share"]) == ("static_safety", 0.0, 0.0)
+        (said,) = allowed["said"]
+        assert "on its own, static safety is met by 0 % of those that turn" in said
+        assert "transmission angle" not in said
+    job["constraints"]["static_safety"] = {"min": 0.01}
+    allowed = preview(shared, job)["allowed"]
+    assert allowed["said"] == []
+    assert allowed["hardest"] == "transmission_angle"
+    assert 0.0 < allowed["hardest_share"] < 1.0
+
+
+def test_what_the_samples_hold_though_the_search_varies_it_is_said(
+    shared: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(feasibility, "PATIENCE", 60.0)
+    varying = {**TABLES["variables"], "sections": {"pins": {"crank_pin": ["5 mm", "15 mm"]}}}
+    job = {**TABLES, "variables": varying, "constraints": {"static_safety": {"min": 500.0}}}
+    (said,) = preview(shared, job)["allowed"]["said"]
+    assert "tried with the job's values of sections.pins.crank_pin meets every requirement" in said
+
+
+def test_an_infinite_value_meets_a_least_one(shared: httpx.Client) -> None:
+    job = {
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": "200 mm", "offset": "0 mm"},
+        "constraints": {"rod_to_offset": {"min": 3.0}, "transmission_angle": {"min": "75 deg"}},
+    }
+    allowed = preview(shared, job)["allowed"]
+    assert allowed["hardest"] == "transmission_angle"
+    assert allowed["transmission_angle_deg"] is not None
 
 
 def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:
