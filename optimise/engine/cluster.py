@@ -58,8 +58,12 @@ class Cluster:
         Raises `InputError` for another kind of address, and for one that is encrypted without the files for it.
         """
         scheme, _, rest = address.partition("://")
-        if scheme not in ("tcp", "tls") or not rest.rpartition(":")[2].isdigit():
-            raise InputError(f"a scheduler's address is like tcp://host:8786 or tls://host:8786; got {address!r}")
+        if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
+            shown = f"***@{address.rpartition('@')[2]}" if "@" in address else address  # before it may be a password
+            raise InputError(
+                f"a scheduler's address is like tcp://host:8786 or tls://host:8786, without a user; got {shown!r}; "
+                "correct it"
+            )
         if (scheme == "tls") != (tls is not None):
             raise InputError(
                 f"certificates belong to an address with tls://, and it needs them; got {address} "

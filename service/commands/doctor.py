@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import typer
 
-from ...model.errors import NotFound, SlidercrankError
+from ...model.errors import InputError, NotFound, SlidercrankError
 from ...objectives.counted import counted
-from ..jobs.stores import Address, has_store, is_named, store_address
+from ..jobs.stores import Address, has_store, is_named, shown_store, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
 from ..runs.run_folder import runs_place
@@ -68,7 +68,7 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
     from ..store.database import Database
 
     if not has_store(store, runs):
-        raise NotFound(f"there is no store at {store_address(store, runs)}; name the one to copy with --store")
+        raise NotFound(f"there is no store at {shown_store(store, runs)}; name the one to copy with --store")
     with contextlib.closing(Database(store_address(store, runs))) as database:
         back_up(database, target)
     say(f"{target}: a copy of {database.name}")
@@ -98,8 +98,14 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
 
 
 def _store(address: str, named: bool) -> Iterator[Check]:
+    from ..store.address import url_of
     from ..store.database import Database
 
+    try:
+        url_of(address)
+    except InputError as error:
+        yield Check("store", "problem", str(error))
+        return
     if "://" not in address and not Path(address).exists():
         left = [name for end in ("-wal", "-shm") if Path(name := f"{address}{end}").exists()]
         if named or left:

@@ -11,7 +11,7 @@ from ...model.errors import InputError
 from ...objectives.counted import counted
 from ...optimise.front.progress import standing
 from ..designs.columns import split_unit
-from ..jobs.stores import Address, Name, find_job, has_store, store_address, store_that_is_there, tell_idle
+from ..jobs.stores import Address, Name, find_job, has_store, shown_store, store_that_is_there, tell_idle
 from ..runs.result import json_text
 from ..text.options import Json
 from ..text.screen import console, give, say
@@ -52,9 +52,9 @@ def jobs(
         _show(console(), found)
     else:
         say(
-            f"slidercrank: no such job in {store_address(store)}"
+            f"slidercrank: no such job in {shown_store(store)}"
             if state or name
-            else f"slidercrank: no job in {store_address(store)} yet; put one in with: slidercrank submit JOB"
+            else f"slidercrank: no job in {shown_store(store)} yet; put one in with: slidercrank submit JOB"
         )
 
 

@@ -37,6 +37,13 @@ def store_address(option: str | None, runs: Path | None = None) -> str:
     return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
 
 
+def shown_store(option: str | None, runs: Path | None = None) -> str:
+    """Return the address of the store as it may be printed."""
+    from ..store.address import without_secrets
+
+    return without_secrets(store_address(option, runs))
+
+
 def is_named(option: str | None) -> bool:
     """Whether somebody says where the store is; else it is in its usual place."""
     return bool(option or os.environ.get(STORE_VARIABLE))
@@ -57,9 +64,15 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 
 
 def has_store(option: str | None, runs: Path | None = None) -> bool:
-    """Whether there is a store to look into, without making one."""
+    """Whether there is a store to look into, without making one. Raises `InputError` for an address that is none."""
     address = store_address(option, runs)
-    return "://" in address or Path(address).is_file()
+    if "://" in address or Path(address).is_file():
+        return True
+    if is_named(option):
+        from ..store.address import url_of
+
+        url_of(address)
+    return False
 
 
 def tell_idle(store: Store) -> None:
@@ -72,9 +85,7 @@ def tell_idle(store: Store) -> None:
 def store_that_is_there(option: str | None) -> Iterator[Store]:
     """Give the store, closed at the end. Raises `NotFound` for a file that is not there: looking makes none."""
     if not has_store(option):
-        raise NotFound(
-            f"there is no store at {store_address(option)}; submit a job first, or name another with --store"
-        )
+        raise NotFound(f"there is no store at {shown_store(option)}; submit a job first, or name another with --store")
     with open_store(option) as store:
         yield store
 
@@ -87,5 +98,9 @@ def find_job(store: Store, name: str) -> Job:
             raise NotFound(f"there is no job in {store.name} yet; submit one")
         return latest[0]
     if not (name.isascii() and name.isdecimal() and len(name) <= 18):
-        raise InputError(f'a job is called by its number, or "latest"; got {name[:80]!r}; list the jobs')
+        from ..store.address import without_secrets
+
+        raise InputError(
+            f'a job is called by its number, or "latest"; got {without_secrets(name)[:80]!r}; list the jobs'
+        )
     return store.job(int(name))

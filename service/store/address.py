@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from os import PathLike
 from urllib.parse import quote
 
@@ -12,6 +13,8 @@ from ...model.errors import InputError
 from ...model.file_names import path_from_text, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
+_MANGLED = re.compile(r"[^/\\]*:[^\\]+@|postgres\w*:|.*password\s*=", re.IGNORECASE | re.DOTALL)
+"""An address of a server that is none, such as one without its scheme; no file is taken to be called so."""
 HIDDEN = "***"
 """In place of a password, and of options of an address other than the open ones: any may be a secret."""
 
@@ -19,12 +22,21 @@ HIDDEN = "***"
 def without_secrets(text: str) -> str:
     """Return a word of a command line as it may be shown: an address, also after `--option=`, without its secrets."""
     option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
-    if "://" not in value:
-        return text
+    scheme, server, _ = value.partition("://")
+    if not server:
+        return f"{option}{equals}{HIDDEN}" if _MANGLED.match(value) else text
+    url = _parsed(value)
+    return option + equals + (f"{scheme}://{HIDDEN}" if url is None else shown_url(url))
+
+
+def _parsed(text: str) -> URL | None:
+    """Return an address that has "://"; None for one that cannot be read, or where the password ends is not certain."""
     try:
-        return option + equals + shown_url(make_url(value))
+        url = make_url(text)
     except (ArgumentError, ValueError):
-        return f"{option}{equals}{value.partition('://')[0]}://{HIDDEN}"
+        return None
+    after_user = text.partition("://")[2].partition(":")[2]
+    return None if url.password is not None and after_user.count("@") > 1 else url
 
 
 def shown_url(url: URL) -> str:
@@ -44,18 +56,15 @@ def secrets_of(url: URL) -> list[str]:
 def url_of(address: str | PathLike[str]) -> URL:
     """Return the database at an address. Raises `InputError` for one of another kind of database."""
     text = str(address)
-    if "://" not in text:
+    if "://" not in text and not _MANGLED.match(text):
         return URL.create("sqlite", database=str(path_from_text(text)))
-    try:
-        url = make_url(text)
-    except (ArgumentError, ValueError):
-        url = URL.create("unreadable")
+    url = _parsed(text) or URL.create("unreadable")
     scheme = url.drivername.partition("+")[0]
     if scheme in ("postgresql", "postgres"):
         return url.set(drivername="postgresql+psycopg")
     if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
         return url.set(drivername="sqlite", database=str(path_from_text(url.database)))
     raise InputError(
-        f"a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got {scheme}://...; "
-        "give one of these"
+        "a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got "
+        f'{without_secrets(text)}; give one of these, with %40 for each "@" within a password'
     )

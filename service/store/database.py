@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event
-from sqlalchemy.exc import DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, InvalidatePoolError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import StoreError
@@ -67,7 +67,8 @@ class Database:
                 os.close(os.open(self._file, os.O_CREAT | os.O_RDWR, 0o600))
             self._known, self._open = _identity(self._file), may_use(self._file)
         self._folder = Path(url.database or ".").parent if self.sqlite else None
-        self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
+        with self._told():
+            self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite:
             self._use_write_ahead_log()
@@ -145,15 +146,15 @@ class Database:
     def _told(self) -> Iterator[None]:
         try:
             yield
-        except (DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
+        except (ArgumentError, DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
             if self._is_full(error):
-                raise self._full(self._without_secrets(_reason(error))) from error
+                raise self._full(self._without_secrets(_reason(error))) from None  # its own words have the secrets
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
                 f"{self._without_secrets(_reason(error))}; see that it runs, that the disk has room and that you may "
                 "write there"
-            ) from error
+            ) from None
 
     def _without_secrets(self, text: str) -> str:
         for secret in self._secrets:

@@ -161,3 +161,10 @@ def test_an_address_that_cannot_be_one_is_refused(address: str, tls: bool, words
 def test_fewer_than_one_process_is_refused() -> None:
     with pytest.raises(InputError, match="at least one process; got 0"):
         Processes(0)
+
+
+@pytest.mark.parametrize("address", ["tcp://me:geheim@there:8786", "postgresql://me:gehe@geheim@there/jobs"])
+def test_an_address_that_is_no_schedulers_is_refused_without_a_password(address: str) -> None:
+    with pytest.raises(InputError, match=r"without a user; got '\*\*\*@there") as refused:
+        Cluster(address)
+    assert "gehe" not in str(refused.value)

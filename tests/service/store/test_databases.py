@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import random
+import string
 import sys
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -312,7 +315,58 @@ def test_nothing_secret_of_an_address_is_shown() -> None:
     assert "host=127.0.0.1" in shown
 
 
-@pytest.mark.parametrize("text", ["runs/store.db", "--designs=3", "", "--store=a=b"])
+@pytest.mark.parametrize(
+    "form",
+    [
+        "postgresql://u:{}@127.0.0.1:1/jobs",
+        "postgresql+psycopg://u:{}@127.0.0.1:1",
+        "postgres://u:{}%40%2F{}@127.0.0.1:1/jobs",
+        "postgresql://u:a@{}@127.0.0.1:1/jobs",
+        "postgresql://u:a@b/{}@127.0.0.1:1/jobs",
+        "postgresql://u:{}@127.0.0.1:port/jobs",
+        "postgresql://127.0.0.1:1/jobs?user=u&password={}",
+        "postgresql://u@127.0.0.1:1/jobs?connect_timeout={}",
+        "postgresql://u:{}@127.0.0.1:1/jobs?port=x",
+        "postgresql:/u:{}@127.0.0.1/jobs",
+        "postgresql:u:{}@127.0.0.1/jobs",
+        "u:{}@127.0.0.1/jobs",
+        "host=127.0.0.1 port=1 password={}",
+        "mysql://u:{}@there/jobs",
+    ],
+)
+def test_no_form_of_an_address_shows_its_password(
+    form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where one may be taken for the name of a file
+    secret = "".join(random.Random(form).choices(string.ascii_letters, k=12))
+    address = form.replace("{}", secret)
+    with pytest.raises((InputError, StoreError)) as refused:
+        Store(address)
+    assert list(tmp_path.iterdir()) == []
+    # With all that a log or SLIDERCRANK_DEBUG shows of it.
+    shown = ["".join(traceback.TracebackException.from_exception(refused.value).format()), without_secrets(address)]
+    for name in (("jobs",), ("cancel", "1"), ("watch", "1"), ("doctor",), ("doctor", "--backup", "copy.db")):
+        done = command(*name, "--store", address)
+        shown.append(done.output)
+        assert done.exit_code in (1, 2) if name == ("doctor",) else done.exit_code == 2
+    shown.append(command("cancel", address).output)
+    assert secret not in "".join(shown)
+
+
+@pytest.mark.parametrize("form", ["tests:{}@", "tests@?password={}", "tests@?sslpassword={}", "+psycopg tests:{}@"])
+def test_commands_on_an_empty_store_show_no_password(form: str, server: Cluster, command: Command) -> None:
+    driver, user = form.split() if " " in form else ("", form)
+    user, _, option = user.replace("{}", "geheim").partition("?")
+    address = server.new_address().replace("://tests@", f"{driver}://{user}") + (option and f"&{option}")
+    assert "geheim" in address
+    for name in (("jobs",), ("jobs", "--state", "done"), ("jobs", "--json"), ("cancel", "latest"), ("doctor",)):
+        done = command(*name, "--store", address)
+        assert done.exception is None or isinstance(done.exception, SystemExit)
+        assert "geheim" not in done.output
+        assert "***" in done.output or "--json" in name
+
+
+@pytest.mark.parametrize("text", ["runs/store.db", "--designs=3", "", "--store=a=b", "./a:b@c", r"C:\jobs\me@home"])
 def test_what_is_no_address_is_shown_as_it_is(text: str) -> None:
     assert without_secrets(text) == text
 
