@@ -220,7 +220,7 @@ def test_a_file_that_could_mean_something_else_is_refused(text: str, keys: dict[
 
 
 def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
-    (tmp_path / "trace.csv").write_bytes("Winkel [°];Kraft [N]\n0;1.000,5\n90;-2\n".encode("latin-1"))
+    (tmp_path / "trace.csv").write_bytes("Winkel [°];Kraft [N]\n0;-2\n90;1.000,5\n".encode("latin-1"))
     (tmp_path / "job.toml").write_text(
         'name = "Trace"\nmechanism = { speed = "60 rpm", slider = { mass = "1 kg" } }\n'
         'load = [{ file = "trace.csv" }]\n[objectives]\npeak_torque = "minimise"\n'
@@ -228,10 +228,10 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     loads = load_job(tmp_path / "job.toml").mechanism.loads
-    assert loads == (given(crank_angles=["0 deg", "90 deg"], forces=["1000.5 N", "-2 N"]),)
+    assert loads == (given(crank_angles=["0 deg", "90 deg"], forces=["-2 N", "1000.5 N"]),)
     assert files_beside(tmp_path / "job.toml") == [tmp_path / "trace.csv"]
     assert sources_of(read_job(tmp_path / "job.toml")) == [
-        "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, 1000.5; last 90, -2; separated by semicolons; "
+        "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, -2; last 90, 1000.5; separated by semicolons; "
         "decimal comma"
     ]
     with pytest.raises(JobError, match="load #1: a file lies beside the job file, or its content is sent with the job"):

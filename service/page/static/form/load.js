@@ -45,7 +45,7 @@ function one(form, load, place, all) {
   const columns = Object.entries(properties ?? {}).filter(([, node]) => node.type === "array").map(([key, node]) => ({ key, label: words(key), kind: describe(form.schema.resolve(node.items ?? {})).kind ?? null }));
   const [first, second] = columns;
   const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "", { steps: true }) : null;
-  const rest = Object.keys(properties ?? {}).filter((key) => !table || !columns.some((one) => one.key === key));
+  const rest = Object.keys(properties ?? {}).filter((key) => key !== "source").filter((key) => !table || !columns.some((one) => one.key === key));
   const chosen = field(form, path, "kind of load", [select], "", { tell: () => say() });
   /** Say below the kind what the service understood of the load. */
   function say() {
@@ -72,5 +72,5 @@ function one(form, load, place, all) {
  */
 function kinds(form) {
   const tables = form.schema.property(["load"])?.items?.oneOf ?? [];
-  return tables.map(form.schema.resolve).map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table }));
+  return tables.map(form.schema.resolve).map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table })).filter(({ key }) => key); // one from a file has none: its points are read into one of the others
 }
