@@ -224,6 +224,8 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
         )
     number = float(exact)
     if (sign == "positive" and number <= 0.0) or (sign == "zero or more" and number < 0.0):
+        if number < 0.0 and isinstance(value, str):
+            write = f"write it without the minus sign, {shown(value.translate(_TYPESET).strip().removeprefix('-'))}"
         raise InputError(f"must be {sign}; got {shown(value)}; {write}")
     return number
 
@@ -323,7 +325,11 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     if text.strip().casefold().lstrip("+-").split(" ")[0] in ("nan", "inf", "infinity"):
         raise InputError(f"must be a finite number; got {shown(text)}; {write}")
     if re.search(r"\d,\d", text):
-        raise InputError(f"{rule} without a comma; got {shown(text)}; the decimal sign is a point")
+        point, parted = text.replace(",", "."), text.replace(",", "")
+        write = f"write {shown(point)}" if text.count(",") == 1 else f"write {shown(parted)}"
+        if re.fullmatch(r"\s*[-+]?[1-9]\d{0,2},\d{3}(?!\d).*", text):
+            write += f", or {shown(parted)} if the comma separates thousands"
+        raise InputError(f"{rule} without a comma; got {shown(text)}; the decimal sign is a point; {write}")
     match = _VALUE.fullmatch(text.translate(_TYPESET))
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import warnings
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
@@ -157,7 +158,9 @@ def parse_job(
         more = ["... and more"] if len(found) > MOST else []
         raise JobError("\n  ".join([*heading, *found[:MOST], *more])) from None
     except InputError as error:  # a number that means another unit is a likely cause
-        text = "; ".join((str(error), *doubts))
+        place = re.match(r"[a-z_][^:;=]*: ", str(error)) if doubts else None
+        key = place[0] if place else ""
+        text = key + "; ".join((*doubts, str(error)[len(key) :]))
         if not isinstance(error, JobError):
             raise JobError(text) from None
         error.args = (text,)

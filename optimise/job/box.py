@@ -209,7 +209,7 @@ def _sizes(offset: Range) -> Range:
 
 def _shown(of: Quantity, value: float) -> str:
     unit = of.unit
-    return f"{value * unit.factor:.5g} {unit.symbol}".rstrip()
+    return f"{float(f'{value * unit.factor:.5g}'):.12g} {unit.symbol}".rstrip()  # 100000, not 1e+05
 
 
 def _bounds(constraint: Constraint, of: Quantity | None = None) -> str:

@@ -79,7 +79,7 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
     job's own quantities. Raises JobError, naming column and remedy.
     """
     if header[0] != "name":
-        raise JobError(f"{name} must have the column name first; got {shown(header[0])}; rename or move it")
+        raise JobError(f'{name} must begin with the column "name"; got {shown(header[0])}; rename or move it')
     found: list[Column] = []
     for place, text in enumerate(header[1:], 1):
         if text.startswith("#"):

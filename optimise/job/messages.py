@@ -167,6 +167,9 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
         most = kind == "too_long"
         count = context["max_length" if most else "min_length"]
         return f"must have at {'most' if most else 'least'} {count} entries; got {len(value)}{write}"
+    if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
+        first, *others = (f"{{ {word} = {toml(value)} }}" for word in ("equals", "min", "max"))
+        write = f"; write {path[-1]} = {first}, {' or '.join(others)}"
     return f"{rule_of(details)}; {got}{write}"
 
 

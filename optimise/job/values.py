@@ -250,9 +250,11 @@ class RangeOf(_Read):
             return self._choices(value["choices"])
         ends = value if isinstance(value, list | tuple) else spread(value) or (value, value)
         if len(ends) != 2:
-            raise InputError(
-                f'must be a range [lower, upper] or one value; got {shown(value)}; write it like ["20 mm", "200 mm"]'
-            )
+            write = 'write it like ["20 mm", "200 mm"]'
+            if len(ends) == 3:
+                lower, upper, step = map(shown, ends)
+                write = f"for steps within a range write {{ min = {lower}, max = {upper}, step = {step} }}"
+            raise InputError(f"must be a range [lower, upper] or one value; got {shown(value)}; {write}")
         lower, upper = (self._length(end) for end in ends)
         if lower > upper:
             what = f"must run from its lower to its upper end; got {shown(ends[0])} to {shown(ends[1])}"

@@ -165,7 +165,7 @@ ROW = "A,10,5,1"
         ("name,stroke max (mm),stroke max (m)\nA,1,1", "columns must differ"),
         ("name,(mm)\nA,1", "must be a quantity or formula with min, max or equals, or the path of a number"),
         ("name,# price\nA,1", "must have a column beside the name"),
-        ("motor,stroke max (mm)\nA,1", 'must have the column name first; got "motor"'),
+        ("motor,stroke max (mm)\nA,1", 'must begin with the column "name"; got "motor"'),
         ('name,stroke max (mm)\n"A,1', "must be a table in CSV; got unexpected end of data in row 2"),
         ("name,stroke max (mm)\nA\0,1", "must be text; got a byte 0"),
         (

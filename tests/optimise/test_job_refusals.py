@@ -341,7 +341,7 @@ def test_small_messages_tell_the_value_in_the_words_of_the_job() -> None:
     [
         (
             "tolerances",
-            {"crank": 0.05},
+            {"crank": "50 mm"},
             "tolerances.crank: must be less than the crank itself, which may be 20 mm; got 50 mm",
         ),
         (
