@@ -90,7 +90,8 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except JobError:
         raise
     except ValueError as error:
-        raise JobError(f"the file is no valid JSON: {error}; {_remedy(text, str(error))}") from None
+        said = _unquoted(text, str(error))
+        raise JobError(said or f"the file is no valid JSON: {error}; correct the line") from None
     if not isinstance(data, dict):
         raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
     return data
@@ -118,11 +119,12 @@ def toml_tables(text: str) -> dict[str, Any]:
                 "the file is no valid TOML: a number of a job has a few digits; got one of thousands; shorten it"
             ) from None
         said = in_words(text, str(error))
-        raise JobError(said or f"the file is no valid TOML: {str(error)[:300]}; {_remedy(text, str(error))}") from None
+        said = said or _unquoted(text, str(error))
+        raise JobError(said or f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
 
 
-def _remedy(text: str, error: str) -> str:
-    """Return the remedy for a parser's error, told with its line: quotes for a value that lacks them."""
+def _unquoted(text: str, error: str) -> str | None:
+    """Return rule, line and remedy for a parser's error at a value that lacks quotes; None for another error."""
     place = re.search(r"line (\d+)", error)
     lines = text.splitlines()
     line = lines[min(int(place[1]), len(lines)) - 1] if place else lines[-1]  # "at end of document"
@@ -130,8 +132,9 @@ def _remedy(text: str, error: str) -> str:
     whole = _LINE.fullmatch(line)
     for value in (match[1].strip() for match in ([whole] if whole else _PART.finditer(line))):
         if len(value) <= _LONGEST and value not in ("true", "false", "null", "nan", "inf"):
-            return f'put {value} in quotes: "{value}"'
-    return "correct the line"
+            where = f"line {place[1]}" if place else "the last line"
+            return f'words and values with units stand in quotes; got {value} in {where}; write "{value}"'
+    return None
 
 
 def _too_deep() -> JobError:

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from ...objectives.units import closest, shown
+from ...objectives.units import closest, shown, spread
 
 _MOST_KEYS = 20  # that are told where none is near
 
@@ -168,8 +168,9 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
         count = context["max_length" if most else "min_length"]
         return f"must have at {'most' if most else 'least'} {count} entries; got {len(value)}{write}"
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
-        first, *others = (f"{{ {word} = {toml(value)} }}" for word in ("equals", "min", "max"))
-        write = f"; write {path[-1]} = {first}, {' or '.join(others)}"
+        bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
+        first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
+        write = f"; write {path[-1]} = {', '.join(filter(None, (first, ' or '.join(others))))}"
     return f"{rule_of(details)}; {got}{write}"
 
 

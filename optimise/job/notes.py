@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...objectives.counted import counted
+from ...objectives.registry import FACTS
 from ...objectives.units import shown
 from .beside import SOURCE
 from .catalogue import Catalogue, with_options
@@ -35,6 +36,12 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
         notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
     notes += [note for table in tables for note in _of_catalogue(table)]
+    notes += [
+        f"constraints.{name}: high values are the good ones, and max alone keeps them out; write min for the least "
+        "that is allowed"
+        for name, given in data.get("constraints", {}).items()
+        if name in FACTS and FACTS[name].better == "high" and isinstance(given, Mapping) and set(given) == {"max"}
+    ]
     machine = job.machine()
     moving = machine.crank, machine.rod
     if job.mechanism.gravity is None and (machine.slider_mass or any(getattr(link, "mass", 1.0) for link in moving)):

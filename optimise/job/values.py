@@ -252,8 +252,8 @@ class RangeOf(_Read):
         if len(ends) != 2:
             write = 'write it like ["20 mm", "200 mm"]'
             if len(ends) == 3:
-                lower, upper, step = map(shown, ends)
-                write = f"for steps within a range write {{ min = {lower}, max = {upper}, step = {step} }}"
+                keys = (f"{key} = {shown(end)}" for key, end in zip(("min", "max", "step"), ends, strict=True))
+                write = f"for steps within a range write {{ {', '.join(keys)} }}"
             raise InputError(f"must be a range [lower, upper] or one value; got {shown(value)}; {write}")
         lower, upper = (self._length(end) for end in ends)
         if lower > upper:
