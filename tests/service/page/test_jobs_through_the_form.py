@@ -196,3 +196,19 @@ def test_cylinders_an_uneven_speed_and_an_engine_of_four_strokes_are_filled_in(f
     # The pressure after compression, and the rise by the heat at constant volume.
     risen = 1e5 * 8.0**1.3 + 0.4 * 1.6e6 * 7.0
     assert (load.high, load.exhaust) == pytest.approx((risen, 1.1e5), rel=1e-9)
+
+
+def test_points_of_a_load_are_read_from_a_file_in_any_encoding_and_told(
+    form: Open, store: Store, tmp_path: Path
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    page.get_by_label("kind of load").first.select_option("crank_angles")
+    file = tmp_path / "trace.csv"
+    file.write_bytes("Position [mm];Kraft [kN]\n0;-0,5\n20;0\n".encode("utf-16"))
+    page.get_by_role("group", name="Load 1").get_by_label("File of points").set_input_files(file)
+    expect(
+        page.get_by_text("trace.csv: 2 rows of Position [mm], Kraft [kN]; first 0, -0.5; last 20, 0")
+    ).to_be_visible()
+    expect(page.get_by_label("kind of load").first).to_have_value("positions")
+    load = json.loads(page.locator("#job-text").input_value())["load"][0]
+    assert (load["positions"], load["forces"]) == (["0.0 mm", "20.0 mm"], ["-0.5 kN", "0.0 kN"])

@@ -77,7 +77,7 @@ export function motion(form, turning) {
     own("margin", "margin from dead points"),
     choosing("law", "motion over time", (law) => [...(law === "" || law === "slow" ? ["duration"] : []), ...(law === "table" ? [] : ["law_times", "law_shares"])]),
     slow ? null : own("duration", "duration of one way"),
-    form.at([...PATH, "law"]) === "table" ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", { optional: true, title: "points of the motion, one a line" }) : null,
+    form.at([...PATH, "law"]) === "table" ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", { optional: true, title: "points of the motion, one a line", files: false }) : null,
     form.at([...PATH, "driver"]) === "slider" ? own("actuator_tolerance", "tolerance of the actuator") : null,
     turning,
     h("details", { class: "more" }, h("summary", {}, "Crank speed, of no matter to a swing"), h("div", { class: "fields" }, speed(form))),

@@ -1,20 +1,22 @@
 /** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit; and the curve that they are. */
 
+import { post } from "../lib/api.js";
 import { h } from "../lib/dom.js";
+import { sayProblem } from "../lib/notices.js";
 import { unitSelect } from "./controls.js";
 import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
-import { idOf, written } from "./path.js";
+import { at, idOf, put, written } from "./path.js";
 import { convert, factorsOf, join, split } from "../lib/units.js";
 
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 
 /**
  * Return the field of the points that two lists of a table say, one a line. optional: whether there may be none, without the lists.
- * steps: whether two points may be at one place.
- * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string, steps?: boolean }} options
+ * steps: whether two points may be at one place. files: whether a job may name a file of such points.
+ * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string, steps?: boolean, files?: boolean }} options
  */
-export function points(form, path, columns, why, { optional = false, title = "points, one a line", steps = false } = {}) {
+export function points(form, path, columns, why, { optional = false, title = "points, one a line", steps = false, files = true } = {}) {
   const given = columns.map(({ key }) => form.at([...path, key]));
   const lists = given.map((one) => (Array.isArray(one) ? one : []));
   const units = columns.map(({ label, kind }, n) => (kind ? unitSelect(label, kind, split(lists[n][0], kind).unit, false, idOf([...path, columns[n].key], "u")) : null));
@@ -68,11 +70,43 @@ export function points(form, path, columns, why, { optional = false, title = "po
   const titles = columns.map(({ label }, n) => [h("span", { class: "to" }, `${label} in`), units[n]]);
   const made = field(form, [...path, columns[0].key], title, [text, h("span", { class: "row" }, titles)], `${why}; two columns, typed or pasted from a table; a first line may name the units, as in force (kN)`, { wide: true });
   const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
-  made.querySelector(".field-controls")?.append(picture.node);
+  made.querySelector(".field-controls")?.append(...(files ? [fromFile(form, path, columns)] : []), picture.node);
   made.append(error);
   picture.draw();
   form.register({ path: [...path, columns[1].key], key: written([...path, columns[1].key]), node: made, controls: [units[1] ?? text], error, tell: picture.draw });
   return made;
+}
+
+/** Return the button that reads points from a file, and what was read from one. @param {Form.Whole} form @param {Form.Path} path @param {Column[]} columns */
+function fromFile(form, path, columns) {
+  const input = h("input", { type: "file", id: idOf(path, "file"), class: "hidden", tabindex: "-1", "aria-label": "File of points" });
+  input.addEventListener("change", async () => {
+    const [file] = input.files ?? [];
+    input.value = "";
+    if (!file) return;
+    const job = structuredClone(form.job);
+    const own = Object.entries(form.at(path) ?? {}).filter(([key]) => key !== "source" && !columns.some((one) => one.key === key));
+    put(job, path, { ...Object.fromEntries(own), file: file.name });
+    try {
+      const found = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
+      form.put(path, at(found.job, path)); // the units of its columns say which table it is
+      form.redraw();
+    } catch (problem) {
+      sayProblem(problem);
+    }
+  });
+  const said = form.at([...path, "source"]);
+  return h("p", { class: "row" }, h("button", { type: "button", onclick: () => input.click() }, "Read a file …"), input, said ? h("span", { class: "quiet" }, String(said)) : null);
+}
+
+/** Return the content of a file as a data URL, which keeps its bytes whatever their encoding. @param {File} file @returns {Promise<string>} */
+function bytesOf(file) {
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.addEventListener("load", () => resolve(String(reader.result)));
+    reader.addEventListener("error", () => reject(reader.error));
+    reader.readAsDataURL(file);
+  });
 }
 
 /**
