@@ -28,11 +28,15 @@ class Live(Shown):
 
 
 class Ready(Shown):
-    """The service has its database. takes_jobs: whether a worker was heard of lately, be it busy."""
+    """The service has its database. takes_jobs: whether a worker was heard of lately, be it busy.
+
+    busy: how many of the workers have a job. waiting: how many jobs have none.
+    """
 
     status: Literal["ready"] = "ready"
     takes_jobs: bool
     workers: Count
+    busy: Count
     waiting: Count
 
 
@@ -46,8 +50,9 @@ async def show_live() -> Live:
 def show_ready(store: StoreDep) -> Ready:
     """Return that the database can be read and written, how many workers there are, and how many jobs wait."""
     store.require_ready()
-    workers = store.workers_at_work()
-    return Ready(takes_jobs=workers > 0, workers=workers, waiting=store.counts().get("queued", 0))
+    busy = [worker.busy for worker in store.workers() if worker.at_work]
+    waiting = store.counts().get("queued", 0)
+    return Ready(takes_jobs=bool(busy), workers=len(busy), busy=sum(busy), waiting=waiting)
 
 
 class Metrics(Collector):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import typer
 
-from ...model.errors import InputError, NotFound, SlidercrankError
+from ...model.errors import NotFound, SlidercrankError
 from ...objectives.counted import counted
 from ..jobs.stores import Address, has_store, is_named, shown_store, store_address
 from ..resources.memory import size_text
@@ -98,41 +98,33 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
 
 
 def _store(address: str, named: bool) -> Iterator[Check]:
-    from ..store.address import url_of
+    from ..store.address import file_of, is_there
     from ..store.database import Database
 
     try:
-        url_of(address)
-    except InputError as error:
-        yield Check("store", "problem", str(error))
-        return
-    if "://" not in address and not Path(address).exists():
-        left = [name for end in ("-wal", "-shm") if Path(name := f"{address}{end}").exists()]
-        if named or left:
-            why = f"{left[0]} is left of one that was deleted" if left else "the first job makes a new one"
-            text = f"there is none at {address}: {why}; put it back, or restore a backup, see docs/service.md"
-            yield Check("store", "problem", text)
-        else:
-            yield Check("store", "ok", f"there is none at {address} yet; the first job makes it")
-        yield _writable("place of the store", Path(address).parent)
-        return
-    try:
+        file = file_of(address)
+        if file is not None and not is_there(file):
+            text = f"there is none at {file}: the first job makes a new one; put it back, or restore a backup, see "
+            fresh = f"there is none at {file} yet; the first job makes it"
+            yield Check("store", "problem", f"{text}docs/service.md") if named else Check("store", "ok", fresh)
+            yield _writable("place of the store", file.parent)
+            return
         with contextlib.closing(Database(address)) as database:
-            yield from _private(address)
+            yield from () if file is None else _private(file)
             yield from _database(address, database)
     except SlidercrankError as error:
         yield Check("store", "problem", str(error))
 
 
-def _private(address: str) -> Iterator[Check]:
+def _private(file: Path) -> Iterator[Check]:
     """Check who may use a store that is a file: it holds everything that a service's token protects."""
     from ..store.database import may_use, remedy_of_rights
 
-    if "://" not in address and not may_use(Path(address)):
-        text = f"{address} may not be written, so that no job gets on; {remedy_of_rights(Path(address))}"
+    if not may_use(file):
+        text = f"{file} may not be written, so that no job gets on; {remedy_of_rights(file)}"
         yield Check("permissions", "problem", text)
-    elif "://" not in address and os.name == "posix" and (mode := Path(address).stat().st_mode & 0o077):
-        text = f"others of this machine may read or write {address} (mode {mode:03o} for them); chmod 600 {address}"
+    elif os.name == "posix" and (mode := file.stat().st_mode & 0o077):
+        text = f"others of this machine may read or write {file} (mode {mode:03o} for them); chmod 600 {file}"
         yield Check("permissions", "note", text)
 
 

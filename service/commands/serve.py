@@ -69,6 +69,7 @@ def serve(
         limits=work.terms.limits,
     )
     with Interruption(service=True) as termination, listen(host, port) as socket, open_store(store) as opened:
+        opened.require_writable()
         opened.most_queued = most_queued
         app = create_app(opened, settings)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")

@@ -87,7 +87,8 @@ def worker(
 
     settings = options.settings(store_address(store), engine, processes, drain=drain)
     with Interruption(service=True) as termination:
-        open_store(store).close()  # what is wrong with it is told at once, and by nobody but this process
+        with open_store(store) as opened:  # what is wrong with it is told at once, and by nobody but this process
+            opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
             while not (termination.asked() or supervisor.finished()):

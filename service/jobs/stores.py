@@ -64,15 +64,17 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 
 
 def has_store(option: str | None, runs: Path | None = None) -> bool:
-    """Whether there is a store to look into, without making one. Raises `InputError` for an address that is none."""
-    address = store_address(option, runs)
-    if "://" in address or Path(address).is_file():
-        return True
-    if is_named(option):
-        from ..store.address import url_of
+    """Whether there is a store to look into, without making one.
 
-        url_of(address)
-    return False
+    Raises `InputError` for an address that is none, `StoreError` for a file that can be none, see `is_there`.
+    """
+    address = store_address(option, runs)
+    if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
+        return False  # as is usual, and then without SQLAlchemy
+    from ..store.address import file_of, is_there
+
+    file = file_of(address)
+    return file is None or is_there(file)
 
 
 def tell_idle(store: Store) -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from os import PathLike
+from pathlib import Path
 from urllib.parse import quote
 
 from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
-from ...model.errors import InputError
+from ...model.errors import InputError, StoreError
 from ...model.file_names import path_from_text, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
@@ -68,3 +69,27 @@ def url_of(address: str | PathLike[str]) -> URL:
         "a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got "
         f'{without_secrets(text)}; give one of these, with %40 for each "@" within a password'
     )
+
+
+def file_of(address: str | PathLike[str]) -> Path | None:
+    """Return the file of a store, None for one on a server. Raises `InputError` for an address that is none."""
+    url = url_of(address)
+    return Path(url.database) if url.database and url.get_backend_name() == "sqlite" else None
+
+
+def is_there(file: Path) -> bool:
+    """Whether the file of a store is there.
+
+    Raises `StoreError` for what can be no such file, and for one that was deleted and has left its write-ahead log:
+    SQLite would delete that, too, with the latest jobs in it.
+    """
+    if file.exists() and not file.is_file():
+        what = "a folder" if file.is_dir() else "no regular file"
+        raise StoreError(f"a store is a file; {path_text(file)} is {what}; name a file")
+    log = Path(f"{file}-wal")
+    if log.exists() and not file.exists():
+        raise StoreError(
+            f"a store is a file and its write-ahead log; {path_text(log)} is left of one that was deleted; put "
+            f"{path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
+        )
+    return file.is_file()

@@ -23,7 +23,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from ...model.errors import StoreError
 from ...model.extras import NamingExtra
 from ..resources.disk import LEAST, free, room
-from .address import HIDDEN, secrets_of, shown_url, url_of
+from .address import HIDDEN, file_of, is_there, secrets_of, shown_url, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
@@ -60,17 +60,24 @@ class Database:
         self.name = shown_url(url)
         self._secrets = secrets_of(url)
         self.sqlite = url.get_backend_name() == "sqlite"
-        self._file = Path(url.database) if self.sqlite and url.database else None
+        self._file = file_of(address)
+        alone = False
         if self._file is not None:
+            is_there(self._file)
             with contextlib.suppress(OSError):  # where it cannot be made, opening it says why
                 # The files beside it, of the write-ahead log, get its permissions.
                 os.close(os.open(self._file, os.O_CREAT | os.O_RDWR, 0o600))
             self._known, self._open = _identity(self._file), may_use(self._file)
+            # Where nobody writes either: SQLite would look for a log that it cannot make, or leave one behind.
+            alone = not self._open and not Path(f"{self._file}-wal").exists()
+            if alone and os.access(self._file, os.R_OK):
+                unchanging = {"mode": "ro", "immutable": "1", "uri": "true"}
+                url = url.set(database=self._file.absolute().as_uri()).update_query_dict(unchanging)
         self._folder = Path(url.database or ".").parent if self.sqlite else None
         with self._told():
             self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
-        if self.sqlite:
+        if self.sqlite and not alone:
             self._use_write_ahead_log()
 
     def require_room(self) -> None:
@@ -124,6 +131,11 @@ class Database:
     def writing(self) -> Iterator[Connection]:
         """Enter a transaction that writes; committed at the end, taken back as a whole after an error."""
         self._require_file()
+        if self._file is not None and not self._open:
+            raise StoreError(
+                f"the store must be a database that can be written; {self.name} is read-only; only look into it, or "
+                f"{remedy_of_rights(self._file)}"
+            )
         with self._told(), self.engine.begin() as connection:
             yield connection
 

@@ -172,13 +172,15 @@ SILENT = 120.0
 class Worker:
     """A worker that solves jobs.
 
-    started, seen: when it began, and when it was heard of last. silent: seconds between then and now.
+    started, seen: when it began, and when it was heard of last. silent: seconds between then and now. busy: whether it
+    has a job.
     """
 
     id: str
     started: float
     seen: float
     silent: float
+    busy: bool
 
     @property
     def at_work(self) -> bool:

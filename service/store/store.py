@@ -84,11 +84,10 @@ class Store(Workers):
         with self.writing() as connection:
             queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
             known = queue.submitted_before(connection, key, tables) if key else None
-            if known is not None:
-                return known
-            queue.require_room(connection, self.most_queued)
-            number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **more)
-            return the_job(connection, number)
+            if known is None:
+                queue.require_room(connection, self.most_queued)
+                number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **more)
+        return self.job(number if known is None else known.id)
 
     def begin(
         self, tables: Mapping[str, Any], *, name: str, run: str, worker: str, lease: float, files: Sequence[Artefact]
@@ -116,7 +115,7 @@ class Store(Workers):
         return Claim(self, held, lease)
 
     def job(self, number: int) -> Job:
-        """Return where a job stands. While the disk of the store is full, that is the reason of jobs not ended."""
+        """Return where a job stands; the reason of one that waits says whether for room on the disk or for a worker."""
         with self.reading() as connection:
             found = the_job(connection, number)
         return self._waiting([found])[0]
@@ -127,6 +126,15 @@ class Store(Workers):
         except StoreError as error:
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
+        if any(job.state == "queued" for job in found):
+            crew = [worker.busy for worker in self.workers() if worker.at_work]
+            busy = f"every worker is busy ({len(crew)})" if crew else "no worker is at work"
+            found = [
+                replace(job, reason="; ".join(part for part in (job.reason, busy) if part))
+                if job.state == "queued" and all(crew)
+                else job
+                for job in found
+            ]
         return found
 
     def records(self, number: int) -> list[Record]:
@@ -268,7 +276,8 @@ class Store(Workers):
             job = the_job(connection, number, lock=True)
             require_resumable(job)
             again = {"attempts": 0, "cancel_asked": False, "due": now(), "finished": None}
-            return become(connection, job, "queued", "resumed", **again)
+            become(connection, job, "queued", "resumed", **again)
+        return self.job(number)
 
     def delete(self, number: int) -> None:
         """Delete a job that has ended and everything of it. Raises `InputError` for a job that has not."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from sqlalchemy import delete, func, insert, select, update
+from sqlalchemy import delete, exists, func, insert, not_, select, update
 
 from .clock import now
 from .database import Database
+from .queue import ENDED_LEASE
 from .records import Worker
-from .schema import workers
+from .schema import jobs, workers
 
 _FORGOTTEN = 7 * 86_400.0  # s
 
@@ -38,6 +39,7 @@ class Workers(Database):
         One that was heard of in the future, by a clock set back since, counts as silent for as long.
         """
         silent = func.abs(now() - workers.c.seen).label("silent")
-        query = select(*workers.c, silent).order_by(silent)
+        held = exists().where(jobs.c.worker == workers.c.id, jobs.c.state == "running", not_(ENDED_LEASE))
+        query = select(*workers.c, silent, held.label("busy")).order_by(silent)
         with self.reading() as connection:
             return [Worker(**row._mapping) for row in connection.execute(query)]

@@ -136,7 +136,7 @@ def test_jobs_are_listed_with_what_they_found(
     command("submit", job)
     lines = [line.split() for line in command("jobs").stdout.splitlines()]
     rows = {line[0]: " ".join(line[3:]) for line in lines if line and line[0].isdecimal()}
-    assert rows["3"] == "Short test [job] queued"
+    assert rows["3"] == "Short test [job] queued no worker is at work"
     assert rows["2"] == "Short test [job] infeasible none"
     assert rows["1"].startswith("Short test [job] done 4 designs; best time ratio 1.")
     assert list(rows) == ["3", "2", "1"]

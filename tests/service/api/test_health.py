@@ -23,10 +23,35 @@ def figures(client: httpx.Client) -> dict[tuple[str, tuple[str, ...]], float]:
 
 def test_the_service_tells_whether_it_can_work(client: httpx.Client, store: Store) -> None:
     assert client.get("/health/live").json() == {"status": "live"}
-    assert client.get("/health/ready").json() == {"status": "ready", "takes_jobs": False, "workers": 0, "waiting": 0}
+    idle = {"status": "ready", "takes_jobs": False, "workers": 0, "busy": 0, "waiting": 0}
+    assert client.get("/health/ready").json() == idle
     store.greet("one")
     add(store)
-    assert client.get("/health/ready").json() == {"status": "ready", "takes_jobs": True, "workers": 1, "waiting": 1}
+    ready = {"status": "ready", "takes_jobs": True, "workers": 1, "busy": 0, "waiting": 1}
+    assert client.get("/health/ready").json() == ready
+
+
+def test_no_worker_a_free_one_and_busy_ones_are_told_apart(client: httpx.Client, store: Store) -> None:
+    def told() -> tuple[int, int, int, str]:
+        ready, row = client.get("/health/ready").json(), client.get("/jobs").json()["jobs"][0]
+        assert client.get("/jobs/3").json()["reason"] == row["reason"]
+        return ready["workers"], ready["busy"], ready["waiting"], row["reason"]
+
+    for _ in range(3):
+        add(store)
+    assert told() == (0, 0, 3, "no worker is at work")
+    store.greet("one")
+    assert told() == (1, 0, 3, "")
+    taken(store, "one")
+    assert told() == (1, 1, 2, "every worker is busy (1)")
+    store.greet("two")
+    assert told() == (2, 1, 2, "")
+    held = taken(store, "two")
+    assert told() == (2, 2, 1, "every worker is busy (2)")
+    held.hand_back("stopped")
+    assert client.get("/jobs/2").json()["reason"] == "stopped"
+    store.part("two")
+    assert client.get("/jobs/2").json()["reason"] == "stopped; every worker is busy (1)"
 
 
 def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reason_of_jobs_that_wait(
@@ -43,7 +68,7 @@ def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reaso
     assert client.get("/health/live").is_success
     monkeypatch.undo()
     assert client.get("/health/ready").is_success
-    assert client.get("/jobs/1").json()["reason"] == ""
+    assert client.get("/jobs/1").json()["reason"] == "no worker is at work"
 
 
 def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: Store) -> None:

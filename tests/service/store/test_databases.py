@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import random
 import string
 import sys
+import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -23,10 +25,12 @@ from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.address import without_secrets
 from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.database import Database, Unavailable
+from slidercrank.service.store.inspection import damages
 from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
 from tests.service.conftest import Command
-from tests.service.store.contents import add, end_lease, everything, progress, result, search_record
+from tests.service.fronts import job_file
+from tests.service.store.contents import add, end_lease, everything, progress, result, search_record, taken
 from tests.service.store.postgresql import Cluster
 
 
@@ -374,6 +378,96 @@ def test_what_is_no_address_is_shown_as_it_is(text: str) -> None:
 def test_an_address_that_cannot_be_read_is_not_shown() -> None:
     assert without_secrets("mysql://a:secret@host:port/x") == "mysql://***"
     assert "secret" not in without_secrets("http://a:secret@host/x?b=secret")
+
+
+@pytest.mark.parametrize("what", ["a folder", "no regular file", "left of one that was deleted"])
+def test_what_can_be_no_store_is_refused_by_every_command_and_stays_as_it_is(
+    what: str, tmp_path: Path, command: Command
+) -> None:
+    file, log = tmp_path / "store.db", tmp_path / "store.db-wal"
+    if what == "a folder":
+        file.mkdir()
+    elif what == "no regular file":
+        file = Path(os.devnull)
+    else:
+        log.write_bytes(b"the latest jobs")
+    job = job_file(tmp_path)
+    for address in {str(file), f"sqlite:///{file}"}:
+        for name in (
+            "jobs",
+            "jobs --json",
+            "cancel latest",
+            f"submit {job}",
+            "worker --drain",
+            "doctor --backup new.db",
+        ):
+            done = command(*name.split(), "--store", address)
+            assert (done.exit_code, done.stdout) == (2, "")
+            assert what in done.stderr
+            assert done.stderr.count("\n") == 1
+        done = command("doctor", "--store", address)
+        assert done.exit_code == 1
+        assert what in done.stdout
+    assert not log.exists() or log.read_bytes() == b"the latest jobs"
+
+
+def test_looking_into_a_store_that_is_not_there_makes_none(tmp_path: Path, command: Command) -> None:
+    assert command("jobs", "--store", f"sqlite:///{tmp_path / 'store.db'}").exit_code == 0
+    assert command("cancel", "latest", "--store", f"sqlite:///{tmp_path / 'store.db'}").exit_code == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+@contextlib.contextmanager
+def as_reader(folder: Path) -> Iterator[None]:
+    """Enter as somebody who may read a folder and its files but not write there."""
+    for place in (*folder.iterdir(), folder):
+        place.chmod(0o555 if place.is_dir() else 0o444)
+    root = os.geteuid() == 0
+    try:
+        if root:
+            os.setresuid(65534, 65534, 0)
+        yield
+    finally:
+        if root:
+            os.setresuid(0, 0, 0)
+        folder.chmod(0o700)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="permissions as in POSIX, and users as in Linux")
+@pytest.mark.parametrize("used", [False, True])
+def test_a_store_that_cannot_be_written_can_be_looked_at(used: bool) -> None:
+    with tempfile.TemporaryDirectory() as name:  # pytest's own folders are closed to others
+        folder = Path(name)
+        with Store(folder / "store.db") as opened:
+            add(opened)
+            taken(opened).finish(result())
+            if not used:
+                opened.close()
+            before = sorted(folder.iterdir())
+            with as_reader(folder), Store(folder / "store.db") as looked:
+                assert [job.state for job in looked.jobs()] == ["done"]
+                assert len(looked.result(1).designs) == 2
+                assert damages(looked) == []
+                with pytest.raises(StoreError, match="is read-only; only look into it, or chmod u\\+rw"):
+                    add(looked)
+            assert sorted(folder.iterdir()) == before
+
+
+def test_commands_that_write_refuse_a_store_that_cannot_be_written(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Store(tmp_path / "store.db") as store:
+        add(store)
+    monkeypatch.setattr("slidercrank.service.store.database.may_use", lambda _path: False)
+    assert "Feeder" in command("jobs", "--store", tmp_path / "store.db").stdout
+    done = command("doctor", "--store", tmp_path / "store.db")
+    assert done.exit_code == 1
+    assert "nothing is damaged" in done.stdout
+    assert "may not be written, so that no job gets on" in done.stdout
+    for name in (("cancel", 1), ("worker", "--drain"), ("serve", "--port", 0, "--workers", 0)):
+        done = command(*name, "--store", tmp_path / "store.db")
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert "is read-only; only look into it, or chmod u+rw" in done.stderr
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="permissions as in POSIX")

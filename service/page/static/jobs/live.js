@@ -8,7 +8,7 @@ import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
 import { counted, grouped, inShown, unitOf, withUnit } from "../lib/numbers.js";
-import { inWords } from "../lib/words.js";
+import { capital, inWords } from "../lib/words.js";
 import { growth } from "./growth.js";
 import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
@@ -148,7 +148,7 @@ export function watch(place, job, { signal, changed }) {
       const now = await get(`jobs/${job.id}`, {}, signal);
       lost.hidden = true;
       if (now.progress?.front) drawFront(now.progress.front);
-      else if (!latest) noFront(now.state);
+      else if (!latest) noFront(now);
       if (now.state !== job.state || now.cancel_asked !== job.cancel_asked) {
         job = now;
         changed(now);
@@ -189,9 +189,11 @@ export function watch(place, job, { signal, changed }) {
     fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${counted(shown.length, "design")}`, [held("x", 0), held("y", 1)]));
   }
 
-  /** @param {string} state */
-  function noFront(state) {
-    fill(front, h("p", { class: "quiet" }, state === "queued" ? "Waits for a worker." : "Nothing yet."));
+  /** @param {Api.Job} now */
+  function noFront(now) {
+    const waits = now.state === "queued";
+    fill(front, h("p", { class: "quiet" }, waits ? `${capital(inWords(now.reason) || "waits for a worker")}.` : "Nothing yet."));
+    if (waits) soon(AGAIN); // what it waits for changes without an event
   }
 
   /** @param {null} now */
@@ -207,7 +209,7 @@ export function watch(place, job, { signal, changed }) {
   const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
   signal.addEventListener("abort", rest);
   window.addEventListener("units", () => latest && drawFront(latest), { signal });
-  noFront(job.state);
+  noFront(job);
   if (job.progress) {
     course.told(job.progress);
     stand(job.progress, job.state === "running");
