@@ -192,7 +192,7 @@ export function watch(place, job, { signal, changed }) {
   /** @param {Api.Job} now */
   function noFront(now) {
     const waits = now.state === "queued";
-    fill(front, h("p", { class: "quiet" }, waits ? `${capital(inWords(now.reason) || "waits for a worker")}.` : "Nothing yet."));
+    fill(front, h("p", { class: "quiet" }, waits ? `Waits for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}` : "Nothing yet."));
     if (waits) soon(AGAIN); // what it waits for changes without an event
   }
 
