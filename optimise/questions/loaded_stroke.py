@@ -39,7 +39,7 @@ def expected_warnings(problem: Problem) -> list[str]:
         sides += [str(stroke) for stroke in loaded[found]]
     if not fast:
         return _left_out(problem)
-    where = "in every design" if fast == turning else "in a part of the designs"
+    where = "in every sampled design" if fast == turning else "in some sampled designs"
     return [*_left_out(problem), _sentence(problem, where, sides)]
 
 

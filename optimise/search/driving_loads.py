@@ -37,15 +37,15 @@ _NAMED = 3
 
 
 def driven_by_loads(problem: Problem) -> list[str]:
-    """Return the warning of loads that do positive net work within the ranges of a problem, or none."""
-    return _warning(samples(problem)) if any(map(_may_be_driven, problem.parts())) else []
+    """Return the warning of loads that do positive net work on samples of the designs of a problem, or none."""
+    return _warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
 
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
     """Return the warning of loads that do positive net work on designs of a front, or none."""
     variants = front.variants or (0,) * len(front)
     rows = [[row for row, own in enumerate(variants) if own == variant] for variant in sorted({*variants})]
-    return _warning((front.part(own[0]), front.dimensions[own]) for own in rows)
+    return _warning(((front.part(own[0]), front.dimensions[own]) for own in rows), "design")
 
 
 def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
@@ -93,8 +93,8 @@ def _may_be_driven(problem: Problem) -> bool:
     return not delivers and any(not (load.drives or load.resists) for load in problem.mechanism.fullest.loads)
 
 
-def _warning(parts: Iterable[tuple[Problem, Array]]) -> list[str]:
-    """Return the warning of designs, each with the problem of their choices."""
+def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
+    """Return the warning of designs, each with the problem of their choices. design: noun for one of them."""
     works: list[float] = []
     what, named, count = "loads", "", 0
     for part, designs in parts:
@@ -107,13 +107,13 @@ def _warning(parts: Iterable[tuple[Problem, Array]]) -> list[str]:
             what += " that are not stated to drive" if any(load.drives for load in part.mechanism.loads) else ""
     if not works:
         return []
-    where = "in every design" if len(works) == count else "in a part of the designs"
+    where = f"in every {design}" if len(works) == count else f"in some {design}s"
     ends = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(works), max(works))))
     required = "" if part.motion is not None else f", or require a {DELIVERED_WORK.short} of at least 0 J"
     return [
-        f"{where} {what} do more work on the machine than they take, by {ends} J a cycle: {named}; reverse the sign of "
-        "what should resist, or state it as a force against a stroke (opposes); state what should drive as a force "
-        f"along one (helps){required}"
+        f"{where} {what} do more work on the machine than they take, by {ends} J a cycle: {named}; if the load should "
+        "resist, reverse its sign or state it as a force that opposes a stroke; if it should drive, state it as one "
+        f"that helps a stroke{required}"
     ]
 
 

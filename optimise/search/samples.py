@@ -3,24 +3,74 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from ...model.arrays import Array
+from ...objectives.proportions import STROKE
 from ..problem.problem import Problem
-from .elimination import sheets
+from ..problem.requirements import Constraint
+from ..problem.violation import FEASIBLE
+from .elimination import Sheet, sheets
 from .evaluation import Evaluator
 from .sampling import first_samples
 
 _SAMPLES = 32
-"""Designs of a sheet."""
+"""Designs of a sheet, besides those of extreme numbers and stroke."""
+_TRIED = 4096
+"""Points of all sheets from which these are taken: what needs no cycle computed costs a microsecond a point."""
 _SHEETS = 20
 """Sheets: of very many choices the first ones."""
+_NARROW = 0.1
+"""Width of a range, relative to its greater end, that points rarely hit: its middle is required instead."""
 
 
 def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
     """Yield designs (n, 3 + k) that move as asked, with the problem of their choices.
 
-    They meet what is eliminated, and need not be feasible otherwise.
+    They meet what is required of lengths, stroke and whatever else needs no cycle computed. Where no point does, those
+    are taken that miss it least.
     """
-    for sheet in sheets(problem)[:_SHEETS]:
-        points = first_samples(_SAMPLES, len(sheet.free), 0, 0)
-        yield problem.part(sheet.variant), sheet.dimensions(points)[Evaluator(problem, sheet).valid(points)]
+    found = sheets(problem)[:_SHEETS]
+    count = max(_SAMPLES, _TRIED // len(found))
+    for sheet in found:
+        part = problem.part(sheet.variant)
+        tried = [_tried(part, sheet, count)]
+        if not _meets(tried[0]):
+            middle = replace(part, constraints=tuple(map(_middle, part.constraints)))
+            tried += [_tried(middle, other, count) for other in sheets(middle) if other.sign == sheet.sign]
+        designs, misses = next(filter(_meets, tried), tried[0])
+        order = np.argsort(np.maximum(misses, FEASIBLE), kind="stable")
+        met = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
+        yield part, _spread(part, designs[order][:met])
+
+
+def _tried(part: Problem, sheet: Sheet, count: int) -> tuple[Array, Array]:
+    """Return designs (n, 3 + k) of a sheet that move as asked, and by how much (n,) they miss what is required."""
+    evaluator = Evaluator(part, sheet)
+    points = first_samples(count, len(sheet.free), 0, 0)
+    points = points[evaluator.valid(points)]
+    return sheet.dimensions(points), evaluator.light_violation(points)
+
+
+def _meets(tried: tuple[Array, Array]) -> bool:
+    return bool((tried[1] <= FEASIBLE).any())
+
+
+def _middle(constraint: Constraint) -> Constraint:
+    """Return the middle of a narrow range as what is required."""
+    lower, upper = constraint.lower, constraint.upper
+    if lower is None or upper is None or upper - lower > _NARROW * max(abs(lower), abs(upper)):
+        return constraint
+    return replace(constraint, lower=0.5 * (lower + upper), upper=0.5 * (lower + upper))
+
+
+def _spread(part: Problem, designs: Array) -> Array:
+    """Return the first designs and those of extreme numbers and stroke."""
+    if not len(designs):
+        return designs
+    stroke = STROKE.evaluate(part.mechanism, designs).values
+    columns = np.column_stack([designs, np.where(np.isfinite(stroke), stroke, designs[:, 0])])
+    rows = {*range(min(_SAMPLES, len(designs))), *columns.argmin(axis=0).tolist(), *columns.argmax(axis=0).tolist()}
+    return designs[sorted(rows)]

@@ -129,7 +129,7 @@ def test_the_net_work_of_random_loads_is_the_integral_over_a_swing_and_back() ->
 def test_a_load_that_pushes_with_the_stroke_is_questioned_with_its_sentence_and_its_work() -> None:
     asked = problem(PUSH)
     (said,) = driven_by_loads(asked)
-    assert said.startswith("in every design loads do more work on the machine than they take, by ")
+    assert said.startswith("in every sampled design loads do more work on the machine than they take, by ")
     assert "load #1 (350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it;" in said
     least, greatest = map(float, re.findall(r"by ([\d.]+) to ([\d.]+) J", said)[0])
     turn = np.linspace(0.0, 2.0 * math.pi, 20_001)
@@ -201,7 +201,7 @@ def test_a_load_in_part_of_the_designs_is_said_to_be_in_part() -> None:
     """Within 80 mm of the dead centre it resists by 350 N, and helps by as much beyond: long strokes are helped."""
     table = PUSH | {"positions": ["0 mm", "80 mm", "80 mm", "90 mm"], "forces": ["-350 N", "-350 N", "350 N", "350 N"]}
     (said,) = driven_by_loads(problem(table))
-    assert said.startswith("in a part of the designs loads do more work")
+    assert said.startswith("in some sampled designs loads do more work")
 
 
 def test_a_swing_is_questioned_without_a_word_of_delivered_work() -> None:
@@ -236,3 +236,34 @@ def test_python_warns_once_of_a_problem_whose_loads_drive_it() -> None:
     asked.evaluate([[0.05, 0.3, 0.02]])
     assert len(caught) == 1
     assert caught[0].filename == __file__
+
+
+CORNER = {
+    "mechanism": {"speed": "120 rpm"},
+    "variables": {"crank": ["20 mm", "60 mm"], "rod": ["60 mm", "200 mm"], "offset": ["0 mm", "30 mm"]},
+    "objectives": {"peak_torque": "minimise"},
+}
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_load_that_drives_the_longest_strokes_alone_is_questioned_for_these(sign: int) -> None:
+    """Up to a stroke of 130 mm the force is 100 N, beyond -150 kN: the longest strokes turn the sign of the work."""
+    forces = [f"{sign * force} N" for force in (100, 100, -150_000, -150_000)]
+    load = PUSH | {"positions": ["0 mm", "130 mm", "130 mm", "200 mm"], "forces": forces}
+    (said,) = driven_by_loads(problem(load, constraints={"stroke": {"min": "50 mm"}}, **CORNER))
+    assert said.startswith("in some sampled designs loads do more work")
+
+
+def test_designs_that_the_stroke_excludes_are_not_questioned() -> None:
+    load = PUSH | {"positions": ["0 mm", "60 mm", "60 mm", "200 mm"], "forces": ["100 N", "100 N", "-5 kN", "-5 kN"]}
+    assert driven_by_loads(problem(load, constraints={"stroke": {"min": "80 mm"}}, **CORNER)) == []
+
+
+@pytest.mark.parametrize("half", ["0.5 mm", "0.001 mm"])
+def test_the_work_of_a_stroke_within_a_narrow_range_is_that_of_the_range(half: str) -> None:
+    (said,) = driven_by_loads(problem(PUSH, constraints={"stroke": {"equals": f"100 mm +- {half}"}}, **CORNER))
+    assert all(
+        float(end) == pytest.approx(35.0, abs=0.19)
+        for end in re.findall(r"by ([\d.]+)(?: to ([\d.]+))? J", said)[0]
+        if end
+    )

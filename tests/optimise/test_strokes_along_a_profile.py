@@ -211,7 +211,9 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_by_the_times() -> None:
     assert expected_warnings(parse_job(job(**small, mechanism={"speed_profile": {"sines": [0.8]}}))) == []
     problem = parse_job(job(**small, mechanism={"speed_profile": {"sines": [-0.8]}}))
     (before,), (after,) = expected_warnings(problem), front_warnings(solve(problem))
-    assert before.startswith("in every design the stroke that the load acts against, the outward one, is the fast one")
+    assert before.startswith(
+        "in every sampled design the stroke that the load acts against, the outward one, is the fast one"
+    )
     assert after.startswith("in 8 of 8 designs the stroke that the load acts against, the outward one, is the fast one")
 
 

@@ -22,7 +22,7 @@ measured_from = "outer dead centre"
 during = "outward stroke"
 """
 SENTENCE = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
-QUESTION = f"in every design loads do more work on the machine than they take, by 98 J a cycle: load #1 ({SENTENCE})"
+QUESTION = f"in every {{}} loads do more work on the machine than they take, by 98 J a cycle: load #1 ({SENTENCE})"
 
 
 def test_check_says_of_a_load_what_it_does_and_questions_one_that_pushes(tmp_path: Path, command: Command) -> None:
@@ -30,10 +30,10 @@ def test_check_says_of_a_load_what_it_does_and_questions_one_that_pushes(tmp_pat
     job.write_text(job.read_text() + PUSH)
     found = command("check", job).stdout
     assert f"load: {SENTENCE}" in found
-    assert QUESTION in found
+    assert QUESTION.format("sampled design") in found
     record = json.loads(command("check", job, "--json").stdout)
     assert record["loads"] == [SENTENCE]
-    assert any(sentence.startswith(QUESTION) for sentence in record["warnings"])
+    assert any(sentence.startswith(QUESTION.format("sampled design")) for sentence in record["warnings"])
     job.write_text(job.read_text().replace('"350 N"', '"-350 N"'))
     found = command("check", job).stdout
     assert "load: 350 N inward, resists the outward stroke, from 60 mm before" in found
@@ -46,8 +46,8 @@ def test_a_report_of_a_design_says_both_too() -> None:
     )
     found = fronts.front(fronts.FOUR[:2], designs=4, mechanism=replace(fronts.MACHINE, loads=(push,)))
     result = result_of(found, "kept")
-    assert any(sentence.startswith(QUESTION) for sentence in result.warnings)
+    assert any(sentence.startswith(QUESTION.format("design")) for sentence in result.warnings)
     facts, *warned = job_section(Subject(found.problem, result, 1, run="kept", versions={})).blocks
     assert isinstance(facts, Facts)
     assert f"load: {SENTENCE}" in facts.rows["Given"]
-    assert any(isinstance(each, Paragraph) and QUESTION in each.text for each in warned)
+    assert any(isinstance(each, Paragraph) and QUESTION.format("design") in each.text for each in warned)
