@@ -32,6 +32,7 @@ from .child import HEAD, unpacked
 _START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit after which the process is ended from here
 _TICK = 0.1  # s between two questions whether the call is to end
+_PAUSE = 1.0  # s that a tick takes at most, on a busy machine; longer, and this process was suspended
 _ENDING = 5.0  # s that a process without an output has to end
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
 _CHILD = (sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()")
@@ -55,6 +56,10 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_forget_all)
 
 
+class _Suspended(Exception):
+    """The time limit of a call passed while this process, and perhaps all of the machine, was suspended."""
+
+
 class Worker:
     """A process that runs one function. Raises `Refused` for all that it does wrong, and is then over.
 
@@ -71,19 +76,25 @@ class Worker:
         self._process: Process | None = None
         self._guard: Process | None = None
         self._mechanism: Mechanism | None = None
-        self._late = False
+        self._late = self._paused = False
         self._lock = threading.Lock()
 
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         """Return the function's answer for designs (n, 3); see `apply`."""
         with self._lock:
-            if self._process is None:
-                ask()
-                self._start()
-            machine = None if mechanism is self._mechanism else mechanism
-            self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
-            self._mechanism = mechanism
-            return unpacked(self._answer(self.limit))
+            while True:
+                with contextlib.suppress(_Suspended):
+                    return self._asked(mechanism, dimensions, column)
+
+    def _asked(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+        self._paused = False
+        if self._process is None:
+            ask()
+            self._start()
+        machine = None if mechanism is self._mechanism else mechanism
+        self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
+        self._mechanism = mechanism
+        return unpacked(self._answer(self.limit))
 
     def close(self) -> None:
         """End the process and all that it started."""
@@ -144,20 +155,27 @@ class Worker:
         return content
 
     def _next(self, limit: float) -> Message:
-        """Return the next message of the process, nothing if it has ended.
+        """Return the next message of the process, nothing if it has ended or is ended here, for being late.
 
-        What interrupts ends a process that is slow.
+        What interrupts ends a process that is slow. Time for which this process is suspended does not count.
         """
         # The child watches its time itself; this is for a child that cannot.
-        end = time.monotonic() + limit + _GRACE
+        waited, before = 0.0, time.monotonic()
         try:
-            while True:
+            while waited <= limit + _GRACE:
+                message = None
                 with contextlib.suppress(queue.Empty):
-                    return self._messages.get(timeout=_TICK)
+                    message = self._messages.get(timeout=_TICK)
+                now = time.monotonic()
+                self._paused |= now - before > _PAUSE
+                waited += min(now - before, _PAUSE)
+                before = now
+                if message is not None:
+                    return message
                 ask()
-                if time.monotonic() > end and not self._late:
-                    self._late = True
-                    self._end()
+            self._late = True
+            self._end()
+            return b"", b""
         except BaseException:
             try:
                 kind, _ = self._messages.get(timeout=farewell())
@@ -173,7 +191,7 @@ class Worker:
         raise Refused(reason)
 
     def _fate(self) -> str:
-        """Return why the process ended."""
+        """Return why the process ended. Raises `_Suspended` if the reason is no fault of the function."""
         assert self._process is not None
         try:
             code = self._process.wait(_ENDING)
@@ -181,6 +199,9 @@ class Worker:
             self._process.kill()
             code = self._process.wait()
         text = Path(self._log).read_text(encoding="utf-8", errors="replace") if Path(self._log).exists() else ""
+        if "Timeout (" in text and self._paused:  # its watch counts time for which it is suspended, too
+            self.close()
+            raise _Suspended
         frames = [(Path(file), line) for file, line in _FRAME.findall(text)]
         module = self.function.partition(":")[0].rpartition(".")[2]
         own = [frame for frame in frames if frame[0].stem == module] or frames  # the last call comes first

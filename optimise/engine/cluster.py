@@ -137,6 +137,7 @@ class Cluster:
 
         give([index for index in range(len(items)) if index not in found])
         heard = looked = time.monotonic()
+        waits = False
         try:
             while pending:
                 with contextlib.suppress(TimeoutError), client.as_current():
@@ -173,6 +174,13 @@ class Cluster:
                     looked = now
                     self.workers = max(1, sum(threads := client.nthreads().values()))
                     heard = now if threads else heard
+                    if not threads and not waits:
+                        _log.warning(
+                            "waiting for a worker of the cluster: the scheduler at %s has none; given up after %g s; "
+                            "start some: dask worker %s",
+                            *(self.address, self.patience, self.address),
+                        )
+                    waits = not threads
                     if not threads and now - heard > self.patience:
                         raise EngineError(
                             f"a cluster needs workers; the scheduler at {self.address} had none for "

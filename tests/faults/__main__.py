@@ -23,6 +23,7 @@ from .pauses import pauses
 from .restarts import restarts
 from .runaway import runaway
 from .starts import starts
+from .suspends import suspends
 from .verdict import Verdict
 
 app = typer.Typer(add_completion=False, help=__doc__)
@@ -46,6 +47,7 @@ def _all(context: typer.Context) -> None:
         lambda: _disk(5),
         lambda: _runaway(1),
         lambda: _starts(24),
+        lambda: _suspends(6),
         lambda: _commits("sqlite"),
         lambda: _commits("postgresql"),
         _dask,
@@ -102,6 +104,12 @@ def _starts(count: Annotated[int, typer.Option(help="How many services.")] = 24,
     _report(f"{count} services ended while they start", lambda: starts(count, seed))
 
 
+@app.command("suspends")
+def _suspends(count: Annotated[int, typer.Option(help="How many suspensions.")] = 6, seed: Seed = 1) -> None:
+    """Suspend searches with an own function for longer than a call may take."""
+    _report(f"{count} suspensions of searches with an own function", lambda: suspends(count, seed))
+
+
 @app.command("commits")
 def _commits(where: Where = "sqlite", every: Annotated[int, typer.Option(help="Each one of so many.")] = 1) -> None:
     """Let every commit of a job's life fail, each in three ways."""
@@ -112,13 +120,14 @@ def _commits(where: Where = "sqlite", every: Annotated[int, typer.Option(help="E
 def _dask(
     workers: Annotated[int, typer.Option(help="How many workers to kill.")] = 50,
     schedulers: Annotated[int, typer.Option(help="How many schedulers to kill.")] = 3,
+    suspensions: Annotated[int, typer.Option(help="How often to suspend one of them.")] = 10,
     seed: Seed = 1,
 ) -> None:
-    """Kill workers and schedulers of a Dask cluster under robust jobs."""
+    """Kill and suspend workers and schedulers of a Dask cluster under robust jobs."""
     from .dask_faults import strike
 
     begin = time.monotonic()
-    struck = strike(workers, schedulers, seed)
+    struck = strike(workers, schedulers, seed, suspensions=suspensions)
     print(f"dask, {time.monotonic() - begin:.0f} s: {struck.line()}", flush=True)
     if struck.violations or struck.lost or struck.doubled:
         raise typer.Exit(1)

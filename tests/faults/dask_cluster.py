@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -12,6 +14,7 @@ from types import TracebackType
 from typing import Self
 
 START = 120.0
+_LAST = 5.0  # s that a worker takes to end after its scheduler
 _HERE = str(Path(__file__).parents[2])  # what is given out may be a function of the harness or of the tests
 CALM = {
     "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "false",
@@ -77,6 +80,22 @@ class DaskCluster:
         oldest.kill()
         oldest.wait()
         self.add_worker()
+
+    def revive_workers(self) -> None:
+        """Start workers in the place of those that ended: they end with their scheduler."""
+        for place, worker in enumerate(self.workers):
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                worker.wait(_LAST)
+                self.add_worker()
+                self.workers[place] = self.workers.pop()
+
+    def suspend(self, seconds: float, *, scheduler: bool) -> None:
+        """Suspend the scheduler, or else the oldest worker, for a while."""
+        process = self.scheduler if scheduler else self.workers[0]
+        assert process is not None
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(seconds)
+        process.send_signal(signal.SIGCONT)
 
     def _start(self, command: str, *options: str) -> subprocess.Popen[bytes]:
         program = [sys.executable, "-m", f"distributed.cli.{command}", *options, *self.options]

@@ -1,4 +1,4 @@
-"""Workers and scheduler of a Dask cluster, killed at random moments while a robust job is evaluated on them."""
+"""Workers and scheduler of a Dask cluster, killed and suspended at random moments under a robust job."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .dask_cluster import DaskCluster
 
 _BETWEEN = 5.0  # s between two blows, on average
 _AWAY = 2.0  # s that the scheduler is away
+_SUSPENDED = 1.0, 12.0  # s that a worker or the scheduler is suspended
 ROBUST = """
 name = "robust"
 [mechanism]
@@ -48,6 +49,7 @@ class Struck:
     jobs: int = 0
     workers: int = 0
     schedulers: int = 0
+    suspensions: int = 0
     evaluations: int = 0
     lost: int = 0
     doubled: int = 0
@@ -56,8 +58,8 @@ class Struck:
     def line(self) -> str:
         """Return the figures."""
         return (
-            f"{self.workers} workers and {self.schedulers} schedulers killed in {self.jobs} jobs of "
-            f"{self.evaluations} evaluations: {self.lost} lost, {self.doubled} counted twice, "
+            f"{self.workers} workers and {self.schedulers} schedulers killed, {self.suspensions} suspended, in "
+            f"{self.jobs} jobs of {self.evaluations} evaluations: {self.lost} lost, {self.doubled} counted twice, "
             f"{len(self.violations)} fronts that differ"
         )
 
@@ -70,14 +72,16 @@ def job(designs: int, samples: int) -> Problem:
     return parse_job(tomllib.loads(f"{ROBUST}[optimiser]\ndesigns = {designs}\nsamples = {samples}\n"))
 
 
-def strike(workers: int, schedulers: int, seed: int, *, designs: int = 3, samples: int = 200) -> Struck:
-    """Solve a robust job again and again until so many workers and schedulers were killed under it."""
+def strike(
+    workers: int, schedulers: int, seed: int, *, suspensions: int = 0, designs: int = 3, samples: int = 200
+) -> Struck:
+    """Solve a robust job again and again until so many workers and schedulers were killed or suspended under it."""
     chance = random.Random(seed)
     problem = job(designs, samples)
     alone = solve(problem)
     struck, over = Struck(), threading.Event()
     with DaskCluster(2) as cluster:
-        blows = ["worker"] * workers + ["scheduler"] * schedulers
+        blows = ["worker"] * workers + ["scheduler"] * schedulers + ["suspend"] * suspensions
         chance.shuffle(blows)
 
         def blow() -> None:
@@ -87,10 +91,14 @@ def strike(workers: int, schedulers: int, seed: int, *, designs: int = 3, sample
                 if kind == "worker":
                     cluster.kill_worker()
                     struck.workers += 1
+                elif kind == "suspend":
+                    cluster.suspend(chance.uniform(*_SUSPENDED), scheduler=chance.random() < 0.5)
+                    struck.suspensions += 1
                 else:
                     cluster.kill_scheduler()
                     time.sleep(_AWAY)
                     cluster.start_scheduler()
+                    cluster.revive_workers()
                     struck.schedulers += 1
 
         engine = Cluster(cluster.address, patience=120.0)

@@ -51,7 +51,7 @@ def judge(designs):
 def loop():
     {loop}
 """
-_JOB = """
+JOB = """
 name = "own"
 [mechanism]
 speed = "300 rpm"
@@ -103,7 +103,7 @@ def runaway(count: int, seed: int, *, short: bool = False) -> Verdict:
 
 
 def _tables(function: str) -> Mapping[str, Any]:
-    return tomllib.loads(_JOB.replace("FUNCTION", function))
+    return tomllib.loads(JOB.replace("FUNCTION", function))
 
 
 def _in_a_service(
@@ -198,7 +198,7 @@ def _gone(verdict: Verdict, what: str, functions: list[psutil.Process], within: 
 def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: str, blow: signal.Signals) -> None:
     verdict.jobs += 1
     job = folder / "job.toml"
-    job.write_text(_JOB.replace("FUNCTION", function))
+    job.write_text(JOB.replace("FUNCTION", function))
     runs = folder / f"runs {function} {blow.name}".replace(":", " ")
     process = subprocess.Popen(
         [

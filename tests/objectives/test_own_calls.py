@@ -34,6 +34,11 @@ def slow(designs):
     time.sleep(0.3)
     return designs.crank[:, 0]
 
+def marks(designs):
+    begun.touch()
+    time.sleep(0.3)
+    return designs.crank[:, 0]
+
 def holds(designs):
     begun.touch()
     7 ** 10 ** 9
@@ -262,3 +267,42 @@ def test_a_fork_that_lives_on_does_not_keep_the_function_of_its_parent_alive(tmp
             assert fork.is_running()
         finally:
             fork.kill()
+
+
+SUSPENDED = """
+import sys, time
+import numpy as np
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.own import worker
+
+def read_late(stream, length):
+    content = read(stream, length)
+    time.sleep(0.2)  # as on a busy machine: who asks wakes up before who listens
+    return content
+
+read, worker._read, worker._GRACE = worker._read, read_late, 0.5
+asked = worker.Worker("loops:marks", [sys.argv[1]], 1.0)
+for size in (1.0, 2.0, 3.0, 4.0):
+    print(*asked(Mechanism(), size * np.array([[0.03, 0.1, 0.01]]), None).values.ravel(), flush=True)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("all_of_it", [False, True], ids=["by Ctrl-Z", "with its machine"])
+def test_a_process_may_be_suspended_for_longer_than_a_call_may_take(all_of_it: bool, tmp_path: Path) -> None:
+    (tmp_path / "loops.py").write_text(MODULE)
+    begun = tmp_path / "begun"
+    with subprocess.Popen(
+        [sys.executable, "-c", SUSPENDED, str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as asking:
+        end = time.monotonic() + 60.0
+        while not begun.exists() and asking.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        suspended = [psutil.Process(asking.pid), *(functions(asking.pid) if all_of_it else [])]
+        for each in suspended:
+            each.suspend()
+        time.sleep(3.0)
+        for each in suspended:
+            each.resume()
+        output, errors = asking.communicate()
+    assert ([float(value) for value in output.split()], errors) == (list(DESIGNS[0, 0] * np.array([1, 2, 3, 4])), "")

@@ -135,12 +135,17 @@ def test_a_scheduler_that_stays_away_is_given_up() -> None:
         engine.map(work.square, range(3))
 
 
-def test_a_cluster_without_workers_is_given_up() -> None:
+def test_a_cluster_without_workers_says_that_it_waits_for_one_and_is_given_up(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     with DaskCluster(0) as dask:
-        engine = Cluster(dask.address, patience=1.0)
+        engine = Cluster(dask.address, patience=3.0)
         with pytest.raises(EngineError, match="a cluster needs workers"):
             engine.map(work.square, range(3))
         engine.close()
+    (said,) = [record.getMessage() for record in caplog.records if record.name.startswith("slidercrank")]
+    assert said.startswith(f"waiting for a worker of the cluster: the scheduler at {dask.address} has none; given up")
+    assert said.endswith(f"start some: dask worker {dask.address}")
 
 
 @pytest.mark.parametrize(
