@@ -21,7 +21,7 @@ from .queue import MOST_DELAY, put_files
 from .records import NOT_DONE, Artefact, Job
 from .rows import Told, add_events, records_of, state_event
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_of, packed, packed_exact, plain, summary_of, text_of
+from .serialisation import cells_of, checksum, packed, packed_exact, plain, summary_of, text_of
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress
@@ -149,6 +149,8 @@ class Claim:
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
         found = {"result": text_of(record), "summary": text_of(summary_of(result))}
+        front = checksum(*(str(row["cells"]) for row in rows), content)
+        found["checksum"] = checksum(found["result"], found["summary"]) + front
         self._end(result.status, result.message, {**found, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:

@@ -10,7 +10,8 @@ from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
 from ...model.errors import StoreError
 from .clock import now
 from .database import Database, Unavailable
-from .schema import designs, events, jobs, records
+from .rows import require_sum
+from .schema import designs, events, exact, jobs, records
 
 _MOST = 5  # of a kind that are named
 _SETTINGS = ("fsync", "full_page_writes")
@@ -18,14 +19,16 @@ _SETTINGS = ("fsync", "full_page_writes")
 
 
 def damages(database: Database) -> list[str]:
-    """Return sentences on damage to the database itself and on jobs whose counts of rows are wrong.
+    """Return sentences on damage to the database itself, and on jobs with wrong counts of rows or damaged results.
 
     Raises `StoreError` if it cannot be reached.
     """
     try:
         with database.reading() as connection:
             found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
-            return found or _miscounts(connection)  # a damaged file need not be counted
+            return (
+                found or _miscounts(connection) or _damaged_results(connection)
+            )  # what is damaged need not be counted
     except Unavailable:
         raise
     except StoreError as error:  # a file may be too damaged to be looked through
@@ -99,4 +102,19 @@ def _miscounts(connection: Connection) -> list[str]:
         ):
             if expected != there:
                 found.append(f"job {row.id} says that it has {expected} {kind}, {there} are there")
+    return found[:_MOST]
+
+
+def _damaged_results(connection: Connection) -> list[str]:
+    """Return the jobs whose results differ from their checksums."""
+    query = select(jobs.c.id, jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.checksum.is_not(None))
+    found = []
+    for job, result, summary, sums in connection.execute(query.order_by(jobs.c.id)):
+        cells = select(designs.c.cells).where(designs.c.job == job).order_by(designs.c.number)
+        content = connection.execute(select(exact.c.content).where(exact.c.job == job)).scalar_one_or_none()
+        try:
+            require_sum(sums[:64], result, summary)
+            require_sum(sums[64:], *connection.execute(cells).scalars(), content)
+        except ValueError as error:
+            found.append(f"the result of job {job} is damaged: {error}")
     return found[:_MOST]

@@ -17,7 +17,7 @@ ENDED: tuple[State, ...] = ("done", "infeasible", "cancelled", "failed")
 RESUMABLE: tuple[State, ...] = ("cancelled", "failed")
 LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 NOT_DONE = "cancelled before it was done"
-SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "result"))
+SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "result", "checksum"))
 """Columns of a list of jobs: all but the long ones."""
 
 

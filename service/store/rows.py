@@ -12,7 +12,7 @@ from ...model.errors import InputError, NotFound, RunError
 from .clock import now
 from .records import RESUMABLE, SHOWN, Event, Job, News, State
 from .schema import events, jobs, records
-from .serialisation import text_of, unpacked
+from .serialisation import checksum, text_of, unpacked
 
 if TYPE_CHECKING:
     from ...optimise.search.checkpoints import Record
@@ -45,18 +45,29 @@ def require_resumable(job: Job) -> None:
         raise InputError(f"only a cancelled or failed job can go on; job {job.id} is {job.state}; submit it anew")
 
 
-def the_record(connection: Connection, job: Job) -> dict[str, Any]:
-    """Return the record of a job's result. Raises `RunError` if it has none, or a damaged one."""
-    text = connection.scalar(select(jobs.c.result).where(jobs.c.id == job.id))
+def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
+    """Return the record of a job's result, and the checksum of its designs, empty if there is none.
+
+    Raises `RunError` if it has no result, or a damaged one.
+    """
+    query = select(jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.id == job.id)
+    text, summary, sums = connection.execute(query).one()
     if text is None:
         raise RunError(f"job {job.id} has no result: it is {job.state}; wait for it, or see its events")
     try:
+        require_sum((sums or "")[:64], text, summary)
         record = json.loads(text)
     except ValueError as error:
         raise damaged(job.id, error) from error
     if not isinstance(record, dict):
         raise damaged(job.id, TypeError("no record"))
-    return record
+    return record, (sums or "")[64:]
+
+
+def require_sum(expected: str, *parts: str | bytes | None) -> None:
+    """Raise ValueError for parts of a result that have not the checksum they should; an empty one is not known."""
+    if expected and checksum(*parts) != expected:
+        raise ValueError("it differs from its checksum, so that its numbers may be wrong")
 
 
 def records_of(connection: Connection, number: int) -> list[Record]:

@@ -64,15 +64,17 @@ jobs = sa.Table(
     sa.Column("summary", sa.Text),
     sa.Column("result", sa.Text),
     sa.Column("origin", _number),
+    sa.Column("checksum", sa.String(128)),
     sa.UniqueConstraint("key"),
     sa.UniqueConstraint("run"),
     sa.Index(None, "state", "priority", "id"),
     sqlite_autoincrement=True,  # the number of a deleted job never comes back
 )
-"""key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not
-to be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written.
-records, events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without
-designs, with the names of their columns. origin: the job that it is a changed copy of, which may be gone."""
+"""key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not to
+be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written. records,
+events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without designs, with the
+names of their columns. origin: the job that it is a changed copy of, which may be gone. checksum: SHA-256 of result and
+summary, then that of its designs and exact ones; results of early stores have none."""
 
 events = sa.Table(
     "events",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import math
@@ -109,6 +110,16 @@ def _loaded(content: bytes) -> NpzFile:
     if file["form"] != _FORM:
         raise ValueError(f"its form is {file['form']}, not {_FORM}")
     return file
+
+
+def checksum(*parts: str | bytes | None) -> str:
+    """Return the SHA-256 of some parts, each with its length; None is an empty one."""
+    digest = hashlib.sha256()
+    for part in parts:
+        content = part.encode() if isinstance(part, str) else bytes(part or b"")
+        digest.update(len(content).to_bytes(8))
+        digest.update(content)
+    return digest.hexdigest()
 
 
 def text_of(value: Any) -> str:

@@ -18,7 +18,7 @@ from . import queue
 from .claim import Claim
 from .clock import Jumps, now
 from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State
-from .rows import add_events, become, damaged, news_of, records_of, require_resumable, the_job, the_record
+from .rows import add_events, become, damaged, news_of, records_of, require_resumable, require_sum, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
 from .serialisation import plain, rows_of, unpacked_exact
@@ -214,7 +214,7 @@ class Store(Workers):
         """
         with self.reading() as connection:
             job = the_job(connection, number)
-            record = the_record(connection, job)
+            record, _ = the_record(connection, job)
             if job.summary is not None:
                 return {**record, "count": job.summary["designs"]}
             # Only results of the first stores have none.
@@ -224,11 +224,12 @@ class Store(Workers):
     def result(self, number: int) -> Result:
         """Return the result of a job. Raises `RunError` if it has no result (yet), or a damaged one."""
         with self.reading() as connection:
-            stored = the_record(connection, the_job(connection, number))
+            stored, expected = the_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
             found = connection.execute(cells).scalars().all()
             content = connection.execute(select(exact.c.content).where(exact.c.job == number)).scalar_one_or_none()
         try:
+            require_sum(expected, *found, content)
             columns = stored.pop("columns")
             known = None if content is None else unpacked_exact(content)
             return result_from(stored, rows_of(columns, found), str(stored["run"]), known)
