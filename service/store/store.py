@@ -126,15 +126,10 @@ class Store(Workers):
         except StoreError as error:
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
-        if any(job.state == "queued" for job in found):
+        if any(job.state == "queued" and not job.reason for job in found):
             crew = [worker.busy for worker in self.workers() if worker.at_work]
-            busy = f"every worker is busy ({len(crew)})" if crew else "no worker is at work"
-            found = [
-                replace(job, reason="; ".join(part for part in (job.reason, busy) if part))
-                if job.state == "queued" and all(crew)
-                else job
-                for job in found
-            ]
+            reason = "" if not all(crew) else f"every worker is busy ({len(crew)})" if crew else "no worker is at work"
+            return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in found]
         return found
 
     def records(self, number: int) -> list[Record]:

@@ -50,8 +50,6 @@ def test_no_worker_a_free_one_and_busy_ones_are_told_apart(client: httpx.Client,
     assert told() == (2, 2, 1, "every worker is busy (2)")
     held.hand_back("stopped")
     assert client.get("/jobs/2").json()["reason"] == "stopped"
-    store.part("two")
-    assert client.get("/jobs/2").json()["reason"] == "stopped; every worker is busy (1)"
 
 
 def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reason_of_jobs_that_wait(
