@@ -17,9 +17,10 @@ _NONE = float("nan")
 
 @dataclass(frozen=True, kw_only=True)
 class Amount(Quantity):
-    """A number that follows from a choice alone. value: SI; NaN where nothing is chosen."""
+    """A number that follows from a choice alone. value: SI; NaN where nothing is chosen. choice: its name."""
 
     value: float = _NONE
+    choice: str = ""
 
     @property
     def constant(self) -> bool:

@@ -24,6 +24,7 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
 from ..problem.requirements import Objective
+from ..problem.table_columns import least_field
 from .answer import Answer
 from .constant import spread
 from .nonnegative import nonnegative_least_squares
@@ -289,7 +290,11 @@ class ParetoFront:
         """Return the search of `rounded` as a generator: it yields where it is, and returns the answer."""
         part, given = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
-        stay = [f"{name} stays {label}" for name, label in zip(self.problem.choices, labels, strict=True)]
+        stay = []
+        for name, label in zip(self.problem.choices, labels, strict=True):
+            least = self.columns[key][row] if (key := least_field(name)) in self.columns else label
+            also = f"; the least that also serves the given design is {least}" if least not in ("", label) else ""
+            stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
         return rounding(part, given, span, to, count=count, allow=allow, notes=stay)
 

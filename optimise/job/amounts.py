@@ -90,6 +90,7 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection
                 kind=kind,
                 sentence=f"{name.replace('_', ' ')} of what is chosen for {choice}, from its catalogue.".capitalize(),
                 source="this job",
+                choice=choice,
                 signed=any((amount_of(of[name]) or (0.0,))[0] < 0.0 for of in options if name in of),
             )
     return tuple(found.values())

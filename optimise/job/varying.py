@@ -29,7 +29,6 @@ from ...objectives.units import shown, spread
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
-from ..problem.table_columns import note_field
 from .amounts import values_of
 from .crank_speed import TIME_KEYS
 from .grids import Grid, read_grid, says_values
@@ -54,7 +53,7 @@ class _Option:
     limits: tuple[Constraint, ...] = ()
     slow_stroke: SlowStroke | None = None
     amounts: tuple[tuple[str, float], ...] = ()
-    notes: tuple[tuple[str, str], ...] = ()
+    notes: tuple[tuple[str, str, str], ...] = ()
     searched: bool = True
     rank: int = 0
 
@@ -201,7 +200,7 @@ def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterat
                     tuple(constraints_of(o.constraints, formulas, f"{where}: ")),
                     slow_stroke_of(o.constraints),
                     values_of(o.amounts, amounts, where),
-                    tuple((note_field(part.name, head), text) for head, text in o.notes.items()),
+                    tuple((part.name, head, text) for head, text in o.notes.items()),
                     o.searched,
                     0 if part.table is None else rank,
                 )

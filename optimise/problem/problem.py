@@ -18,7 +18,7 @@ from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...objectives.amount import with_amounts
+from ...objectives.amount import Amount, with_amounts
 from ...objectives.formula.meant import is_formula, meant
 from ...objectives.quantity import Array, Quantity
 from ...objectives.reach import Reach
@@ -36,7 +36,7 @@ from .costs import Costs
 from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
 from .requirements import Constraint, Objective, Range, Word, merged
-from .table_columns import choice_field, least_field, require_own_columns
+from .table_columns import choice_field, least_amount_field, least_field, note_field, require_own_columns
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
@@ -77,8 +77,8 @@ class Variant:
     labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
     with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
     constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it. amounts: values of
-    the problem's amounts, SI. notes: texts of columns, such as a maker, by their keys. ranks: of each choice, how many
-    options of its catalogue are less than this one.
+    the problem's amounts, SI. notes: texts such as a maker, each with its choice and its head before it. ranks: of each
+    choice, how many options of its catalogue are less than this one.
     """
 
     labels: tuple[str, ...]
@@ -89,12 +89,16 @@ class Variant:
     limits: tuple[Constraint, ...] = ()
     slow_stroke: SlowStroke | None = None
     amounts: tuple[tuple[str, float], ...] = ()
-    notes: tuple[tuple[str, str], ...] = ()
+    notes: tuple[tuple[str, str, str], ...] = ()
     ranks: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         keep_tuples(self, "labels", "limits", "amounts", "notes", "ranks")
         _require_stroke(self.slow_stroke)
+
+    def note(self, choice: str, head: str) -> str:
+        """Return a text that comes with an option of a choice; empty where it has none."""
+        return next((text for *of, text in self.notes if of == [choice, head]), "")
 
 
 _KINDS = {"name": str, "mechanism": Mechanism, "crank": Range, "rod": Range, "offset": Range, "settings": Settings}
@@ -106,6 +110,7 @@ _EACH = {
     "catalogue": Variant,
     "discrete": Discrete,
 }
+_WITH_LEAST = "what comes with the least option"
 _CHANGE = "change what is there by `dataclasses.replace`, or state the problem anew by `problem`"
 
 
@@ -357,12 +362,27 @@ class Problem:
     @property
     def choice_fields(self) -> list[tuple[str, str]]:
         """Keys of the columns that say what was chosen and what comes with it, each with what it is, in words."""
-        notes = dict.fromkeys(key for variant in self.variants for key, _ in variant.notes)
+        least = [self.choices[place] for place in self.catalogues]
         return [
             *((choice_field(name), f"the choice {name}") for name in self.choices),
-            *((key, "a column of a catalogue") for key in notes),
-            *((least_field(self.choices[place]), "the least option that serves") for place in self.catalogues),
+            *(
+                (note_field(name, head), "a column of a catalogue")
+                for name in self.choices
+                for head in self.heads(name)
+            ),
+            *((least_field(name), "the least option that serves") for name in least),
+            *((note_field(f"least {name}", head), _WITH_LEAST) for name in least for head in self.heads(name)),
+            *((least_amount_field(name, of), _WITH_LEAST) for name in least for of in self.amounts(name)),
         ]
+
+    def heads(self, choice: str) -> list[str]:
+        """Return the heads of the texts that options of a choice have, such as "maker"."""
+        every = (note for variant in (*self.variants, *self.catalogue) for note in variant.notes)
+        return [*dict.fromkeys(head for name, head, _ in every if name == choice)]
+
+    def amounts(self, choice: str) -> list[Amount]:
+        """Return the amounts that options of a choice have, such as a price."""
+        return [of for of in self.own if isinstance(of, Amount) and of.choice == choice]
 
     @property
     def catalogues(self) -> tuple[int, ...]:

@@ -16,16 +16,22 @@ RESIDUAL, STATUS = "residual", "status"
 """Columns that say how far from stationary a design is, and whether that is proven."""
 _EVERY = ("design", RESIDUAL, STATUS, *OF_A_TURN)
 _SLACK = "slack_"
+_CHOICE = "choice_"  # of texts: JSON and the page read no number in them
 
 
 def choice_field(name: str) -> str:
     """Return the key of the column that says what was chosen."""
-    return f"choice_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
+    return f"{_CHOICE}{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
 
 
 def least_field(name: str) -> str:
     """Return the key of the column that says which is the least option of a catalogue that also serves."""
     return choice_field(f"least {name}")
+
+
+def least_amount_field(choice: str, of: Quantity) -> str:
+    """Return the key of the column with an amount, such as the price, of the least option that also serves."""
+    return f"{least_field(choice).removeprefix(_CHOICE)}_{of.field}"
 
 
 def note_field(choice: str, head: str) -> str:

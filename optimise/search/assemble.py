@@ -19,7 +19,7 @@ from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
 from ..front.slack import slack_of
 from ..front.stationarity import STATIONARY, multipliers
 from ..problem.problem import Problem
-from ..problem.table_columns import RESIDUAL, STATUS, choice_field, slack_field
+from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from ..problem.violation import constraints_of
 from .candidates import Finished
 from .evaluation import Evaluator
@@ -152,16 +152,17 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
 
 
 def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
-    """Return what was chosen for designs, the texts that come with it, and the least options that serve too."""
+    """Return what was chosen for designs, its texts, and the least options that serve too with what is kept of them."""
     own = [problem.variants[variant] for variant in variants] if problem.variants else []
     columns: Columns = {
         choice_field(name): np.array([variant.labels[place] for variant in own])
         for place, name in enumerate(problem.choices)
     }
     columns |= least_options(problem, variants, dimensions)
-    notes = [dict(variant.notes) for variant in own]
-    keys = dict.fromkeys(itertools.chain.from_iterable(notes))
-    return columns | {key: np.array([of.get(key, "") for of in notes]) for key in keys}
+    for name in problem.choices:
+        for head in problem.heads(name):
+            columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in own])
+    return columns
 
 
 def _column(part: Columns, name: str) -> NDArray[Any]:

@@ -9,32 +9,39 @@ from ...model.errors import InputError
 from ...objectives.quantity import Quantity
 from ..front.front import Columns
 from ..problem.problem import Problem, Variant
-from ..problem.table_columns import least_field
+from ..problem.table_columns import least_amount_field, least_field, note_field
 from ..problem.violation import FEASIBLE, constraints_of, violated_by
 
 _SAME = 1e-9  # relative: a dimension that an option sets
 
 
 def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
-    """Return for each catalogue the least option (n,) with which designs meet all requirements, all else being equal.
+    """Return for each catalogue the least option (n,) that meets all requirements, all else being equal, and its row.
 
     variants: (n,), of each design. dimensions: (n, 3 + v). An option with which designs have other numbers, such as a
     mass of its own, may change what they are judged by; it must meet every requirement then.
     """
     columns: Columns = {}
     for place in problem.catalogues:
-        found = np.full(len(dimensions), "", dtype=np.object_)
+        name = problem.choices[place]
+        found: list[Variant | None] = [None] * len(dimensions)
         for variant in distinct(variants).tolist():
             labels = problem.variants[variant].labels
             rows = np.flatnonzero(variants == variant)
             serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)
             for option in sorted(_others(problem, labels, place), key=lambda of: of.ranks[place]):
                 served = left if option.labels == labels else left & serving(option)
-                found[rows[served]] = option.labels[place]
+                for row in rows[served].tolist():
+                    found[row] = option
                 left = left & ~served
                 if not left.any():
                     break
-        columns[least_field(problem.choices[place])] = found.astype(np.str_)
+        columns[least_field(name)] = np.array([of.labels[place] if of else "" for of in found])
+        for amount in problem.amounts(name):
+            values = [dict(of.amounts).get(amount.name, np.nan) if of else np.nan for of in found]
+            columns[least_amount_field(name, amount)] = amount.unit.factor * np.array(values)
+        for head in problem.heads(name):
+            columns[note_field(f"least {name}", head)] = np.array([of.note(name, head) if of else "" for of in found])
     return columns
 
 

@@ -25,6 +25,7 @@ _TO_INCH = {
     for kind in SHOWN
     if kind.inch is not None
 }
+_CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 DIMENSIONS = ("crank", "rod", "offset")
 _MOST = 12  # keys of a message
@@ -159,7 +160,9 @@ def metric_key(key: str) -> str:
 
 
 def _face(key: str) -> Face | None:
-    return next((face for face in _FACES if key.endswith(face.suffix)), None)
+    known = next((face for face in _FACES if key.endswith(face.suffix)), None)
+    currency = _CURRENCY.search(key) if known is None else None
+    return known if currency is None else Face(currency[1], currency[0])
 
 
 def all_columns(keys: Collection[str]) -> list[Column]:

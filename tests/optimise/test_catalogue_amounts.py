@@ -61,6 +61,19 @@ def test_each_design_has_maker_and_price_of_its_row_and_names_the_cheapest_that_
     serving = ["GM 30" if torque <= 30.0 else "GM 45" for torque in torques]
     assert named(front, "choice_least_gearmotor") == serving
     assert set(serving) <= {"GM 30"} or torques.max() > 30.0
+    rows = [dict(zip(["price", "maker"], line.split(",")[2:], strict=True)) for line in SIX.splitlines()]
+    own = {line.split(",")[0]: row for line, row in zip(SIX.splitlines(), rows, strict=True)}
+    assert named(front, "least_gearmotor_price_EUR") == [float(own[name]["price"]) for name in serving]
+    assert named(front, "choice_least_gearmotor_maker") == [own[name]["maker"] for name in serving]
+
+
+def test_rounding_says_which_row_also_serves() -> None:
+    tables = pusher(variables={"crank": "75 mm", "rod": ["320 mm", "400 mm"], "offset": "20 mm"})
+    front = sc.solve(sc.problem(tables | {"optimiser": {"samples": 8, "method": "random", "evaluations": 20}}))
+    least = front.columns["choice_least_gearmotor"][0]
+    assert least in ("GM 30", "GM 45")
+    said = f"gearmotor stays GM 150; the least that also serves the given design is {least}"
+    assert said in front.rounded(0, 1e-3).notes
 
 
 def test_a_price_is_an_objective_a_constraint_and_part_of_a_formula() -> None:
