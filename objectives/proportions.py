@@ -47,8 +47,8 @@ STROKE = ClosedFormQuantity(
     example="280 mm",
     reach=Reach(
         bounds=_strokes,
-        more="raise the upper end of crank or of offset",
-        less="lower the lower end of crank: a stroke is never shorter than 2 crank",
+        more="a longer crank or a larger |offset|",
+        less="a shorter crank (a stroke is never shorter than 2 crank)",
     ),
     offered=("motion",),
 )
@@ -68,8 +68,8 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     in_line=math.inf,
     reach=Reach(
         bounds=_to_offset,
-        more="raise the upper end of rod or lower the lower end of offset",
-        less="lower the lower end of rod or raise the upper end of offset",
+        more="a longer rod or a smaller |offset|",
+        less="a shorter rod or a larger |offset|",
     ),
     offered=("proportions",),
     plain=True,
@@ -90,8 +90,8 @@ ROD_TO_CRANK = ClosedFormQuantity(
     domain=_ABOVE_ONE,
     reach=Reach(
         bounds=_to_crank,
-        more="raise the upper end of rod or lower the lower end of crank",
-        less="lower the lower end of rod or raise the upper end of crank",
+        more="a longer rod or a shorter crank",
+        less="a shorter rod or a longer crank",
     ),
     offered=("proportions",),
     plain=True,

@@ -54,7 +54,7 @@ class Within:
 
 @dataclass(frozen=True, kw_only=True)
 class Reach:
-    """Bounds of a quantity within ranges, SI, and in words the change of ranges for more or less of it."""
+    """Bounds of a quantity within ranges, SI, and in words what the ranges must allow for more or less of it."""
 
     bounds: Callable[[Ranges], tuple[float, float]]
     more: str

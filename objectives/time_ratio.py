@@ -70,8 +70,8 @@ def _greater_slopes(ratio: Array, slopes: Array) -> Array:
 
 _REACH = Reach(
     bounds=_within,
-    more="raise the upper end of crank or of offset",
-    less="lower the lower end of offset",
+    more="a longer crank or a larger |offset|",
+    less="a smaller |offset|",
 )
 TIME_RATIO = TimeRatio(
     name="time_ratio",

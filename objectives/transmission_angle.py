@@ -40,8 +40,8 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     floor=float(np.radians(10.0)),
     reach=Reach(
         bounds=_within,
-        more="raise the upper end of rod, or lower the lower end of crank or offset",
-        less="lower the lower end of rod, or raise the upper end of crank or offset",
+        more="a longer rod, a shorter crank or a smaller |offset|",
+        less="a shorter rod, a longer crank or a larger |offset|",
     ),
     offered=("requirement", "objective"),
 )

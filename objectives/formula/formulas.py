@@ -227,7 +227,7 @@ class Formulas:
         kinds = {item: self._kinds[item] for item in names if item in self._places}
         kind = kind or kind_of_formula(node, kinds | {part.name: part.kind for part in parts})
         within = self._within(node, parts)
-        wider = f"widen the ranges of {' and '.join(DIMENSIONS)}"
+        wider = f"a wider range of {' or of '.join(DIMENSIONS)}"
         self._intervals[name] = within
         self._linears[name] = linear_of(node, self._linears)
         text = text_of(node)

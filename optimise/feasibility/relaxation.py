@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from ...model.arrays import Array
 from ..problem.problem import Problem
-from ..problem.requirements import Constraint, Sense, Word, merged
+from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merged
 from ..problem.restatement import restate
 from ..problem.violation import FEASIBLE
 from .best import Best, wanting
@@ -16,12 +16,8 @@ from .safe_side import exact, safe
 
 _LOWEST = 0.02
 """Of a floor: what is kept of it where it is let go. Nearer to locking nothing is worth telling."""
-_SIDES: dict[Word, tuple[str, Sense]] = {
-    "min": ("at least", "maximise"),
-    "max": ("at most", "minimise"),
-    "equals": ("exactly", "target"),
-}
-"""Relation that a bound asks for, and how to come nearest to it."""
+_SENSES: dict[Word, Sense] = {"min": "maximise", "max": "minimise", "equals": "target"}
+"""How to come nearest to a bound."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +80,7 @@ def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, v
     of = problem.quantity(constraint.quantity)
     factor, symbol = of.unit.factor, of.unit.symbol
     standing = all(item.quantity != constraint.quantity for item in problem.constraints)
-    relation, _ = _SIDES[word]
-    return Relaxation(of.name, relation, bound * factor, value * factor, symbol, of.title, standing=standing)
+    return Relaxation(of.name, RELATIONS[word], bound * factor, value * factor, symbol, of.title, standing=standing)
 
 
 def relaxations(
@@ -97,7 +92,7 @@ def relaxations(
     the best of a problem with one objective, None where nothing meets its requirements.
     """
     for word, bound in constraint.sides:
-        _, sense = _SIDES[word]
+        sense = _SENSES[word]
         free = _without(problem, constraint, word)
         # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
         unbounded = problem.quantity(constraint.quantity).in_line == math.inf

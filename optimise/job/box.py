@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ...model.arrays import Array
 from ...model.errors import InfeasibleError
+from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
@@ -15,7 +17,7 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, ratio_of
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
-from ..problem.requirements import Constraint, Range
+from ..problem.requirements import RELATIONS, Constraint, Range
 from .messages import key_of
 
 if TYPE_CHECKING:
@@ -26,7 +28,9 @@ SLACK = 1e-9
 STROKE_RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
 """Ratios of the strokes that conflict with the transmission angle."""
 _CELLS = 10_000
-_AND_OTHERS = " and the other requirements on the dimensions"
+_OTHERS = "the other requirements on the dimensions"
+_ACTIVE = 1e-6
+"""Relative distance from a bound within which a rule is active at a design that was searched for."""
 _ANY = Range(lower=0.0, upper=1.0)
 
 
@@ -113,33 +117,48 @@ def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Pro
     least, greatest = box.possible(of)
     room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + room:
-        told, remedy = _possible(problem, constraint), f"{reach.more}, or ask for less"
+        allowed, instead = reach.more, "ask for less"
     elif constraint.upper is not None and constraint.upper + room < least:
-        told, remedy = _possible(problem, constraint), f"{reach.less}, or ask for more"
+        allowed, instead = reach.less, "ask for more"
     else:
         return
+    told, active = _possible(problem, constraint)
+    remedy = ", ".join([f"allow {allowed}", *([f"relax {' and '.join(active)}"] if active else []), f"or {instead}"])
     same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
     if same is not None and not same.names:
         told, remedy = f"it is {_shown(of, float(same.constant))} for every design", "leave it out"
     raise InfeasibleError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
 
 
-def _possible(problem: Problem, constraint: Constraint) -> str:
-    """Return in words what is possible of a quantity that the ranges do not give as it is asked for.
+def _possible(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]:
+    """Return in words what is possible of a quantity that the ranges do not give as it is asked for, and active rules.
 
     With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
     """
     ranges = "within the ranges of crank, rod and offset"
-    narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
-    alone = (constraint, *narrowing)
-    for kept in (_rules_on_dimensions(problem), alone):
-        found = _nearest(problem, constraint, kept)
+    if not problem.variants and all(of.fixed for of in (problem.crank, problem.rod, problem.offset)):
+        found, _ = _nearest(problem, constraint, (constraint,))
+        crank, rod, offset = (f"{name} {1e3 * getattr(problem, name).lower:.6g} mm" for name in DIMENSIONS)
         if found is not None:
-            break
-    else:
-        return f"{ranges} it is not possible"
-    rules = "" if len(kept) == 1 else _AND_OTHERS if kept != alone else f" and constraints.{ROD_TO_OFFSET.name}"
-    return f"{ranges}{rules} {'at most' if found.reachable < found.asked else 'at least'} {found.with_unit} is possible"
+            return f"{crank}, {rod} and {offset}, all fixed, give {found.with_unit}", []
+    narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
+    kept = _rules_on_dimensions(problem)
+    found, active = _nearest(problem, constraint, kept)
+    if found is None:  # the other rules contradict one another
+        kept = (constraint, *narrowing)
+        (found, _), active = _nearest(problem, constraint, kept), [*narrowing]
+    if found is None:
+        return f"{ranges} it is not possible", []
+    rules = [_in_words(problem, rule) for rule in active]
+    rules += [_OTHERS] if len(kept) > 1 + len({rule.quantity for rule in active}) else []
+    held = f" and with {' and '.join(rules)}," if rules else ""
+    side = "at most" if found.reachable < found.asked else "at least"
+    return f"{ranges}{held} {side} {found.with_unit} is possible", [rule.quantity for rule in active]
+
+
+def _in_words(problem: Problem, rule: Constraint) -> str:
+    of = problem.quantity(rule.quantity)
+    return f"{rule.quantity} {' and '.join(f'{RELATIONS[word]} {_shown(of, bound)}' for word, bound in rule.sides)}"
 
 
 def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
@@ -148,13 +167,39 @@ def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     return rules_on_dimensions(problem)
 
 
-def _nearest(problem: Problem, constraint: Constraint, kept: tuple[Constraint, ...]) -> Relaxation | None:
-    """Return the reachable value for one of the constraints that are kept; None where even then nothing is."""
-    from ..feasibility.best import best_on_dimensions
+def _nearest(
+    problem: Problem, constraint: Constraint, kept: tuple[Constraint, ...]
+) -> tuple[Relaxation | None, list[Constraint]]:
+    """Return the reachable value for one of the constraints that are kept, and which of the others are active there.
+
+    None where even then nothing is reachable. Active are single bounds; none are reported where there are choices.
+    """
+    from ..feasibility.best import Best, best_on_dimensions
     from ..feasibility.relaxation import Relaxation, relaxations
 
-    found = relaxations(replace(problem, constraints=kept), constraint, best_on_dimensions)
-    return next((one for one in found if isinstance(one, Relaxation)), None)
+    tried: list[Best] = []
+
+    def best(wanted: Problem) -> Best | None:
+        found = best_on_dimensions(wanted)
+        tried.extend([found] if found else [])
+        return found
+
+    found = relaxations(replace(problem, constraints=kept), constraint, best)
+    nearest = next((one for one in found if isinstance(one, Relaxation)), None)
+    if nearest is None or problem.variants:
+        return nearest, []
+    others = [rule for rule in kept if rule.quantity != constraint.quantity]
+    return nearest, [side for rule in others for side in _active(problem, rule, tried[0].design)]
+
+
+def _active(problem: Problem, rule: Constraint, design: Array) -> list[Constraint]:
+    """Return the bounds of a rule on which a design, the best of a search, lies: each as a rule of its own."""
+    value = float(problem.quantity(rule.quantity).evaluate(problem.mechanism, design[None]).values[0])
+    if rule.equality:
+        return [rule]
+    single = [Constraint(quantity=rule.quantity, lower=rule.lower)] if rule.lower is not None else []
+    single += [Constraint(quantity=rule.quantity, upper=rule.upper)] if rule.upper is not None else []
+    return [one for one in single if abs(value - one.sides[0][1]) <= _ACTIVE * (abs(one.sides[0][1]) or 1.0)]
 
 
 def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | None:
@@ -172,8 +217,8 @@ def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | No
         return None
     held = f"with a least transmission angle of {_shown(TRANSMISSION_ANGLE, angle.lower)}"
     for kept in (_rules_on_dimensions(problem), (ratio, angle)):
-        ratios, angles = (_nearest(problem, item, kept) for item in (ratio, angle))
-        held_too = _AND_OTHERS if len(kept) > 2 else ""
+        ratios, angles = (_nearest(problem, item, kept)[0] for item in (ratio, angle))
+        held_too = f" and {_OTHERS}" if len(kept) > 2 else ""
         other = angles and f"lower constraints.{angle.quantity} to {angles.with_unit} at most"
         if ratios is not None:
             what = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"

@@ -24,6 +24,8 @@ SENSES: dict[str, Sense] = {
 """The sense of every word for it, in either spelling."""
 Word = Literal["min", "max", "equals"]
 """Words of a constraint's bounds."""
+RELATIONS: dict[Word, str] = {"min": "at least", "max": "at most", "equals": "exactly"}
+"""The words as relations, in messages."""
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")  # a `Problem` wants it as `expression.text_of` writes it
 

@@ -38,7 +38,7 @@ def check(
         **{name: summary[name] for name in ("given", "files", "tolerances", "costs", "variables")},
         "requirements": summary["rules"],
         "objectives": summary["objectives"],
-        "freedom": [freedom_in_words(summary)],
+        "freedom": [freedom_in_words(problem)],
         "search": [summary["search"]],
         "note": summary["notes"],
     }

@@ -15,7 +15,7 @@ def job_section(subject: Subject) -> Section:
     parts = {
         **{"Given": words["given"], "Tolerances": words["tolerances"], "Costs": words["costs"]},
         **{"May vary": words["variables"], "Requirements": words["rules"], "Objectives": words["objectives"]},
-        "Freedom": [freedom_in_words(words)],
+        "Freedom": [freedom_in_words(subject.problem)],
     }
     rows = {title: [unit_text(str(line)) for line in lines] for title, lines in parts.items() if lines}
     warned = tuple(Paragraph(f"Warning: {sentence}.", "bad") for sentence in subject.result.warnings)

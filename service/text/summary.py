@@ -27,7 +27,7 @@ from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.driving_loads import driven_by_loads
-from ...optimise.search.elimination import sheets
+from ...optimise.search.elimination import Sheet, sheets
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
@@ -36,7 +36,6 @@ def summarise(problem: Problem) -> dict[str, Any]:
     Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
     sheet = sheets(problem)[0]
-    free = len(sheet.free) - sum(constraint.equality for constraint in sheet.remaining)
     settings = problem.settings
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
@@ -59,7 +58,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "floors": _floors(problem),
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
-        "degrees_of_freedom": free,
+        "degrees_of_freedom": _degrees_of_freedom(sheet),
         "eliminated": list(sheet.eliminated),
         "warnings": [
             *problem.warnings,
@@ -72,18 +71,30 @@ def summarise(problem: Problem) -> dict[str, Any]:
     }
 
 
-def freedom_in_words(summary: dict[str, Any]) -> str:
+def freedom_in_words(problem: Problem) -> str:
     """Return the degrees of freedom left as a sentence."""
-    left, eliminated, unknowns = summary["degrees_of_freedom"], summary["eliminated"], summary["unknowns"]
+    sheet = sheets(problem)[0]
+    left, unknowns = _degrees_of_freedom(sheet), len(sheet.names)
     what = "dimensions" if unknowns == 3 else "dimensions and other numbers"
+    if _is_fixed(sheet):
+        return f"all {what} are fixed; requirements are only checked"
     text = f"{left} of {unknowns} {what} left to choose"
     if left < 0:
-        text = f"more equalities than dimensions, by {-left}: no design can be expected"
+        text = f"more equalities than dimensions, by {-left}: a design exists only if they agree"
     elif left == 0:
-        text = f"0 of {unknowns} {what} left to choose: the equalities leave single designs"
-    if eliminated:
-        text += f"; {', '.join(name.replace('_', ' ') for name in eliminated)} met exactly by elimination"
+        text = f"{text}: the equalities usually leave single designs"
+    if sheet.eliminated:
+        text += f"; {', '.join(name.replace('_', ' ') for name in sheet.eliminated)} met exactly by elimination"
     return text
+
+
+def _is_fixed(sheet: Sheet) -> bool:
+    return all(ends.fixed for ends in sheet.bounds.values())
+
+
+def _degrees_of_freedom(sheet: Sheet) -> int:
+    equalities = 0 if _is_fixed(sheet) else sum(constraint.equality for constraint in sheet.remaining)
+    return len(sheet.free) - equalities
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from slidercrank.model.errors import JobError
+from slidercrank.model.errors import InfeasibleError, JobError
 from slidercrank.optimise.job import load_job, parse_job
 
 RUNS = Path(__file__).parents[2] / "runs"
@@ -149,7 +149,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         STROKE,
         'stroke = { equals = "600 mm" }',
-        ["constraints.stroke", "the other requirements", "at most 360.57 mm", "equals 600 mm", "raise"],
+        ["constraints.stroke", "transmission_angle at least 40 deg", "at most 360.57 mm", "equals 600 mm", "allow"],
     ),
     (STROKE, 'stroke = { max = "150 mm" }', ["constraints.stroke", "at least 160 mm", "max 150 mm", "2 crank"]),
     (STROKE, "rod_to_offset = { equals = 0.9 }", ["constraints.rod_to_offset", "above 1", "0.9"]),
@@ -163,7 +163,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         STROKE,
         "time_ratio = { min = 3.5 }",
-        ["constraints.time_ratio", "the other requirements", "at most 1.2862", "min 3.5"],
+        ["constraints.time_ratio", "transmission_angle at least 40 deg", "at most 1.2862", "min 3.5"],
     ),
     (
         STROKE,
@@ -225,8 +225,31 @@ def test_a_bad_job_is_refused_in_one_clear_message(old: str, new: str, words: li
 
 def test_a_rule_between_rod_and_offset_must_fit_the_ranges() -> None:
     data = tomllib.loads(FEEDER.replace('rod = ["50 mm", "250 mm"]', 'rod = ["300 mm", "400 mm"]'))
-    with pytest.raises(JobError, match=r"rod_to_offset: .* at least 3.75 is possible; got equals 3.2; lower .* rod"):
+    said = r"rod_to_offset: .* at least 3.75 is possible; got equals 3.2; allow a shorter rod or"
+    with pytest.raises(JobError, match=said):
         parse_job(data)
+
+
+@pytest.mark.parametrize(
+    ("words", "old", "new"),
+    [
+        ("allow a longer crank", '"160 mm"]', '"180 mm"]'),
+        ("or a larger |offset|", '["-100 mm", "0 mm"]', '["-200 mm", "0 mm"]'),
+        ("relax transmission_angle", '"40 deg"', '"35 deg"'),
+    ],
+)
+def test_each_remedy_for_a_stroke_out_of_reach_raises_the_limit(words: str, old: str, new: str) -> None:
+    changed = SIEVE.replace(STROKE, 'stroke = { equals = "600 mm" }').replace(
+        OFFSET_RANGE, 'offset = ["-100 mm", "0 mm"]'
+    )
+    changed = changed.replace('slow_stroke = "outward"\n', "")
+    limits = []
+    for text in (changed, changed.replace(old, new)):
+        with pytest.raises(InfeasibleError) as caught:
+            parse_job(tomllib.loads(text))
+        assert words in str(caught.value)
+        limits.append(float(re.findall(r"at most ([\d.]+) mm is possible", str(caught.value))[0]))
+    assert limits[1] > limits[0]
 
 
 def test_a_rule_between_rod_and_offset_needs_an_offset() -> None:

@@ -72,6 +72,7 @@ def typed(name: str, number: str) -> str | float:
 
 NUMBER = r"(-?[\d.]+(?:e[+-]?\d+)?)"
 POSSIBLE = re.compile(rf"constraints\.(\w+): .* at (?:most|least) {NUMBER}(?: deg| mm)? is possible; got")
+ACTIVE = re.compile(r"(?:with|and) (\w+) (?:at least|at most|exactly) ")
 RATIO = re.compile(rf"with a least transmission angle .* it is at most {NUMBER}; ")
 ANGLE = re.compile(rf"lower constraints\.transmission_angle to {NUMBER} deg at most")
 HAD = re.compile(
@@ -105,8 +106,8 @@ def alternatives(job: Job, message: str) -> Iterator[Job]:
                 yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), number[1])
     elif possible:
         name = possible[1]
-        narrowed = {"rod_to_offset": rules["rod_to_offset"]} if "and constraints.rod_to_offset" in message else {}
-        kept = rules if "other requirements" in message else {name: rules[name], **narrowed}
+        active = {other: rules[other] for other in ACTIVE.findall(message) if other in rules}
+        kept = rules if "other requirements" in message else {name: rules[name], **active}
         yield asking({**job, "constraints": kept}, name, next(iter(kept[name])), possible[2])
     else:
         for title, relation, number in HAD.findall(message):

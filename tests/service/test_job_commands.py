@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,21 @@ def test_check_gives_json(tmp_path: Path, command: Command) -> None:
     record = json.loads(command("check", fronts.job_file(tmp_path), "--json").stdout)
     assert record["degrees_of_freedom"] == 2
     assert record["eliminated"] == ["stroke"]
+
+
+def test_check_calls_a_job_of_fixed_lengths_fixed_with_its_stroke_as_an_equality(
+    tmp_path: Path, command: Command
+) -> None:
+    text = fronts.job_file(tmp_path).read_text()
+    for name, length in (("crank", "140 mm"), ("rod", "500 mm"), ("offset", "0 mm")):
+        text = re.sub(rf"(?m)^{name} = \[.*\]$", f'{name} = "{length}"', text)
+    text = text.replace('time_ratio = "maximise"', 'footprint = "minimise"')
+    job = tmp_path / "fixed.toml"
+    job.write_text(text)
+    done = command("check", job)
+    assert done.exit_code == 0, done.stderr
+    assert "all dimensions are fixed; requirements are only checked" in done.stdout
+    assert json.loads(command("check", job, "--json").stdout)["degrees_of_freedom"] == 0
 
 
 @pytest.mark.parametrize("name", ["feeder", "sieve", "support", "compressor"])
