@@ -1,8 +1,8 @@
 """Curves in files that a job names: values over the crank angle, a time or a slider position, found by their units.
 
-A head has its unit in brackets or at its end: "force (N)", "force [N]", "force_N". A column whose head begins with # is
-passed over. Rows may go down instead of up, begin at any angle, run over 360 deg to 0 deg, and repeat the first one at
-the end.
+A head has its unit in brackets or at its end: "force (N)", "force [N]", "force_N", "force in N". A column whose head
+begins with # is passed over. Rows may go down instead of up, begin at any angle, run over 360 deg to 0 deg, and repeat
+the first one at the end.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import per_si, shown, symbol_in
+from ...objectives.units import per_si, shown, squeezed, symbol_in
 from .table_file import TableFile
 
-_BRACKETED = re.compile(r".*[\[(]([^\])]*)[\])]\s*", re.DOTALL)
+_BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
+_IN = re.compile(r"\s*in\s+(?=\S)(?!(?:lbf|ozf)\s*$)", re.IGNORECASE)  # "force in N"; no torque has inch and newton
 _CLOSE = 1e-3  # relative: a record that ends this near to whole turns ends with them, unless half its last step is less
 _TURNS = {"deg": 360.0}  # exactly
 SHARE = 5e-4
@@ -79,31 +80,61 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
     angles = [head for head in heads if head.kind is ANGLE and ANGLE in over]
     x = _one(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
     y = _one(table, [head for head in heads if head.kind in of and head is not x], of)
+    for head in (x, y):
+        _require_kind(table, head, kinds)
     at, values = table.numbers([x.place, y.place])
     again = np.flatnonzero((np.diff(at) == 0.0) & (np.diff(values) == 0.0))
     at, values = np.delete(at, again + 1), np.delete(values, again + 1)
+    if len(at) < 2:
+        raise InputError(f"{table.name} must have two points at least; got {len(at)}; add rows")
     curve = Curve(table.name, x, y, at, values, (table.understood([x.place, y.place]),))
     return _rising(curve, table) if x.kind is not TIME else curve
 
 
 def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
-    """Return the meaning of a head by its unit, in brackets or at its end; None without one of some kinds."""
+    """Return the meaning of a head by its unit; None without one of some kinds. Of several units the name decides."""
     if text.startswith("#"):
         return None
-    bracketed = _BRACKETED.fullmatch(text)
-    words = re.split(r"[\s_,:]+|\s/\s", text)
+    found = [(kind, unit) for one in _units(text) for kind in kinds if (unit := symbol_in(one, kind)) is not None]
+    named = [each for each in found if _names(text, each[0])]
+    return Head(place, text, *(named or found)[0]) if found else None
+
+
+def _units(text: str) -> list[str]:
+    """Return what may be the unit of a head, the likeliest first: what stands in brackets, then words at its end."""
+    words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
-    for unit in [bracketed[1]] if bracketed else endings:
-        for kind in kinds:
-            symbol = symbol_in(unit, kind)
-            if symbol is not None:
-                return Head(place, text, kind, symbol)
-    return None
+    units = [*_BRACKETS.findall(text)[::-1], *sorted(endings, key=lambda ending: ending.startswith("in "))]
+    return [_IN.sub("", unit) for unit in units]
+
+
+def _names(text: str, kind: Kind) -> bool:
+    return kind.plain.split()[-1] in text.casefold()
+
+
+def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
+    """Raise `InputError` for a head whose name says another kind than its unit."""
+    named = [kind for kind in kinds if _names(head.text, kind)]
+    if named and head.kind not in named:
+        raise InputError(
+            f"{table.name}, column {shown(head.text)}: must have the unit of {named[0].name}, as its name says; got "
+            f"{head.unit}, which is {head.kind.name}; correct the unit or the name"
+        )
+
+
+def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
+    """Return what to do about heads without a unit of some kinds: correct one that is nearly one, or name it."""
+    words = {squeezed(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
+    words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
+    for unit in (unit for head in heads if not head.startswith("#") for unit in _units(head)):
+        if meant := words.get(squeezed(unit).casefold()):
+            return f"the unit {shown(unit)} is not known; write {meant}"
+    return "name the unit"
 
 
 def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only one of some columns, or of several of one kind the only one that names it."""
-    named = [head for head in heads if head.kind.plain.split()[-1] in head.text.casefold()]
+    named = [head for head in heads if _names(head.text, head.kind)]
     found = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
     if len(found) == 1:
         return found[0]
@@ -112,7 +143,7 @@ def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     if not found:
         raise InputError(
             f"{what}, its unit in brackets or at the end of its name; got {', '.join(map(shown, table.heads[:6]))}; "
-            "name the unit"
+            + _remedy(table.heads, kinds)
         )
     raise InputError(
         f"{what}; got {' and '.join(shown(head.text) for head in found[:3])}; let the names of the others begin with #"
@@ -166,12 +197,14 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         curve = replace(curve, at=at)
     if turns is None:
         turns = 1 if curve.span <= 1.0 else 2
-        step = float(np.max(np.diff(curve.at))) / curve.turn
-        if turns == 2 and not 2.0 - 2.0 * step <= curve.span <= 2.0:
+        step = float(np.median(np.diff(curve.at))) / curve.turn
+        if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.span <= 2.0:
             raise InputError(
                 f"{curve.name} must cover one turn or two, unless the job gives the cycle; got {curve.span:.4g} turns; "
                 'give cycle = "360 deg" or "720 deg", of which the file has the first one'
             )
+        if turns == 2:
+            curve = replace(curve, said=(*curve.said, "two turns, a cycle of 720 deg"))
     if curve.span > turns:
         kept = curve.at < curve.at[0] + (turns - near) * curve.turn
         said = (*curve.said, f"the first cycle of {curve.span / turns:.4g}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ...model.errors import InputError
+from ...model.errors import InputError, JobError
 from ...model.machine.loads.load import ANGLE_DATUM, CYCLE, Entry, Table
 from ...model.machine.loads.registry import kinds
 from ...objectives.kinds import ANGLE, TIME, Kind
@@ -35,9 +35,16 @@ def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
     tables = {(_kind(at), _kind(of)): table for table, at, of in tables_of_points()}
-    if not isinstance(file, str) or any(entry.name in part for _, *pair in tables_of_points() for entry in pair):
-        return part  # the model refuses both
+    if not isinstance(file, str):
+        return part
     name = key_of(["load", place, "file"])
+    known = ["file", *dict.fromkeys(one.name for table in tables.values() for one in table.entries if not one.several)]
+    for key in part:
+        if key not in known:
+            raise JobError(
+                f"{key_of(['load', place, key])}: a load with file has no such key; got {shown(part[key])}; possible "
+                f"here: {', '.join(known)}"
+            )
     over = (*dict.fromkeys(at for at, _ in tables), TIME)
     curve = curve_in(table_beside(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))
     found = tables.get((ANGLE if curve.over.kind is TIME else curve.over.kind, curve.of.kind))

@@ -211,12 +211,53 @@ def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() ->
         ("position_mm,force_N\n0,1\n9,2\n5,3", {}, '"position_mm" must increase; got 5 after 9; sort the rows'),
         ("angle_deg,force_N\n0,1\n9,2\n9,3\n9,4", {}, "must increase, but for two at a step"),
         ("angle_deg,force_N\n0,1\n9,", {}, 'row 3, column "force_N": must be a number; got an empty cell'),
-        ("angle_deg,force_N\n0,1\n9,2", {"forces": ["1 N"]}, "a load with file has no such key"),
+        ("angle_deg,force_N\n0,1\n9,2", {"forces": ["1 N"]}, "#1.forces: a load with file has no such key"),
+        ("crank angle (mm),force (N)\n0,1\n9,2", {}, 'column "crank angle .mm.": must have the unit of an angle'),
+        ("angle in deg,torque in N\n0,1\n9,2", {}, "must have the unit of a torque, .* got N, which is a force"),
+        ("angle_deg,pressure_N\n0,1\n9,2", {}, "must have the unit of a pressure, .* got N, which is a force"),
+        ("angle_deg,force_N\n0,1", {}, "must have two points at least; got 1; add rows"),
+        ("angle_deg,force_N\n0,1\n0,1", {}, "must have two points at least; got 1; add rows"),
+        ("Winkel [Grad];Kraft [N]\n0;1\n9;2", {}, 'the unit "Grad" is not known; write deg'),
+        ("angle (Deg),force (N)\n0,1\n9,2", {}, 'the unit "Deg" is not known; write deg'),
+        ("angle_deg,force_KN\n0,1\n9,2", {}, 'the unit "KN" is not known; write kN'),
+        ("angle_deg,force (n)\n0,1\n9,2", {}, 'the unit "n" is not known; write N'),
+        ("angle_deg,#force (N)\n0,1\n9,2", {}, "name the unit"),
     ],
 )
 def test_a_file_that_could_mean_something_else_is_refused(text: str, keys: dict[str, Any], words: str) -> None:
     with pytest.raises(JobError, match=words):
         read(text, **keys)
+
+
+@pytest.mark.parametrize(
+    "heads",
+    [
+        "crank angle in deg;force in N",
+        "crank_angle_in_deg;force_in_N",
+        "Winkel in deg;Kraft (in N)",
+        "angle (deg);force [N] (filtered)",
+        "angle (deg);force_N (raw)",
+    ],
+)
+def test_units_stand_after_in_and_among_other_brackets(heads: str) -> None:
+    rows = "\n0;-20\n90;0\n200;5\n"
+    assert read(heads + rows) == given(crank_angles=ANGLES, forces=FORCES)
+    torques = {"torque_angles": ANGLES, "torques": [f.replace("N", "lbf in") for f in FORCES]}
+    for torque in ("torque in lbf", "M (in-lbf)", "torque_lbf_in"):
+        assert read(f"angle_deg;{torque}{rows}") == given(**torques)
+
+
+def test_a_coarse_record_between_one_turn_and_two_is_refused_and_two_turns_are_reported() -> None:
+    with pytest.raises(JobError, match=r"must cover one turn or two, .* got 1\.4 turns"):
+        read("time_s,force_N\n0,1\n0.1,2\n0.3,3\n0.7,4\n", "120 rpm")
+    data = with_files(job({"file": "a.csv"}), {"a.csv": "angle_deg,force_N\n0,1\n180,2\n360,3\n540,4\n"})
+    assert data["load"][0]["cycle"] == "720 deg"
+    assert sources_of(data)[0].endswith("two turns, a cycle of 720 deg")
+
+
+def test_a_file_and_a_force_in_one_load_are_refused_before_the_file_is_read() -> None:
+    with pytest.raises(JobError, match=r'load #1\.force: a load with file has no such key; got "3 N"; possible'):
+        with_files(job({"file": "a.csv", "force": "3 N"}), {"a.csv": "angle_deg,force_N\n0,1\n9,2"})
 
 
 def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
