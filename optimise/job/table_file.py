@@ -2,7 +2,8 @@
 
 The first line with content names the columns; a commented one does where no other line can. Empty lines and lines that
 begin with #, % or // are passed over. Between cells stand commas, semicolons, tabs, bars or blanks: the sign by which
-most lines have as many cells as the first, unless a line such as "sep=;" says it. `csv` splits the cells. Its own
+most lines have as many cells as the first, unless a line such as "sep=;" says it. A line of units may stand below the
+names. `csv` splits the cells. Its own
 `Sniffer`, which pandas uses too, takes a decimal comma for a separator and cannot name the line of a wrong cell.
 """
 
@@ -22,12 +23,12 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.units import shown
+from ...objectives.units import is_value, shown
 
 _SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
 """In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
 _COMMENT = re.compile(r"\s*(?:#|%|//)+\s*")
-_SAID = re.compile(r'"?sep=(\\t|.)"?', re.IGNORECASE)
+_SAID = re.compile(r'\s*"?sep=(\\t|.)"?\s*', re.IGNORECASE)
 _SAMPLE = 200  # lines by which separators are told apart
 _MOST_COLUMNS = 1000
 _AT_ONCE = 50_000  # rows of which the cells are kept as single texts
@@ -51,12 +52,12 @@ _BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))"
 def bytes_of(path: Path, name: str, most: int) -> bytes:
     """Return the content of a file of at most `most` bytes. Raises `InputError`; name: how messages call the file."""
     try:
-        if path.is_dir():
-            raise InputError(f"{name} must be a file; got a folder; name a file in it")
         with path.open("rb") as file:
             content = file.read(most + 1)
     except FileNotFoundError:
         raise InputError(f"{name} must be a file; got none of that name; check the name and the folder") from None
+    except IsADirectoryError:
+        raise InputError(f"{name} must be a file; got a folder; name a file in it") from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{name} cannot be read: {why}; name another file, or permit it") from None
@@ -122,12 +123,13 @@ class TableFile:
             ", ".join(self._number_in_words(of.columns[place].split("\n")[n]) for place in places) for of, n in ends
         )
         heads = ", ".join(self.heads[place] for place in places)
-        return "; ".join([f"{len(self):,} rows of {heads}", f"first {first}", f"last {last}", *self.said])
+        rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
+        return "; ".join([f"{rows} of {heads}", f"first {first}", f"last {last}", *self.said])
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
         digits = _plain(cell).replace(grouping, "").replace(decimal, ".")
-        return f"{float(digits):.6g}" if _NUMBER.fullmatch(digits) else cell
+        return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell
 
     @property
     def rows(self) -> list[int]:
@@ -173,9 +175,9 @@ class TableFile:
         example = signs.first(_group(decimal))
         word = "comma" if decimal == "," else "point"
         said = f"decimal {word}"
-        if example is not None:
-            said += f", so that {example} is {float(example.replace(decimal, '.')):g}"
-        if said not in (*self.said, "decimal point"):
+        if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
+            said += f", so that {example} is {number}"
+        if (example is not None or decimal == ",") and said not in self.said:
             self.said.append(said)
         wrong = re.compile(rf"^(?!{_whole(grouping, decimal)}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
         for _, cells in parts:
@@ -272,7 +274,7 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
 
     name: of the file, for messages. ragged: whether rows may end before their last cells.
     """
-    text = text.removeprefix("\ufeff")
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     if "\0" in text:
         raise InputError(f"{name} must be text; got a byte 0 in it; save it as CSV in UTF-8")
     try:
@@ -289,6 +291,14 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
         raise InputError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
+    below = first[1] if first is not None and _units(first[1]) else None
+    if below is not None:
+        first = next(lines, None)
+    elif len(heads) == 1 and _said(text) and any(sign in heads[0] for sign in _SEPARATORS if sign != " "):
+        raise InputError(
+            f'{name} must have its cells separated as its line "sep={separator}" says; got {shown(heads[0])}; correct '
+            "that line, or leave it out"
+        )
     width = len(heads) if first is None else len(first[1])
     rows = lines if first is None else itertools.chain([first], lines)
     if of_numbers(heads):
@@ -297,6 +307,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     elif len(heads) != width:
         line = next(line for line in _content(text) if line.strip())
         heads = _named(line, separator, width) or heads
+    heads = _with_units(heads, below or [])
     if of_numbers(heads):
         raise InputError(
             f"{name} must begin with a line that names its columns, with units; got {', '.join(heads)[:60]!r}; add one "
@@ -313,8 +324,11 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
 
 def _content(text: str) -> Iterator[str]:
     """Yield the lines of a text, empty ones in place of comments and of a first one that says the separator."""
-    for n, line in enumerate(io.StringIO(text, newline="")):
-        yield "\n" if _COMMENT.match(line) or (not n and _SAID.fullmatch(line.strip())) else line
+    begun = False
+    for line in io.StringIO(text):
+        empty = _COMMENT.match(line) or not line.strip()
+        yield "\n" if empty or (not begun and _SAID.fullmatch(line)) else line
+        begun = begun or not empty
 
 
 def _split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
@@ -333,9 +347,8 @@ def _split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str
 
 def _separator(text: str) -> str:
     """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
-    first = _SAID.fullmatch(text[: text.find("\n") if "\n" in text else None].strip())
-    if first is not None:
-        return "\t" if first[1] == "\\t" else first[1]
+    if said := _said(text):
+        return said
     sample = [line for line in itertools.islice(_content(text), 10 * _SAMPLE) if line.strip()][:_SAMPLE]
     best, separator = 0.0, ","
     for sign in _SEPARATORS:
@@ -347,12 +360,38 @@ def _separator(text: str) -> str:
         width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
         if sign != " ":
             width = widths[0] if widths else 1
-        elif not all(of_numbers(row) for row in rows[1:]):
+        elif not all(of_numbers(row) for row in rows[1 + (len(rows) > 1 and _units(rows[1])) :]):
             continue
         alike = widths.count(width) / len(widths) if width > 1 else 0.0
+        if alike and of_numbers(rows[0]) and _commented(text, sign, width):
+            alike += 1.0  # as many names as numbers
         if alike > best:
             best, separator = alike, sign
     return separator
+
+
+def _said(text: str) -> str:
+    """Return the sign between cells that the first line with content says; empty if it says none."""
+    first = next((line for line in io.StringIO(text) if line.strip() and not _COMMENT.match(line)), "")
+    said = _SAID.fullmatch(first)
+    return "" if said is None else said[1].replace("\\t", "\t")
+
+
+def _units(cells: Sequence[str]) -> bool:
+    """Whether a line has units alone, two at least, as loggers write them below the names."""
+    units = [_unit(cell) for cell in cells if _unit(cell)]
+    return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
+
+
+def _unit(cell: str) -> str:
+    return cell.strip().strip("[]()-")
+
+
+def _with_units(heads: list[str], units: Sequence[str]) -> list[str]:
+    """Return names of columns with the units of a line below them, if it has as many cells."""
+    if len(units) != len(heads):
+        return heads
+    return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
 
 
 def of_numbers(cells: Sequence[str]) -> bool:
@@ -366,8 +405,9 @@ def _commented(text: str, separator: str, width: int) -> list[str] | None:
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
         if comment:
-            found = _named(line[comment.end() :], separator, width) or found
-        elif line.strip() and not _SAID.fullmatch(line.strip()):
+            named = _named(line[comment.end() :], separator, width)
+            found = _with_units(found, named) if found and named and _units(named) else named or found
+        elif line.strip() and not _SAID.fullmatch(line):
             break
     return found
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.job.table_file import read_table, text_of
+from slidercrank.optimise.job.table_file import bytes_of, read_table, text_of
 
 SEPARATORS = {";": ".,", "\t": ".,", "|": ".,", " ": ".,", ",": "."}
 """Each with the decimal signs that go with it."""
@@ -87,6 +88,7 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
         ('a,b\n"1,300",0.5\n', [1300.0, 0.5], "separated by commas"),
         ("a\tb\n1\u202f300,5\t\u22122\n", [1300.5, -2.0], "decimal comma"),
         ("a;b\n1'300.5;2\n", [1300.5, 2.0], "separated by semicolons"),
+        ("a;b\n-999.526;2\n", [-999.526, 2.0], "semicolons; decimal point"),
     ],
 )
 def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbers: list[float], said: str) -> None:
@@ -107,6 +109,7 @@ def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbe
         ("a;b\n1;=A2\n", 'got the formula "=A2"; save values instead of formulas'),
         ("a,b\n0,5,1\n", "row 2 must have 2 cells, as the first line; got 3; .* separate them by semicolons"),
         ("a,b\n\n1\n", "row 3 must have 2 cells, as the first line; got 1"),
+        ("sep=;\na,b\n1,2\n", 'must have its cells separated as its line "sep=;" says; got "a,b"; correct that line'),
         ("1;2\n3;4\n", "must begin with a line that names its columns, with units; got '1, 2'"),
     ],
 )
@@ -123,12 +126,35 @@ def test_a_number_that_could_be_another_one_is_refused_with_row_and_remedy(text:
         "angle (deg)   force (N)\n0.0   1\n 90   2\n",
         "angle (deg) force (N)\n0 1\n90 2\n",
         "sep=\\t\nangle (deg)\tforce (N)\n0\t1\n90\t2\n",
+        "sep=\t\nangle (deg)\tforce (N)\n0\t1\n90\t2\n",
+        "# logger 7\nsep=;\nangle (deg);force (N)\n0;1\n90;2\n",
+        "# angle (deg);force (N)\r0;1\r90;2\r",
+        "# angle (deg) force (N)\n0,0 1,00\n90,0 2,00\n",
+        "angle;force\ndeg;N\n0;1\n90;2\n",
+        "angle\tforce\r\n[deg]\t[N]\r\n0\t1\r\n90\t2\r\n",
+        "angle force\ndeg N\n0 1\n90 2\n",
+        "# angle,force\n# deg,N\n0,1\n90,2\n",
     ],
 )
 def test_names_of_columns_may_be_commented_and_have_blanks_between_blanks(text: str) -> None:
     table = read_table(text, "the file")
     assert table.heads == ("angle (deg)", "force (N)")
     assert [column.tolist() for column in table.numbers([0, 1])] == [[0.0, 90.0], [1.0, 2.0]]
+
+
+def test_one_row_and_a_negative_zero_are_reported_as_people_write_them() -> None:
+    assert read_table("a;b\n-0;2\n", "f").understood([0, 1]).startswith("1 row of a, b; first 0, 2; last 0, 2;")
+
+
+def test_a_folder_is_refused_once(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"^the file must be a file; got a folder; name a file in it$"):
+        bytes_of(tmp_path, "the file", 10)
+
+
+def test_a_line_of_texts_and_units_is_a_row() -> None:
+    table = read_table("name;size;note\nM;;\nL;4;m\n", "the file")
+    assert table.texts(0) == ["M", "L"]
+    assert table.heads == ("name", "size", "note")
 
 
 def test_cells_of_text_and_missing_ones_stay_in_other_columns() -> None:
