@@ -20,6 +20,7 @@ from .quantities import SLOW_STROKE
 from .values import Physical
 
 _MOST = 1e15
+_TOO = {"max": "more than the {} allowed", "min": "less than the {} required", "equals": "not the {} required"}
 
 
 class _Read(Physical):
@@ -94,6 +95,11 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection
                 signed=any((amount_of(of[name]) or (0.0,))[0] < 0.0 for of in options if name in of),
             )
     return tuple(found.values())
+
+
+def excluded_in_words(name: str, value: object, word: str, bound: object) -> str:
+    """Return in words that an amount is beyond a bound: "price 450 EUR, more than the 400 EUR allowed"."""
+    return f"{name.replace('_', ' ')} {value}, {_TOO[word].format(bound)}"
 
 
 def values_of(amounts: Mapping[str, Any], of: Mapping[str, Amount], where: str) -> tuple[tuple[str, float], ...]:

@@ -38,16 +38,17 @@ class Catalogue:
     """A catalogue after screening.
 
     name: of the choice. options: as a job has them, the least first; those that lose only where they may be the least
-    that serves. rows: of the table. lost: rows that are not searched, each with the one that beats it, or None for one
-    without a number that is asked for. compared: what rows are compared in. idle: headers of columns of which nothing
-    is asked for. added: headers without min, max or equals, with what they are read as.
+    that serves. rows: of the table. lost: rows that are not searched, each with the one that beats it. excluded: those
+    whose amounts the job does not allow, each with the reason. compared: what rows are compared in. idle: headers of
+    columns of which nothing is asked for. added: headers without min, max or equals, with what they are read as.
     understood: what was read of the file, in words.
     """
 
     options: list[dict[str, Any]]
     rows: int
     name: str = ""
-    lost: dict[str, str | None] = field(default_factory=dict)
+    lost: dict[str, str] = field(default_factory=dict)
+    excluded: dict[str, str] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
     idle: tuple[str, ...] = ()
     added: dict[str, str] = field(default_factory=dict)
@@ -147,7 +148,8 @@ def _catalogue(table: TableFile, own: frozenset[str], tables: Mapping[str, Any] 
         rows=len(table),
         understood=table.understood([0, *(column.place for column in used)]),
         name=name,
-        lost={cells[row][0]: None if by is None else cells[by][0] for row, by in found.lost.items()},
+        lost={cells[row][0]: cells[by][0] for row, by in found.lost.items()},
+        excluded={cells[row][0]: why for row, why in found.excluded.items()},
         compared=found.compared,
         idle=tuple(column.header for column in used if column.kept and column.name not in found.asked),
         added={column.header: column.said for column in used if column.added},

@@ -21,6 +21,8 @@ from ...model.arrays import Array, Whole
 from ...model.errors import InputError, JobError
 from ...objectives.formula.formulas import words_of
 from ...objectives.units import to_si
+from ..problem.violation import FEASIBLE
+from .amounts import excluded_in_words
 from .catalogue_columns import Column
 
 ORDER = ("price", "mass")
@@ -82,13 +84,15 @@ def _table_of(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 class Screened:
     """Rows after screening. order: those that are searched or named, by their places, the least first.
 
-    searched: those that are searched. lost: places of the others, each with one that beats it, or None for one without
-    a number that is asked for. compared: what rows are compared in. asked: the amounts among it.
+    searched: those that are searched. lost: places of others, each with one that beats it. excluded: places of those
+    that lack an amount that is asked for, or have one that the job's own constraints exclude, each with the reason in
+    words; if these exclude every row, none. compared: what rows are compared in. asked: the amounts among it.
     """
 
     order: list[int]
     searched: set[int]
-    lost: dict[int, int | None]
+    lost: dict[int, int]
+    excluded: dict[int, str]
     compared: tuple[str, ...]
     asked: frozenset[str]
 
@@ -102,7 +106,7 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
     asked, constraints = _asked(tables, columns), _table_of(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
     compared = list[str]()
-    complete = np.ones(len(rows), np.bool_)
+    blanks, beyond = dict[int, str](), dict[int, str]()
     for column in columns:
         blank = np.array([not row[column.place] for row in rows])
         wanted = asked.get(column.name) if column.kept else None
@@ -112,7 +116,8 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
         compared += [] if column.word is None and wanted is None else [column.said.partition(" (")[0]]
         if wanted is not None:
-            complete &= ~blank
+            blanks |= {row: f"no {_plain(column)}, which the job asks for" for row in np.flatnonzero(blank).tolist()}
+            beyond |= _beyond(constraints.get(column.name), column, values, rows)
             floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
             (costs if wanted.way else fixed).append(np.maximum(wanted.way * values, floor) if wanted.way else values)
         elif column.word is not None and column.monotone:
@@ -121,6 +126,8 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
             costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
         else:
             fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
+    excluded = blanks if len({**blanks, **beyond}) == len(rows) else {**beyond, **blanks}
+    complete = np.array([row not in excluded for row in range(len(rows))], np.bool_)
     if not complete.any():
         names = " and ".join(asked)
         raise JobError(f"{where} must have a row with {names}, which the job asks for; got none; fill the cells")
@@ -129,19 +136,46 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
     rank[order] = np.arange(len(rows))
     groups, tight = _groups(fixed, len(rows)), _side_by_side(costs, len(rows))
     least = np.column_stack([tight, rank])
-    searched, named, lost = list[int](), list[int](), dict[int, int | None]()
+    searched, named, lost = list[int](), list[int](), dict[int, int]()
     for group in range(int(groups.max()) + 1):
         own = order[(groups == group)[order]]
         whole = own[complete[own]]
         best = whole[_unbeaten(tight[whole])]
         searched += best.tolist()
         named += whole[_unbeaten(least[whole])].tolist()
-        for row in np.setdiff1d(own, best).tolist():
-            better = best[(tight[best] <= tight[row]).all(axis=1)] if complete[row] else best[:0]
-            lost[row] = int(better[0]) if len(better) else None
+        for row in np.setdiff1d(whole, best).tolist():
+            lost[row] = int(best[(tight[best] <= tight[row]).all(axis=1)][0])
     return Screened(
-        sorted({*searched, *named}, key=lambda row: rank[row]), {*searched}, lost, tuple(compared), frozenset(asked)
+        order=sorted({*searched, *named}, key=lambda row: rank[row]),
+        searched={*searched},
+        lost=lost,
+        excluded=dict(sorted(excluded.items())),
+        compared=tuple(compared),
+        asked=frozenset(asked),
     )
+
+
+def _plain(column: Column) -> str:
+    return column.name.replace("_", " ")
+
+
+def _beyond(bounds: object, column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
+    """Return which rows have an amount beyond the job's own constraints on it, each with the reason in words.
+
+    values: of the amount, SI.
+    """
+    found: dict[int, str] = {}
+    for word, bound in bounds.items() if isinstance(bounds, Mapping) else ():
+        limit = _si(bound, column)
+        if limit is None:
+            continue
+        room = FEASIBLE * abs(limit)
+        outside = (values > limit + room) & (word != "min") | (values < limit - room) & (word != "max")
+        for row in np.flatnonzero(outside).tolist():
+            if rows[row][column.place]:
+                cell = f"{rows[row][column.place]} {column.unit}".rstrip()
+                found[row] = excluded_in_words(column.name, cell, word, bound)
+    return found
 
 
 def _held(bounds: object, column: Column, side: float) -> float:

@@ -69,14 +69,14 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
 
 def _of_catalogue(table: Catalogue) -> Iterator[str]:
     """Yield which rows of a catalogue are not searched and why, and columns that may mean something else."""
-    few = [f"{row} to {better}" for row, better in table.lost.items() if better is not None]
-    blank = [row for row, better in table.lost.items() if better is None]
-    left = table.rows - len(table.lost)
-    said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if table.lost else []
+    few = [f"{row} to {better}" for row, better in table.lost.items()]
+    left = table.rows - len(table.lost) - len(table.excluded)
+    told = bool(table.lost or table.excluded)
+    said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if told else []
+    said += [f"left out: {_some([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
     if few:
-        said += [f"the others lose in {_all(table.compared)}: {_some(few)}"]
+        said += [f"{'others' if table.excluded else 'the others'} lose in {_all(table.compared)}: {_some(few)}"]
         said += ["each design names the least row that also serves"]
-    said += [f"without a number that is asked for: {_some(blank)}"] if blank else []
     said += [f"not asked for, and kept with each design: {_all(table.idle)}"] if table.idle else []
     if said:
         yield f"{table.name}: {'; '.join(said)}"

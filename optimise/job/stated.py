@@ -19,7 +19,7 @@ from ..problem.impossible import no_option
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
 from ..problem.violation import FEASIBLE, violated_by
-from .amounts import amounts_of
+from .amounts import amounts_of, excluded_in_words
 from .contradictions import require_consistent
 from .messages import key_of
 from .model import Job
@@ -159,7 +159,7 @@ def _possible(
 def _missing(variant: Variant, asked: Iterable[Quantity]) -> str | None:
     """Return in words which amount that is asked for a variant does not have; None if there is no such."""
     had = dict(variant.amounts)
-    return next((f"{of.title} is not given" for of in asked if of.name not in had), None)
+    return next((f"no {of.title}, which the job asks for" for of in asked if of.name not in had), None)
 
 
 def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:
@@ -169,9 +169,13 @@ def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: M
         own = given.get(name)
         if own is not None and violated_by(own, np.array([value]))[0] > FEASIBLE:
             face = known[name].unit
-            return f"{known[name].title} {value * face.factor:.6g} {face.symbol}".rstrip() + (
-                f", where {_asked((own,), known[name])} is asked"
+            word, bound = next(
+                (word, bound)
+                for word, bound in own.sides
+                if (value < bound and word != "max") or (value > bound and word != "min")
             )
+            texts = [f"{number * face.factor:.6g} {face.symbol}".rstrip() for number in (value, bound)]
+            return excluded_in_words(known[name].title, texts[0], word, texts[1])
     for limit in variant.limits:
         name = limit.quantity
         both = (given[name], limit) if name in given else (limit,)

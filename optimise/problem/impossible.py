@@ -20,8 +20,8 @@ def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
     """Return the error for choices whose options all are left out. left_out: labels and reasons."""
     label, why = left_out[0]
     return InfeasibleError(
-        f"choice: some option must leave something of [constraints]; got none: of {label} {why}; leave out one of "
-        "the two"
+        f"choice: some option must leave something of [constraints]; got none: {label} has {why}; loosen the "
+        "constraint, or add another option"
     )
 
 

@@ -18,7 +18,7 @@ from ...objectives.counted import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import varying_column
-from ...optimise.job.options import idle_options
+from ...optimise.job.options import idle_options, impossible_options
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
@@ -267,12 +267,13 @@ def _varying(item: Varying) -> str:
 
 
 def _choices(problem: Problem) -> list[str]:
-    """Return the options of each choice, and the number of their combinations."""
+    """Return the options of each choice that a design can have, and the number of their combinations."""
     lines = []
+    idle = {label for label, _ in impossible_options(problem)}
+    possible = [variant.labels for variant in problem.variants if ", ".join(variant.labels) not in idle]
     for place, name in enumerate(problem.choices):
-        labels = dict.fromkeys(variant.labels[place] for variant in problem.variants)
-        lines.append(f"{name}: {', '.join(labels)}")
-    count = len(problem.variants)
+        lines.append(f"{name}: {', '.join(dict.fromkeys(labels[place] for labels in possible))}")
+    count = len(possible)
     if count > 1:
         lines.append(f"{count} combinations of choices, all tried")
     return lines

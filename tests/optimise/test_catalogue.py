@@ -197,8 +197,8 @@ def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str,
         ),
         (
             "name,stroke max (mm)\nA,70",
-            "choice: some option must leave something of [constraints]; got none: of A stroke equals 80 mm and max "
-            "70 mm, which exclude each other; leave out",
+            "choice: some option must leave something of [constraints]; got none: A has stroke equals 80 mm and max "
+            "70 mm, which exclude each other; loosen",
         ),
     ],
 )

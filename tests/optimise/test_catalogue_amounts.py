@@ -18,6 +18,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
 from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.options import idle_options
 from tests.optimise.catalogues import front_of
 
 SIX = """name,peak_torque max (N m),price (EUR),maker
@@ -82,7 +83,7 @@ def test_a_price_is_an_objective_a_constraint_and_part_of_a_formula() -> None:
     assert named(cheap, "price_EUR") == [{"GM 30": 280.0, "GM 45": 340.0}[m] for m in named(cheap, "choice_gearmotor")]
     bounded = sc.problem(pusher(constraints={"price": {"max": "400 EUR"}}))
     assert {variant.labels for variant in bounded.variants} == {("GM 45",)}
-    assert dict(bounded.left_out)["GM 150"] == "price 830 EUR, where max 400 EUR is asked"
+    assert bounded.left_out == ()
     front = sc.solve(bounded)
     assert set(named(front, "slack_price_EUR")) == {60.0}
     formula = "price / 2 + 0 * price"
@@ -109,7 +110,10 @@ def test_an_amount_is_no_direction_in_which_a_design_counts_as_stationary() -> N
     ("more", "words"),
     [
         ({"price": {"max": "400 USD"}}, 'must be an amount in EUR; got "400 USD"'),
-        ({"price": {"max": "200 EUR"}}, "of GM 30 price 280 EUR, where max 200 EUR is asked; leave out one"),
+        (
+            {"price": {"max": "200 EUR"}},
+            "got none: GM 30 has price 280 EUR, more than the 200 EUR allowed; loosen the constraint",
+        ),
         ({"prize": {"max": 3}}, "did you mean price"),
         ({"price + crank": {"max": 3}}, "adds EUR and mm; only values of one kind go together"),
     ],
@@ -127,10 +131,23 @@ def test_notes_say_which_rows_lose_in_what_and_what_limits_nothing() -> None:
     assert "gearmotor: not asked for, and kept with each design: maker" in text
     table = "name,Peak torque (N m),price (EUR)\nA,40,\nB,40,3\n"
     text = "\n".join(notes_of(pusher(table, objectives={"price": "minimise"})))
-    assert "of 2 rows 1 is searched; without a number that is asked for: A" in text
+    assert "of 2 rows 1 is searched; left out: A (no price, which the job asks for)" in text
     assert "the column Peak torque (N m) is read as peak_torque max (N m)" in text
     with pytest.raises(JobError, match="must have a row with price, which the job asks for; got none"):
         parse_job(pusher("name,peak_torque max (N m),price (EUR)\nA,40,\n" + "B,,\n", objectives={"price": "minimise"}))
+
+
+def test_rows_beyond_the_jobs_own_limit_on_an_amount_are_left_out_in_a_note_and_counted_once() -> None:
+    for bound in ("400 EUR", "430 EUR"):
+        found = parse_job(tables := pusher(constraints={"price": {"max": bound}}))
+        (note,) = [line for line in notes_of(tables) if line.startswith("gearmotor: of")]
+        (label,) = {variant.labels[0] for variant in found.variants}
+        dear = ["GM 150", "GM 110", "GM 80", *(["GM 60"] if bound == "400 EUR" else [])]
+        assert note.startswith("gearmotor: of 6 rows 1 is searched; left out: ")
+        assert all(f"{name} (price " in note for name in dear)
+        assert note.count(f"more than the {bound} allowed") == len(dear)
+        assert label == ("GM 45" if bound == "400 EUR" else "GM 60")
+        assert not idle_options(found)
 
 
 def test_rows_that_the_jobs_own_limit_makes_equal_leave_the_least() -> None:
