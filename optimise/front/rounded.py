@@ -44,9 +44,9 @@ class Miss:
 class Rounded:
     """Designs of round numbers near a design of a front, the best first.
 
-    Those that meet every requirement within what is allowed, the least loss first, none dominated by another; where
-    `met` is False the nearest: that of the least relative violation beyond what is allowed first, then those that miss
-    more but lose clearly less. See `rounding.rounded`.
+    Those that meet every requirement within what is allowed, the least loss first, none dominated by another, then
+    those that miss little but lose clearly less. Where `met` is False the nearest: that of the least relative violation
+    beyond what is allowed first, then those that miss more but lose clearly less. See `rounding.rounded`.
 
     problem: that they answer, its choices in place. given: (3 + v,), the design. steps: of the numbers that were
     rounded, SI. allowed: how far requirements may be missed, SI, by quantity. dimensions: (n, 3 + v). before: (m,), the
@@ -96,7 +96,10 @@ class Rounded:
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
             within = f" within {self._allowed_in_words(system)}" if self.allowed else ""
-            return f"{self.kept} of {near} {keep} every requirement{within}"
+            missing = sum(bool(self._beyond(row)) for row in range(len(self)))
+            lose = "others lose clearly less and miss" if missing > 1 else "another one loses clearly less and misses"
+            more = f"; {lose} little" if missing else ""
+            return f"{self.kept} of {near} {keep} every requirement{within}{more}"
         none = f"none of {near}"
         if not len(self):
             return f"{none} has a value of everything that is required; give smaller steps"
@@ -111,11 +114,9 @@ class Rounded:
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
     def tightest(self, row: int) -> str | None:
-        """Return the quantity of the inequality that a design is nearest to break, relative; None without one."""
-        rest = [
-            (self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints) if not item.equality
-        ]
-        return max(rest)[1] if rest else None
+        """Return the quantity that a design is nearest to break, relative, an equality first; None without one."""
+        rest = [(item.equality, self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
+        return max(rest)[2] if rest else None
 
     def misses(self, row: int) -> list[Miss]:
         """Return by how much a design misses each requirement that it does not meet, the worst first, relative.

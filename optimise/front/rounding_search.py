@@ -33,6 +33,8 @@ REACHES = (16, 32)
 _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
 _NEAREST = 8192  # designs whose cycle is computed at most, for those that miss more but lose less
 _BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; of those whose cycle is computed
+_LITTLE = 0.01  # of a bound: what may be missed by designs that are listed after those that meet all
+_WORTH = 0.01  # of a range: a loss that is worth to look for them
 _CLEARLY = 0.75  # of the loss before: what is worth to miss more for
 _TIE = 9  # decimals of a share of a range: nearer together is rounding
 
@@ -91,9 +93,17 @@ class RoundingSearch:
                 break
             misses[kept] = np.inf  # without a value of an objective
         self.judged, self.kept = len(designs), int(had.sum())
-        if had.any():
-            return self._ranked(designs[kept[had]], values[had])[:count]
-        return (yield from self._nearest(designs, misses, rows, count))
+        if not had.any():
+            return (yield from self._nearest(designs, misses, rows, count))
+        best = self._ranked(designs[kept[had]], values[had])[:count]
+        loss = float(self.losses(self.values(best[:1])).max())
+        if len(best) == count or loss <= _WORTH:
+            return best
+        misses[kept] = np.inf
+        near = misses <= _LITTLE
+        place = np.flatnonzero(np.isin(np.flatnonzero(near), rows))
+        missing = yield from self._nearest(designs[near], misses[near], place, count - len(best), _CLEARLY * loss)
+        return np.concatenate([best, missing])
 
     def values(self, designs: Array) -> Array:
         """Return the objectives (n, m) of designs, SI."""
@@ -196,8 +206,8 @@ class RoundingSearch:
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
-    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int) -> Steps[Array]:
-        """Return the nearest designs, see `rounding.rounding`.
+    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int, most: float = math.inf) -> Steps[Array]:
+        """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `most`.
 
         misses: (n,), exact in the rows `exact`; elsewhere what closed forms give, which is never more. So designs are
         judged in that order, and one is placed once all that may miss less or as much are judged.
@@ -207,7 +217,8 @@ class RoundingSearch:
         least = yield from self._in_blocks("screening combinations", designs, self._least_losses, _BLOCK)
         losses, found = np.full(len(designs), np.nan), np.zeros(0, dtype=np.int64)
         ahead, judged = np.argsort(misses, kind="stable"), np.zeros(0, dtype=np.int64)
-        while len(ahead) and not (len(found) and len(judged) >= _NEAREST):
+        ahead = ahead[least[ahead] <= most]
+        while len(ahead) and not ((len(found) or math.isfinite(most)) and len(judged) >= _NEAREST):
             yield Stage("looking for the nearest", len(judged), max(_NEAREST, len(judged)))
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
@@ -217,6 +228,7 @@ class RoundingSearch:
             placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
             fresh = placed[np.isnan(losses[placed])]
             losses[fresh] = self.losses(self.values(designs[fresh])).max(axis=1)
+            placed = placed[(losses[placed] <= most) & (misses[placed] <= (_LITTLE if math.isfinite(most) else np.inf))]
             found = self._staircase(designs, placed, misses[placed], losses[placed])[:count]
             if len(found) == count or (len(found) and losses[found[-1]] <= 0.0):
                 break

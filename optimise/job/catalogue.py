@@ -194,8 +194,15 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
 
 
 def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
-    """Refuse a column that sets a number which the job does not give."""
+    """Refuse a column that sets a number which the job does not give, or seems to be meant to set one."""
+    machine = tables.get("mechanism")
     for column in columns:
+        if column.kept and isinstance(machine, Mapping) and isinstance(machine.get(column.name), str | int | float):
+            behind = f" ({column.unit})" if column.unit else ""
+            raise JobError(
+                f"{name}, column {shown(column.header)}: it would be kept with designs and change nothing; did you "
+                f"mean mechanism.{column.name}{behind}? rename it, or let it begin with # to pass it over"
+            )
         if column.word is None and not column.kept and column.name not in DIMENSIONS:
             try:
                 with_number(tables, column.name, 0.0)

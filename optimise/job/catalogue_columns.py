@@ -19,7 +19,7 @@ from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.own.quantity import LONGEST_NAME, own_quantities
 from ...objectives.registry import FACTS, QUANTITIES
-from ...objectives.units import shown, to_si
+from ...objectives.units import closest, shown, to_si
 
 _UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
 _COLUMN = re.compile(rf"(?P<name>[^#]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")
@@ -86,8 +86,12 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
             continue
         where = f"{name}, column {shown(text)}"
         column = _column(place, text, where, own)
-        if any((column.name, column.word) == (other.name, other.word) for other in found):
-            raise JobError(f"{where}: columns must differ; got it twice; leave out one")
+        same = next((of for of in found if (of.name, of.word) == (column.name, column.word)), None)
+        if same is not None:
+            raise JobError(
+                f"{where}: columns must differ; got it and {shown(same.header)}, which are both read as "
+                f"{column.said.partition(' (')[0].strip()}; leave out or rename one"
+            )
         found.append(column)
     if not found:
         raise JobError(f"{name} must have a column beside the name; got none; add one")
@@ -103,7 +107,13 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
         try:
             name, kind = _limited(name if name in own else _quantities().get(identifier(name), name), own)
         except InputError as error:
-            raise JobError(f"{where}: {error}") from None
+            key = identifier(name)
+            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *own)) is not None:
+                raise JobError(f"{where}: {error}") from None
+            raise JobError(
+                f"{where}: a limit is one on a quantity; got {shown(name)}, which is none; name the column "
+                f'"{name}{f" ({unit})" if unit else ""}" and bound {key} in [constraints]'
+            ) from None
         if kind is not None:
             _require_unit(unit, kind, where)
         return Column(place, text, name, word, unit, kind)
@@ -155,7 +165,8 @@ def _require_kept(text: str, name: str, unit: str, where: str, own: frozenset[st
     key = identifier(name)
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
         raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to pass it over")
-    near = difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
+    peak = f"peak_{identifier(misplaced['after'] or '')}" if misplaced is not None else ""
+    near = [peak] if peak in _quantities() else difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
             f"{where}: must be spelled as a quantity is, or have a name that none resembles; did you mean "

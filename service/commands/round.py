@@ -134,6 +134,8 @@ def _requirements(row: dict[str, Any], found: Rounded, units: System) -> str:
     if row["tightest"] is None:
         return "keeps every requirement"
     of = found.problem.quantity(row["tightest"])
+    if any(item.equality for item in found.constraints if item.quantity == row["tightest"]):
+        return f"tightest is {of.title}, which is required exactly"
     key = key_in(f"slack_{of.field}", units)[0]
     return f"tightest is {of.title}, slack {_told(key, row[key], bare=True)}"
 

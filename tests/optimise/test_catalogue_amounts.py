@@ -137,6 +137,15 @@ def test_notes_say_which_rows_lose_in_what_and_what_limits_nothing() -> None:
         parse_job(pusher("name,peak_torque max (N m),price (EUR)\nA,40,\n" + "B,,\n", objectives={"price": "minimise"}))
 
 
+def test_a_column_called_as_a_number_of_the_mechanism_is_asked_about() -> None:
+    with pytest.raises(
+        JobError, match=re.escape('"speed (rpm)": it would be kept with designs and change nothing; did')
+    ):
+        parse_job(pusher("name,peak_torque max (N m),speed (rpm)\nA,40,30\n"))
+    found = parse_job(pusher("name,peak_torque max (N m),mechanism.speed (rpm)\nA,40,30\n"))
+    assert found.variants[0].mechanism.speed == pytest.approx(np.pi)
+
+
 def test_rows_beyond_the_jobs_own_limit_on_an_amount_are_left_out_in_a_note_and_counted_once() -> None:
     for bound in ("400 EUR", "430 EUR"):
         found = parse_job(tables := pusher(constraints={"price": {"max": bound}}))

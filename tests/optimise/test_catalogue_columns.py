@@ -108,7 +108,16 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("1. price (EUR)", "got neither; rename it, or let it begin with # to pass it over"),
         ("peak torqe (N m)", "did you mean peak_torque? rename it"),
         ("variables.crank (mm)", "a number of the job has its own path; got variables.crank; write crank (mm)"),
-        ("crank+rod max (mm),crank + rod max (cm)", "columns must differ; got it twice"),
+        (
+            "crank+rod max (mm),crank + rod max (cm)",
+            'got it and "crank+rod max (mm)", which are both read as crank + rod max; leave out or rename one',
+        ),
+        ("price (EUR),price (USD)", 'got it and "price (EUR)", which are both read as price; leave out or rename one'),
+        ("max torque (N m)", "did you mean peak_torque? rename it"),
+        (
+            "price max (EUR)",
+            'got "price", which is none; name the column "price (EUR)" and bound price in [constraints]',
+        ),
     ],
 )
 def test_what_is_wrong_with_a_header_is_told_with_its_column_and_remedy(header: str, words: str) -> None:
