@@ -14,7 +14,7 @@ from typing import Any
 from ...model.errors import JobError
 from ...objectives.units import shown
 from .messages import key_of
-from .toml_errors import in_words
+from .toml_errors import in_words, key_at
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes half of it, of ten characters each."""
@@ -133,7 +133,9 @@ def _unquoted(text: str, error: str) -> str | None:
     for value in (match[1].strip() for match in ([whole] if whole else _PART.finditer(line))):
         if len(value) <= _LONGEST and value not in ("true", "false", "null", "nan", "inf"):
             where = f"line {place[1]}" if place else "the last line"
-            return f'words and values with units stand in quotes; got {value} in {where}; write "{value}"'
+            key = key_at(text, int(place[1]) if place else len(lines))
+            what = "a value with a unit" if value[0] in "+-.0123456789" else "text"
+            return f'{key}{": " if key else ""}{what} must be in quotes; got {value} in {where}; write "{value}"'
     return None
 
 

@@ -134,7 +134,7 @@ def _elsewhere(key: str, schema: Schema) -> str:
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
     """Return the keys that tell those kinds of a table that have a key."""
-    having = [node for node in _at(schema, path) if key in node.get("properties", {})]
+    having = [node for node in nodes_at(schema, path) if key in node.get("properties", {})]
     told = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
     return list(dict.fromkeys(filter(None, told)))
 
@@ -155,7 +155,7 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
         said = re.findall(r"'([^']*)'", str(context.get("expected", "")))
-        words = said or list(dict.fromkeys(_words(_at(schema, path))))
+        words = said or list(dict.fromkeys(_words(nodes_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
         meant = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {got}{meant}"
@@ -190,7 +190,7 @@ def _any_of(words: Sequence[str]) -> str:
 
 def _example(schema: Schema, path: Sequence[Any]) -> str:
     """Return an example of the key, written as in a job file; "" if the schema has none."""
-    for node in _at(schema, path):
+    for node in nodes_at(schema, path):
         if node.get("examples"):
             key = next((str(part) for part in reversed(keys_of(path)) if isinstance(part, str)), "")
             return f"{key} = {toml(node['examples'][0])}"
@@ -209,7 +209,7 @@ def toml(value: object) -> str:
 def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
     """Return the keys that are possible in a table."""
     found: dict[str, Any] = {}
-    for node in _at(schema, path):
+    for node in nodes_at(schema, path):
         found |= node.get("properties", {})
     return found
 
@@ -221,7 +221,7 @@ def _words(nodes: Sequence[Schema]) -> Iterator[str]:
             yield str(node["const"])
 
 
-def _at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
+def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
     """Return every alternative that the schema has at a location; of a tag, those of that kind, which have its key."""
     nodes = _alternatives(schema, schema)
     for part in path:

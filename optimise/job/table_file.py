@@ -39,7 +39,8 @@ _MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-_BINARY = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"%PDF")
+_BINARY = ("PK\x03\x04", "ÐÏ\x11à", "%PDF")
+"""How spreadsheets and documents begin, as Latin-1 as Windows has it."""
 _MISSING = ("", "nan", "na", "n/a", "#n/a", "#nv", "null", "-")
 _EXPONENT = r"(?:[eE][+-]?\d{1,3})?"
 _BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a cell in quotes
@@ -70,8 +71,8 @@ def bytes_of(path: Path, name: str, most: int) -> bytes:
 
 def text_of(content: bytes, name: str) -> str:
     """Return a file's text: in the encoding that its mark says, else UTF-8, else Latin-1 as Windows has it."""
-    if content.startswith(_BINARY):
-        raise InputError(f"{name} must be text; got a spreadsheet or another binary file; save the sheet as CSV")
+    if content[:4].decode("cp1252", "replace") in _BINARY:
+        raise _binary(name)
     for mark, encoding in _MARKS:
         if content.startswith(mark):
             return _decoded(content.removeprefix(mark), encoding, name)
@@ -82,6 +83,13 @@ def text_of(content: bytes, name: str) -> str:
         return content.decode()
     except UnicodeDecodeError:
         return content.decode("cp1252", "replace")
+
+
+def _binary(name: str) -> InputError:
+    return InputError(
+        f"{name} must be a CSV text file; got a spreadsheet or other binary file; save the sheet as CSV and use that "
+        "file"
+    )
 
 
 def _decoded(content: bytes, encoding: str, name: str) -> str:
@@ -275,8 +283,8 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
     name: of the file, for messages. ragged: whether rows may end before their last cells.
     """
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
-    if "\0" in text:
-        raise InputError(f"{name} must be text; got a byte 0 in it; save it as CSV in UTF-8")
+    if text[:4] in _BINARY or "\0" in text:
+        raise _binary(name)
     try:
         return _read(text, name, ragged=ragged)
     except csv.Error as error:

@@ -167,7 +167,7 @@ ROW = "A,10,5,1"
         ("name,# price\nA,1", "must have a column beside the name"),
         ("motor,stroke max (mm)\nA,1", 'must begin with the column "name"; got "motor"'),
         ('name,stroke max (mm)\n"A,1', "must be a table in CSV; got unexpected end of data in row 2"),
-        ("name,stroke max (mm)\nA\0,1", "must be text; got a byte 0"),
+        ("name,stroke max (mm)\nA\0,1", "must be a CSV text file; got a spreadsheet or other binary file"),
         (
             "name,mechanism.slider.mas (kg)\nA,1",
             'column "mechanism.slider.mas (kg)": must name a number that the job gives; got mechanism.slider.mas; did ',

@@ -202,7 +202,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         SPEED,
         SPEED + "\n" + SPEED,
-        [f"mechanism.speed: each key may come once; got it again in line {LINE + 1}; remove"],
+        [f"mechanism.speed: key given twice, in lines {LINE} and {LINE + 1}; remove one"],
     ),
     (SPEED, SPEED + "\nx = " + "[" * 20 + "]" * 20, ["nest at most 8 deep", "flatten"]),
     (SPEED, SPEED + "\nx = " + "[" * 5000 + "]" * 5000, ["nest at most 8 deep", "flatten"]),

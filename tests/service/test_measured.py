@@ -135,9 +135,9 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("slider_position_mm", "slider_position_kg"), "got 'slider_position_kg', a mass"),
         (PLAIN.replace("slider_position_mm", "pressure_bar"), "no column is a curve with its unit"),
         (PLAIN.replace("crank_angle_deg", "angle"), "has the column crank_angle_deg, or time_s"),
-        (PLAIN + "\0", "must be text; got a byte 0"),
+        (PLAIN + "\0", "must be a CSV text file; got a spreadsheet or other binary file"),
         ("a," * 2000 + "\n", "must have at most 1000 columns; got 2001"),
-        ("%PDF-1.4 binary", "must begin with a line that names its columns"),
+        ("%PDF-1.4 binary", "must be a CSV text file"),
         ('{"crank_angle_deg": [1]}', "must have rows below"),
     ],
 )
@@ -178,7 +178,7 @@ def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monke
         (tmp_path, "must be a file; got a folder"),
         (large, "must have at most 0.001 MB; got more"),
         (tmp_path / "none.csv", "got none of that name"),
-        (sheet, "must be text; got a spreadsheet or another binary file; save"),
+        (sheet, "must be a CSV text file; got a spreadsheet or other binary file; save"),
     ):
         done = command("analyse", *SIEVE, "--measured", file)
         assert (done.exit_code, done.stdout) == (2, "")
