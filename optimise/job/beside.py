@@ -46,8 +46,10 @@ def unread(file: str, instead: str) -> InputError:
     )
 
 
-def require_few_points(count: int, name: str) -> None:
-    """Raise `InputError` for more points than a job takes. name: of the file, for messages."""
+def require_point_count(count: int, name: str, least: int) -> None:
+    """Raise `InputError` for more points than a job takes, or fewer than `least`. name: of the file, for messages."""
+    if count < least:
+        raise InputError(f"{name} must have {least} different points at least; got {count}; add rows")
     if count > MOST_POINTS:
         raise InputError(
             f"{name} must have at most {MOST_POINTS:,} points that count; got {count:,}; smooth the curve, or keep one "

@@ -215,8 +215,14 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
 def opened(curve: Curve) -> Curve:
     """Return a curve over one turn without a last point that repeats the first one.
 
-    Raises `InputError` if the two differ by more than a thousandth of the curve's range.
+    Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two at one place.
     """
+    twice = np.flatnonzero(np.diff(curve.at) == 0.0)
+    if len(twice):
+        at = f"{curve.at[twice[0]]:g} {curve.over.unit}"
+        raise InputError(
+            f"{curve.name}: {shown(curve.over.text)} must increase; got {at} twice; leave out one of the two"
+        )
     curve, _ = of_cycle(curve, 1)
     if curve.span < 1.0:
         return curve

@@ -11,7 +11,7 @@ from ...model.machine.loads.registry import kinds
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import shown
 from . import values
-from .beside import SOURCE, Files, require_few_points, table_beside
+from .beside import SOURCE, Files, require_point_count, table_beside
 from .curve_file import curve_in, of_cycle, over_angle, thinned
 from .messages import key_of
 from .stated_speed import stated_speed
@@ -63,7 +63,7 @@ def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any
         curve, turns = of_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
         rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
     curve = thinned(curve)
-    require_few_points(len(curve.at), curve.name)
+    require_point_count(len(curve.at), curve.name, 2)
     places, sizes = curve.texts()
     return rest | {at: places, of: sizes, SOURCE: curve.source(file)}
 

@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import per_si
-from .beside import MOST_POINTS, SOURCE, Files, require_few_points, table_beside, unread
+from .beside import MOST_POINTS, SOURCE, Files, require_point_count, table_beside, unread
 from .curve_file import Curve, curve_in, opened
 from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
 
@@ -87,7 +87,7 @@ def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
         return job
     curve = curve_in(table_beside(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
     curve = opened(_over_turn(curve) if curve.over.kind is TIME else curve)
-    require_few_points(len(curve.at), curve.name)
+    require_point_count(len(curve.at), curve.name, 4)
     angles, speeds = curve.texts()
     profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.source(file)}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}

@@ -11,7 +11,7 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
-from .beside import MOST_POINTS, SOURCE, Files, require_few_points, table_beside, unread
+from .beside import MOST_POINTS, SOURCE, Files, require_point_count, table_beside, unread
 from .curve_file import curve_in, opened, over_angle
 from .loads import increasing
 from .stated_speed import stated_speed
@@ -80,7 +80,7 @@ def with_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
         return job
     curve = curve_in(table_beside(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
     curve = opened(over_angle(curve, stated_speed(data, curve.name)) if curve.over.kind is TIME else curve)
-    require_few_points(len(curve.at), curve.name)
+    require_point_count(len(curve.at), curve.name, 3)
     angles, positions = curve.texts()
     rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
     points = {"crank_angles": angles, "positions": positions, SOURCE: curve.source(file)}

@@ -260,6 +260,22 @@ def test_a_file_and_a_force_in_one_load_are_refused_before_the_file_is_read() ->
         with_files(job({"file": "a.csv", "force": "3 N"}), {"a.csv": "angle_deg,force_N\n0,1\n9,2"})
 
 
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,60\n90,61", r"must have [34] different points at least; got 2; add rows"),
+        ("0,60\n90,61\n360,60", r"must have [34] different points at least; got 2; add rows"),
+        ("0,60\n90,61\n90,62\n180,60", '"angle_deg" must increase; got 90 deg twice; leave out one of the two'),
+    ],
+)
+def test_refusals_of_a_profile_or_a_motion_name_its_file(rows: str, words: str) -> None:
+    motion = job({}, target_motion={"file": "a.csv"})
+    profile = job({}, mechanism={"speed": "60 rpm", "speed_profile": {"file": "a.csv"}})
+    for data, head in ((motion, "position_mm"), (profile, "speed_rpm")):
+        with pytest.raises(JobError, match=rf'file: "a\.csv":? {words}'):
+            with_files(data, {"a.csv": f"angle_deg,{head}\n{rows}\n"})
+
+
 def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
     (tmp_path / "trace.csv").write_bytes("Winkel [°];Kraft [N]\n0;-2\n90;1.000,5\n".encode("latin-1"))
     (tmp_path / "job.toml").write_text(
