@@ -113,7 +113,8 @@ def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest
     assert profile.ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
 
 
-@pytest.mark.parametrize("lines", [2001, 2500, 5000])
+@pytest.mark.slow
+@pytest.mark.parametrize("lines", [10_002, 25_000])
 def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_as_told(
     lines: int, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
@@ -121,7 +122,7 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
     job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
     times = np.linspace(0.0, 1.0, lines)
     _recorded(tmp_path, times, np.full(lines, 60.0), digits=9)
-    said = r"file: \"speed\.csv\" must have at most 1,000 points in a turn; got [\d,]+; thin it out: keep one line in"
+    said = r"file: \"speed\.csv\" must have at most 10,000 points that count; got [\d,]+; .* keep one line in"
     with pytest.raises(InputError, match=said) as told:
         load_job(job)
     assert "crank_angles" not in str(told.value)
@@ -131,7 +132,7 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
     _recorded(tmp_path, times[kept], np.full(len(kept), 60.0), digits=9)
     profile = load_job(job).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
-    assert 600 < len(profile.angles) <= 1000
+    assert 5000 <= len(profile.angles) <= 10_000
 
 
 def test_one_harmonic_is_told_as_one() -> None:
@@ -160,7 +161,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
     [
         ("{ cosines = [1.2] }", "got -20 % of the mean at 180 deg"),
         ("{ }", "harmonics or of points; got neither"),
-        ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" cannot be read"),
+        ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" must be a file; got none of that name"),
         (
             '{ crank_angles = [0, 1, 2, 3], speeds = ["9 rpm", "-8 rpm", "9 rpm", "9 rpm"] }',
             "must not be zero or change its sign, .*; got -8 rpm at 57.2958 deg",
@@ -169,7 +170,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
             '{ crank_angles = ["0 deg", 1, 2, "360 deg"], speeds = ["9 rpm", "8 rpm", "9 rpm", "7 rpm"] }',
             "a turn later and differs by -2 rpm",
         ),
-        ('{ file = "gap.csv" }', "must have two finite numbers per line; got '0.01,nan' in line 3"),
+        ('{ file = "gap.csv" }', "row 3, column .speed_rpm.: must be a number; got .nan.; write the number alone"),
         ('{ file = "short.csv" }', "must cover at least one turn; got 54 deg"),
         ('{ file = "rising.csv" }', r"must repeat after a turn, to 2 %; got 900 rpm at its start and 1024\.7"),
         (
