@@ -54,9 +54,12 @@ function row(form, one, place, all) {
   const text = h("textarea", { id: idOf([...path, "table"], "c"), rows: 5, class: "points", spellcheck: "false", placeholder: EXAMPLE });
   text.value = String(at(one, ["table"]) ?? "");
   const made = field(form, [...path, "table"], names.length ? "a table in place of these" : "table", [text], WHY, { wide: true });
+  const begun = text.value; // as browsers have its ends of lines
   text.addEventListener("input", () => {
+    const now = form.at(path);
+    if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: it still is the table of its file
     names.length = 0;
-    const { option: _, rows: __, file: ___, ...rest } = /** @type {Record<string, unknown>} */ (isTable(form.at(path)) ? form.at(path) : {});
+    const { option: _, rows: __, file: ___, ...rest } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
     const given = { ...rest, table: text.value };
     form.put(path, given);
     say(given);
