@@ -74,7 +74,7 @@ def test_the_objectives_at_a_glance_are_those_of_the_what_if_and_say_so(opened: 
     expect(tile).to_have_attribute("data-value", changed)
     rod.fill("-5")
     expect(page.locator(".what-if [role=alert]")).to_contain_text("needs a length above 0")
-    expect(page.locator(".objectives .whose")).to_have_count(0)
+    expect(page.locator(".objectives .whose")).to_have_text("Design 1 itself: the change is not possible")
     expect(tile).to_have_attribute("data-value", str(before))
     rod.fill("230")
     expect(page.locator(".objectives .whose")).to_be_visible()

@@ -247,7 +247,9 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     table = page.get_by_role("table", name="Objectives before and after the change")
     expect(table).to_be_visible()
-    expect(page.locator(".verdict")).to_contain_text("Misses a requirement: stroke")
+    missed = re.compile(r"Misses a requirement: stroke \S+\xa0mm; must be exactly \S+\xa0mm\.")
+    expect(page.locator(".verdict")).to_contain_text(missed)
+    expect(page.locator(".objectives .panel")).to_contain_text(["misses a requirement"] * len(solved.result.objectives))
     expect(page.locator(".front-map .changed")).to_be_visible()
     lengths = {name: row[name] for name in ("rod_mm", "offset_mm")} | {"crank_mm": float(row["crank_mm"] or 0) * 0.98}
     answer = httpx.post(f"{service}{solved.path}/designs/3/what-if", json=lengths).json()["design"]
@@ -259,12 +261,20 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
     assert "crank_mm" not in page.url
 
 
-def test_what_if_says_why_a_linkage_does_not_turn_and_keeps_the_last_one(opened: Opened) -> None:
+def test_what_if_says_why_a_linkage_does_not_turn_and_shows_the_design_itself(opened: Opened) -> None:
     page = opened(complaints=("422",))
     release(page)
     ranges = page.get_by_label("Rod", exact=True)
+    name = page.locator(".objectives .whose")
+    said = page.locator(".take-away [role=status]")
+    ranges.fill(f"{1.01 * float(ranges.input_value()):.6g}")
+    expect(name).to_have_text("What if: design 3, changed")
+    expect(said).to_have_text("of design 3, changed")
     ranges.fill("60")
     expect(page.get_by_role("alert")).to_contain_text("Rod must exceed crank + |offset| for full rotation")
+    expect(name).to_have_text("Design 3 itself: the change is not possible")
+    expect(said).to_be_empty()
+    expect(page.get_by_role("figure", name="What if")).to_have_count(0)
     expect(page.locator(".mechanism.faded .link.crank")).to_be_visible()
     page.get_by_role("button", name="Reset").click()
     expect(page.get_by_role("alert")).to_have_count(0)

@@ -73,6 +73,7 @@ def test_material_pins_and_sections_are_given_held_or_left_to_the_search(form: O
     ready(page)
     assert "sections" not in text_of(page)["variables"]
     page.get_by_label("mass of the rod", exact=True).select_option("mass")
-    expect(page.get_by_text("Stresses and safety need rod as a bar of rectangular section, above.")).to_be_visible()
+    needed = "For stresses and safety, give the rod a rectangular section (width and depth) in the fields above."
+    expect(page.get_by_text(needed)).to_be_visible()
     page.get_by_label("with material and pins", exact=True).select_option("")
     assert "sections" not in text_of(page)

@@ -6,7 +6,7 @@ import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../li
 import { read } from "../lib/typed.js";
 import { factorsOf, kindOf } from "../lib/units.js";
 import { capital } from "../lib/words.js";
-import { rankOf } from "./objectives.js";
+import { rankOf } from "./standing.js";
 import { difference, scrolled } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 

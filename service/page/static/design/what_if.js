@@ -9,7 +9,7 @@ import { frontMap } from "./front_map.js";
 import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { keeping } from "./keeping.js";
-import { rankOf } from "./objectives.js";
+import { rankOf } from "./standing.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
@@ -19,16 +19,16 @@ const SAME = 1e-9; // relative
 
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
- * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer): the answer of the API that is drawn, null for the design
- * itself; refused(sentence). Returns {draw()}: once more, in other units, and {apply(row)}: to the numbers of another design.
+ * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer, {lengths, impossible}): the answer of the API that is drawn
+ * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {draw()}: once more, in other units, and {apply(row)}: to the numbers of another design.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
  *   objectives: Api.Objective[], front: Api.Row[], start: Page.Numbers | null, wrong: string, signal: AbortSignal,
- *   changed: (answer: Api.WhatIf | null, lengths?: Page.Numbers) => void, refused: (sentence: string) => void,
+ *   changed: (answer: Api.WhatIf | null, how?: { lengths?: Page.Numbers, impossible?: boolean }) => void,
  * }} given
  */
-export function whatIf(place, { job, path, base, columns, ranges, requirements, objectives, front, start, wrong: unread, changed, refused, signal }) {
+export function whatIf(place, { job, path, base, columns, ranges, requirements, objectives, front, start, wrong: unread, changed, signal }) {
   const own = lengthsOf(base);
   const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? own);
   /** @type {Page.Lengths} */
@@ -94,7 +94,7 @@ export function whatIf(place, { job, path, base, columns, ranges, requirements, 
         answer = found;
         if (holding.checked && !given && !again) follow(found.design);
         const others = Object.entries(values).map(([key, value]) => `${key}=${value}`);
-        changed(found, { ...lengthsOf(found.design), ...(others.length ? { value: others } : {}) });
+        changed(found, { lengths: { ...lengthsOf(found.design), ...(others.length ? { value: others } : {}) } });
         tell();
       }
     } catch (error) {
@@ -112,7 +112,7 @@ export function whatIf(place, { job, path, base, columns, ranges, requirements, 
   /** Say why there is no answer, in its place. @param {string} sentence */
   function refuse(sentence) {
     answer = null;
-    refused(sentence);
+    changed(null, { impossible: true });
     fill(verdict, h("p", { class: "bad", role: "alert" }, sentence));
     fill(results);
     map.show(base, null);
@@ -267,7 +267,7 @@ function sentences(answer, requirements, objectives, job) {
   const found = broken.map((column) => {
     if (column === "slow_stroke") return h("p", { class: "bad" }, design.slow_stroke === "equal" ? "Misses a requirement: neither stroke is the slow one." : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`);
     const asked = requirements.find((one) => one.column === column);
-    return asked ? h("p", { class: "bad" }, `Misses a requirement: ${asked.title} ${design[column] === null ? "has no value" : text(design[column], asked.unit)}, asked is ${asked.lower !== null && asked.lower === asked.upper ? "exactly " : ""}${bounds(asked)}.`) : null;
+    return asked ? h("p", { class: "bad" }, `Misses a requirement: ${asked.title} ${design[column] === null ? "has no value" : withUnit(design[column], asked.unit)}; must be ${bounds(asked)}.`) : null;
   });
   const reasons = [...broken, ...objectives.map(({ column }) => column)].map((column) => missing[column]).filter(Boolean);
   found.push(...[...new Set(reasons)].map((reason) => h("p", { class: "bad" }, `No value: ${reason}.`)));
@@ -275,7 +275,7 @@ function sentences(answer, requirements, objectives, job) {
     const shown = better.slice(0, 3).map((number, n) => [n ? ", " : "", h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`)]);
     found.push(h("p", {}, `Behind the front: ${count === 1 ? "one design is" : `${count} designs are`} at least as good in every objective: `, shown, count > 3 ? ", …" : ""));
   } else if (broken.length) {
-    found.push(h("p", {}, `No design of the front beats it in every objective, but it is not allowed.`));
+    found.push(h("p", {}, "No design of the front is better in every objective, but this one misses a requirement."));
   } else {
     found.push(h("p", { class: "good" }, beaten ? `Beyond the front: it beats ${beaten === 1 ? "one design" : `${beaten} designs`} of it in every objective.` : "On the front as far as the objectives tell: no design of it is better in every objective."));
   }
@@ -286,5 +286,5 @@ function sentences(answer, requirements, objectives, job) {
 function bounds({ lower, upper, unit }) {
   if (lower === null) return `at most ${withUnit(upper, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;
-  return lower === upper ? withUnit(lower, unit) : `${text(lower, unit)} to ${withUnit(upper, unit)}`;
+  return lower === upper ? `exactly ${withUnit(lower, unit)}` : `${text(lower, unit)} to ${withUnit(upper, unit)}`;
 }

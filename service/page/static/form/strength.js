@@ -23,7 +23,7 @@ export function strength(form) {
   const rest = Object.keys(table?.properties ?? {}).filter((key) => !["material", "pins", ...RANGES].includes(key));
   return [
     select,
-    missing.length ? h("p", { class: "quiet wide" }, `Stresses and safety need ${missing.join(" and ")} as a bar of rectangular section, above.`) : null,
+    missing.length ? h("p", { class: "quiet wide" }, `For stresses and safety, give the ${missing.join(" and the ")} a rectangular section (width and depth) in the fields above.`) : null,
     h("p", { class: "quiet wide" }, "The material begins as a common steel; give the values of yours. Pins have no size until you give one."),
     byschema(form, [...PATH, "material"]),
     h("fieldset", { class: "inner" }, h("legend", {}, "pins"), h("div", { class: "fields" }, keysOf(form, [...PATH, "pins"]).map((key) => held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`)))),

@@ -78,10 +78,12 @@ export async function show(place, { parts, query, signal }) {
   const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
+  let refused = false; // whether the last change cannot be had, so that all is of the design itself
   /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
   const glance = (designs) => {
     const [shown] = designs;
-    showObjectives(places.objectives, { objectives, front: rows, row: shown.row, whose: shown === main ? "" : `What if: design ${number}, changed`, names });
+    const whose = shown !== main ? `What if: design ${number}, changed` : refused ? `Design ${number} itself: the change is not possible` : "";
+    showObjectives(places.objectives, { objectives, front: rows, row: shown.row, changed: shown === main ? null : { broken: Boolean(changed?.broken.length) }, whose, names });
     showBeyond(places.beyond, designs);
     for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
   };
@@ -90,7 +92,7 @@ export async function show(place, { parts, query, signal }) {
     const moving = [asked ?? main, ...others];
     glance(moving);
     machines.show(moving);
-    machines.fade(false);
+    machines.fade(refused);
     series = asked ? [asked, main, ...others] : moving;
     charts.show(series);
     legend(places.curves, series);
@@ -102,18 +104,15 @@ export async function show(place, { parts, query, signal }) {
   const sliders = whatIf(places["what-if"], {
     job, path, base: main.row, columns: main.columns, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
     start: linked.lengths ?? null, wrong: linked.wrong ?? "",
-    /** @param {Api.WhatIf | null} answer @param {Page.Numbers} [lengths] */
-    changed(answer, lengths) {
+    /** @param {Api.WhatIf | null} answer @param {{ lengths?: Page.Numbers, impossible?: boolean }} [how] */
+    changed(answer, { lengths, impossible = false } = {}) {
       changed = answer;
+      refused = impossible;
       clearTimeout(later);
       later = setTimeout(draw(), SOON); // the tables, once the length rests
       kept = lengths ?? null;
       for (const each of [files.show, charts.of]) each(kept);
       keepAll();
-    },
-    refused() {
-      machines.fade(true);
-      glance([main, ...others]);
     },
   });
   const steps = rounding(places.rounding, { job, number, base: main.row, columns: main.columns, requirements, objectives, applied: sliders.apply, signal });

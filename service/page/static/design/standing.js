@@ -1,0 +1,30 @@
+/** Where the value of an objective stands among those of a front. */
+
+import { isConstant } from "../lib/constant.js";
+
+/**
+ * Return a number that is the smaller the better a value of an objective is.
+ * @param {Api.Row[string] | undefined} value @param {Pick<Api.Objective, "sense" | "target">} objective
+ */
+export function rankOf(value, { sense, target }) {
+  if (typeof value !== "number") return Infinity;
+  if (typeof target === "number") return Math.abs(value - target);
+  return sense === "maximise" ? -value : value;
+}
+
+/**
+ * Return where a value lies within the front, from 0 for the worst to 1 for the best, and in words. changed: whether it is of a what-if, which is
+ * not of the front, and whether that misses a requirement.
+ * @param {Api.Objective} objective @param {Api.Row[]} front @param {Api.Row[string] | undefined} value @param {{ broken: boolean } | null} changed
+ */
+export function standing(objective, front, value, changed) {
+  const own = rankOf(value, objective);
+  const ranks = front.map((one) => rankOf(one[objective.column], objective));
+  const [best, worst] = [Math.min(...ranks), Math.max(...ranks)];
+  const size = objective.target ?? 0;
+  const better = ranks.filter((rank) => rank < own && !isConstant(rank, own, size)).length;
+  const share = isConstant(best, worst, size) ? Number(!better) : Math.min(Math.max((worst - own) / (worst - best), 0), 1);
+  if (changed?.broken) return { share, words: "misses a requirement" };
+  if (!better) return { share, words: changed ? "no design of the front is better" : "best of the front" };
+  return { share, words: front.length === 1 ? "the only design of the front is better" : `${better} of ${front.length} designs are better` };
+}
