@@ -44,6 +44,7 @@ STROKE = ClosedFormQuantity(
     advice="It equals twice the crank only without offset.",
     formula="S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)",
     picture="stroke",
+    better="",
     example="280 mm",
     reach=Reach(
         bounds=_strokes,

@@ -19,7 +19,7 @@ from .kinds import Face, Kind
 from .needs import Need, Without
 from .reach import Reach
 
-Better = Literal["low", "high"]
+Better = Literal["low", "high", ""]
 Offer = Literal["motion", "proportions", "requirement", "objective"]
 """Parts of a form that ask for a quantity unasked: the wanted motion, rules of proportion, what must hold, what is
 wanted."""
@@ -139,14 +139,15 @@ class Quantity(ABC):
     source: of the equations. picture: what a picture of the linkage points out.
 
     example: a usual value as job files have it, that of the kind if left out. better: its good side, low or high, on
-    which a requirement or an objective usually asks for it. signed: whether it may be negative. instead_of_quotient:
-    the quantity to use where a formula would divide by it. domain: values that some linkage has. floor: least value
-    that holds where a job sets none, SI. in_line: its value for every design without offset. endless: why it may be
-    infinite for every design, as a sentence. needs: of the machine. instead: quantities that serve where a need is not
-    met. reach: bounds within ranges of the dimensions. allowed_by: what sets its allowable value, in words; empty for
-    one without. about_tolerances: whether it includes tolerances already. offered: parts of a form that ask for it.
-    on_sheet: whether the sheet of a design has it. plain: whether it follows from others at a glance, so that a short
-    table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
+    which a requirement or an objective usually asks for it; empty for one without. signed: whether it may be negative.
+    instead_of_quotient: the quantity to use where a formula would divide by it. domain: values that some linkage has.
+    floor: least value that holds where a job sets none, SI. in_line: its value for every design without offset.
+    endless: why it may be infinite for every design, as a sentence. needs: of the machine. instead: quantities that
+    serve where a need is not met. reach: bounds within ranges of the dimensions. allowed_by: what sets its allowable
+    value, in words; empty for one without. about_tolerances: whether it includes tolerances already. offered: parts of
+    a form that ask for it. on_sheet: whether the sheet of a design has it. plain: whether it follows from others at a
+    glance, so that a short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing
+    has none.
     """
 
     name: str

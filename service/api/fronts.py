@@ -14,7 +14,7 @@ from pydantic_core import to_json
 from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
-from ..designs.selection import chosen_rows, none_meets
+from ..designs.selection import chosen_rows, none_meets, part_of
 from ..designs.violations import violated_by
 from ..page.router import tagged
 from ..runs.result import Cell, json_ready
@@ -67,6 +67,15 @@ class ColumnModel(BaseModel):
     group_place: int = Field(0, description="of the group among the others", examples=[3])
 
 
+ViolatedOfAll = Annotated[
+    dict[str, list[float | str]],
+    Field(
+        description="allowable values that designs go beyond, by column: by how much each design does, 0 where not",
+        examples=[{"pin_shear_crank_pin_MPa": [440.2, 0.0]}],
+    ),
+]
+
+
 class FrontModel(BaseModel):
     """The front that a job found, without its designs."""
 
@@ -91,11 +100,7 @@ class FrontModel(BaseModel):
     )
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
     warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
-    violated: dict[str, list[float | str]] = Field(
-        {},
-        description="allowable values that designs go beyond, by column: by how much each design does, 0 where not",
-        examples=[{"pin_shear_crank_pin_MPa": [440.2, 0.0]}],
-    )
+    violated: ViolatedOfAll = {}
     discrete: dict[str, Any] | None = Field(
         None,
         description="how designs of discrete values were found, and the best of each objective with continuous ones",
@@ -127,6 +132,7 @@ class DesignsModel(BaseModel):
     columns: list[ColumnModel]
     numbers: list[int] = Field(examples=[[3]])
     designs: list[Cells] = Field(examples=[[_EXAMPLE]])
+    violated: ViolatedOfAll
 
 
 Violated = Annotated[
@@ -227,6 +233,7 @@ def list_designs(
         columns=column_models(shown),
         numbers=[row + 1 for row in page],
         designs=[{column.key: json_ready(result.designs[row][column.key]) for column in shown} for row in page],
+        violated=json_ready(part_of(result, page).violated),
     )
 
 

@@ -34,7 +34,7 @@ class QuantityModel(BaseModel):
     source: str
     picture: str = Field(examples=["stroke"])
     better: str = Field(
-        description='its good side, on which requirements usually ask for it, low or high; "" for a dimension',
+        description='its good side, on which requirements usually ask for it, low or high; "" where it has none',
         examples=["low"],
     )
     allowed_by: str = Field(description='what sets its allowable value; "" for one without', examples=[""])

@@ -200,8 +200,9 @@ def show_result(result: Result) -> None:
         screen.print("\nAt the knee:")
         for sentence in result.trade_offs:
             screen.print(f"  {sentence}", soft_wrap=True)
-    for sentence in (*front_violations_in_words(result), *result.warnings):
-        screen.print(f"\nWarning: {sentence}.", style="yellow", soft_wrap=True)
+    said = [f"Beyond what is allowed: {sentence}" for sentence in front_violations_in_words(result)]
+    for sentence in (*said, *(f"Warning: {sentence}" for sentence in result.warnings)):
+        screen.print(f"\n{sentence}.", style="yellow", soft_wrap=True)
     sys.stdout.flush()
 
 

@@ -40,7 +40,7 @@ def front_violations_in_words(result: Result) -> list[str]:
     for key, violated in result.violated.items():
         worst = max(range(count), key=violated.__getitem__)
         broken = sum(by > 0.0 for by in violated)
-        verb = f"is beyond what is allowed in {broken} of {count} designs, at worst" if count > 1 else "is"
+        verb = f"in {broken} of {count} designs, at worst" if count > 1 else "is"
         found.append(_sentence(key, result.designs[worst], violated[worst], verb))
     return found
 

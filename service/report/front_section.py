@@ -21,7 +21,8 @@ _MANY = 400
 def front_section(subject: Subject) -> Section:
     """Return the ranges of the objectives, the marked designs, and the figures of the front."""
     result = subject.result
-    beyond = (Paragraph(f"Warning: {unit_text(line)}.", "bad") for line in front_violations_in_words(result))
+    said = map(unit_text, front_violations_in_words(result))
+    beyond = (Paragraph(f"Beyond what is allowed: {line}.", "bad") for line in said)
     blocks: list[Block] = [*beyond, _ranges(subject), _marked(subject)]
     raster = len(result.designs) > _MANY
     if len(result.designs) > 1:

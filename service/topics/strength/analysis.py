@@ -22,6 +22,7 @@ from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_values import missing_value_reason
+from ...designs.violations import violated_by
 from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...text import tables as text
@@ -35,8 +36,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
 
     With the crank angle and the place along the bar from the crank pin; and of each eye the greatest stress with its
-    crank angle. None: a quantity without a value; the safety of what is not compressed is infinite. Raises
-    `InputError` for a machine without material and pins.
+    crank angle; `violated` as of a design. None: a quantity without a value; the safety of what is not compressed is
+    infinite. Raises `InputError` for a machine without material and pins.
     """
     _require(mechanism)
     design = row_of(linkage)
@@ -51,7 +52,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         for pin, (stress, angle) in eyes[name].items():
             bar[f"eye_at_{pin}_MPa"] = plain(1e-6 * stress)
             bar[f"eye_at_{pin}_at_crank_angle_deg"] = plain(math.degrees(angle_in_cycle(angle, cycle)))
-    return found | {"bars": bars}
+    return found | {"violated": violated_by(mechanism, found), "bars": bars}
 
 
 def _require(mechanism: Mechanism) -> None:

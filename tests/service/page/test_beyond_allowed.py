@@ -31,7 +31,7 @@ def test_a_front_says_in_how_many_designs_what_is_allowed_is_exceeded(opened: tu
     page.goto(view)
     count = len(result().designs)
     worst = max(float(str(row["pin_shear_crank_pin_MPa"])) for row in result().designs)
-    said = page.get_by_text("shear of the crank pin is beyond what is allowed")
+    said = page.get_by_text("Beyond what is allowed: shear of the crank pin in")
     expect(said).to_contain_text(f"in {count} of {count} designs, at worst {worst:.4g}\u00a0MPa")
     expect(said).to_contain_text("more than the allowed 202.1\u00a0MPa (shear yield strength of the material)")
 

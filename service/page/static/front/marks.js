@@ -106,11 +106,11 @@ export function marksPanel(explorer) {
     for (const [key, list] of Object.entries(front.violated)) {
       const by = list.map(Number);
       const row = by.indexOf(Math.max(...by));
-      const verb = by.length > 1 ? `is beyond what is allowed in ${by.filter((one) => one > 0).length} of ${by.length} designs, at worst` : "is";
+      const verb = by.length > 1 ? `in ${by.filter((one) => one > 0).length} of ${by.length} designs, at worst` : "is";
       worst[key] = { value: data.cell(key, row), by: by[row], verb };
     }
     const sentences = await beyond(worst);
-    fill(beyondAllowed, sentences.map((sentence) => h("p", { class: "error" }, `Warning: ${sentence}.`)));
+    fill(beyondAllowed, sentences.map((sentence) => h("p", { class: "error" }, `Beyond what is allowed: ${sentence}.`)));
   }
 
   /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
