@@ -245,7 +245,7 @@ class Linkage:
     def plot(self, crank_angle: float = 1.0) -> Figure:
         """Return a matplotlib figure of one linkage at a crank angle, rad.
 
-        Raises `InputError` for an array of linkages, `AssemblyError` where it cannot be assembled.
+        Raises `InputError` for an array of linkages or angles, `AssemblyError` where it cannot be assembled.
         """
         return figure(self._pose(crank_angle), float(self.crank.real), self.label)
 
@@ -266,7 +266,10 @@ class Linkage:
 
     def _pose(self, crank_angle: float) -> Pose:
         self._require_one("a picture")
-        crank_angle = float(numbers(crank_angle, "a crank angle").real)
+        given = numbers(crank_angle, "a crank angle")
+        if given.ndim:
+            raise InputError(f"a picture shows one crank angle; got an array of shape {given.shape}; take one of it")
+        crank_angle = float(given.real)
         m, crank = self._motion(np.asarray(crank_angle)), float(self.crank.real)
         ends = self.dead_centres if bool(self.rotates_fully) else (np.asarray(np.nan), np.asarray(np.nan))
         return Pose(

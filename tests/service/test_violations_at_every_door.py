@@ -15,6 +15,7 @@ import slidercrank as sc
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.designs.selection import part_of
 from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.designs.violations import violations_in_words
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph
 from slidercrank.service.report.subject import Subject
@@ -130,6 +131,14 @@ def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> 
     assert known["stroke"]["allowed_by"] == ""
     assert (known["static_safety"]["better"], known[SHEAR]["better"]) == ("high", "low")
     assert known["stroke"]["better"] == sc.quantities().loc["stroke", "better"] == ""
+
+
+def test_a_safety_below_zero_comes_with_its_cause() -> None:
+    said = [violations_in_words({"static_safety": 1.0 - safety}, {"static_safety": safety}) for safety in (-0.1, 0.9)]
+    assert [line.endswith("a pin as wide as its bar, or wider, leaves nothing of the bar") for (line,) in said] == [
+        True,
+        False,
+    ]
 
 
 def test_a_report_says_it_in_its_summary_beside_the_requirements_and_of_the_front() -> None:

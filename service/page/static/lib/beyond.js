@@ -22,6 +22,7 @@ export async function beyond(violated) {
     const low = better === "low";
     const allowed = Number(value) + (low ? -far : far);
     const limit = Number.isFinite(allowed) ? `the allowed ${withUnit(allowed, unit, 4)}` : "what is allowed";
-    return `${title} ${verb} ${withUnit(value, unit, 4)}, ${withUnit(far, unit, 4)} ${low ? "more" : "less"} than ${limit} (${by})`;
+    const cause = low || Number(value) > 0 ? "" : ": a pin as wide as its bar, or wider, leaves nothing of the bar";
+    return `${title} ${verb} ${withUnit(value, unit, 4)}, ${withUnit(far, unit, 4)} ${low ? "more" : "less"} than ${limit} (${by})${cause}`;
   });
 }
