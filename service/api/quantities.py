@@ -72,10 +72,14 @@ class TypedUnit(BaseModel):
 
 
 class KindModel(BaseModel):
-    """A kind of value. units: that a form offers, the SI unit first. si, inch: the unit that a form begins with."""
+    """A kind of value. units: that a form offers, the SI unit first. si, inch: the unit that a form begins with.
+
+    spoken: other words for units that values of this kind may have, each with the unit that it means there.
+    """
 
     name: str = Field(examples=["length"])
     units: list[TypedUnit]
+    spoken: dict[str, str] = Field(examples=[{"1/min": "rpm"}])
     si: str = Field(examples=["mm"])
     inch: str = Field(examples=["in"])
 
@@ -105,6 +109,7 @@ def list_units() -> UnitTable:
         KindModel(
             name=kind.plain,
             units=[TypedUnit(unit=unit, factor=1.0 / per_si(unit)) for unit in kind.typed],
+            spoken=dict(kind.spoken),
             si=kind.usual or kind.metric.symbol,
             inch=(kind.inch or kind.metric).symbol,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
@@ -76,3 +77,48 @@ def test_a_further_number_varies_over_a_range_or_takes_some_values_and_then_is_f
     page.get_by_role("button", name="Remove load 1 force").click()
     ready(page)
     assert set(text_of(page)["variables"]) == {"crank", "rod", "offset"}
+
+
+@pytest.mark.slow
+def test_a_middle_and_half_a_width_make_a_range_where_one_can_be_and_are_refused_elsewhere(
+    form: Open, store: Store
+) -> None:
+    page = form(store, "#/new?preset=sieve")
+    ready(page)
+    stroke, crank = page.get_by_label("stroke", exact=True), page.get_by_label("crank", exact=True)
+    page.get_by_label("stroke, exactly").fill("280 mm +- 0.5 mm")
+    expect(page.get_by_text('"280 mm +- 0.5 mm" = 279.5 to 280.5 mm')).to_be_visible()
+    page.keyboard.press("Tab")
+    expect(stroke.and_(page.get_by_role("combobox"))).to_have_value("between")
+    expect(page.get_by_label("stroke, at least")).to_have_value("279.5")
+    expect(page.get_by_label("Unit of stroke", exact=True)).to_be_focused()
+    crank.and_(page.get_by_role("combobox")).select_option("fixed")
+    page.get_by_label("crank, fixed at").fill("14 ± 0,5 cm")
+    page.keyboard.press("Tab")
+    expect(page.get_by_label("crank, from")).to_have_value("135")
+    page.get_by_label("crank, to").fill("150")
+    page.get_by_label("rod, from").fill("400 +- 150")
+    page.get_by_label("crank speed", exact=True).fill("5 Hz")
+    page.get_by_role("button", name="Add a formula as a requirement").click()
+    page.get_by_label("formula 1, requirement", exact=True).fill("rod - crank")
+    page.get_by_label("formula 1, requirement: what must hold").select_option("equals")
+    page.get_by_label("formula 1, requirement, exactly").fill("200 +- 90")
+    expect(page.get_by_label("Unit of formula 1, requirement")).to_have_value("mm")
+    ready(page)
+    job = text_of(page)
+    assert job["constraints"]["stroke"] == {"min": "279.5 mm", "max": "280.5 mm"}
+    assert job["constraints"]["rod - crank"] == {"min": "110 mm", "max": "290 mm"}
+    assert job["variables"]["crank"] == ["135 mm", "150 mm"]
+    assert job["variables"]["rod"] == ["250 mm", "550 mm"]
+    assert job["mechanism"]["speed"] == "300 rpm"
+    page.get_by_label("crank speed", exact=True).fill("300 rpm +- 5 rpm")
+    expect(page.get_by_text("is a range; write a single value here")).to_be_visible()
+    job["mechanism"]["speed"] = "300 1/min"
+    job["constraints"]["stroke"] = {"equals": "280 mm +- 0.5 mm"}
+    job["variables"]["crank"] = "140 mm +- 5 mm"
+    content = json.dumps(job).encode()
+    page.locator("#job-import").set_input_files({"name": "own.json", "mimeType": "application/json", "buffer": content})
+    expect(page.get_by_label("crank, to")).to_have_value("145")
+    expect(page.get_by_label("stroke, at most")).to_have_value("280.5")
+    expect(page.get_by_label("crank speed", exact=True)).to_have_value("300")
+    assert text_of(page) == job

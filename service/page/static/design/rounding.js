@@ -4,7 +4,7 @@ import { isAbort, postFollowed } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
-import { factorsOf, kindOf } from "../lib/units.js";
+import { kindOf, measureOf } from "../lib/units.js";
 import { capital } from "../lib/words.js";
 import { rankOf } from "./standing.js";
 import { difference, scrolled } from "./numbers.js";
@@ -168,7 +168,7 @@ function textsOf(fields) {
   let fine = true;
   const found = fields.flatMap(({ name, unit, input, said, wrong }) => {
     const plain = plainUnitOf(unit);
-    const typed = read(input.value, { unit: plain, factors: factorsOf(kindOf(plain)) });
+    const typed = read(input.value, { unit: plain, ...measureOf(kindOf(plain)) });
     if (typed.empty) return [];
     const sentence = typed.wrong ?? (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)) ? "" : wrong());
     say(input, said, sentence);

@@ -4,8 +4,8 @@ import { h } from "../lib/dom.js";
 import { completing } from "./completion.js";
 import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
 import { at, idOf, isTable } from "./path.js";
-import { drawnFrom, taken } from "./typed_field.js";
-import { convert, split } from "../lib/units.js";
+import { drawnFrom, entered } from "./typed_field.js";
+import { convert, split, spread } from "../lib/units.js";
 
 const ANY = ["any", "any"];
 const MODES = [["equals", "exactly"], ["min", "at least"], ["max", "at most"], ["between", "between"]];
@@ -19,7 +19,9 @@ export const SAID = { equals: "exactly", min: "at least", max: "at most" };
  * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void }} given any: whether nothing may be asked; again: draws them anew
  */
 export function bounds(form, spot, { label, kind, any = false, again }) {
-  const given = form.at(spot.path);
+  const stated = form.at(spot.path);
+  const ends = spread(at(stated, ["equals"]), kind);
+  const given = ends ? { min: ends[0], max: ends[1] } : stated;
   const mode = modeOf(given);
   const select = h("select", { id: idOf(spot.id, any ? "c" : "m"), class: "mode", "aria-label": any ? null : `${label}: what must hold` }, (any ? [ANY, ...MODES] : MODES).map(([value, text]) => h("option", { value, selected: value === mode }, text)));
   const keys = KEYS[mode];
@@ -28,18 +30,24 @@ export function bounds(form, spot, { label, kind, any = false, again }) {
   const units = keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
   const inputs = keys.map((key, place) => numberInput(idOf(spot.id, key), convert(parts[place].number, parts[place].unit, unit, kind), `${label}, ${SAID[key]}`));
   inputs.forEach((input, place) => drawnFrom(input, at(given, [keys[place]]), units));
+  const ranges = mode === "equals" || mode === "between";
+  /** @param {HTMLInputElement} input */
+  const typedIn = (input) => entered(input, { kind, select: units, range: ranges });
+  const between = () => inputs.map((input) => typedIn(input).ends).find(Boolean);
   /** @param {string[]} names */
   const write = (names = keys) => {
     /** @type {Record<string, unknown>} */
     const found = {};
-    names.forEach((key, place) => {
+    const both = between();
+    (both && names.length ? KEYS.between : names).forEach((key, place) => {
       const input = inputs[Math.min(place, inputs.length - 1)];
-      const typed = input && (kind ? taken(input, { kind, select: units }) : number(input));
+      const typed = both ? (kind ? both[place] : Number(both[place])) : input && (kind ? typedIn(input).value : number(input));
       found[key] = typed ?? ""; // the service says that it is missing
     });
     form.put(spot.path, names.length ? found : undefined);
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
+  inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(again))); // once the next field has the focus
   units?.addEventListener("change", () => {
     changeUnit(units, inputs, kind);
     write();

@@ -73,12 +73,14 @@ function row(form, table, key, place, asked, what) {
   };
   const draw = () => {
     form.forget((one) => below.contains(one.node));
+    const begun = form.at(spot.path);
+    const changed = () => Object.entries(form.at(spot.path) ?? {}).forEach(([bound, value]) => value !== at(begun, [bound]) && early.add(bound));
     const { controls, parts } = asked(spot, kind, label, draw);
     fill(below, controls, parts.map(({ key: part, input: of }) => {
       const error = h("p", { class: "error", id: `${of.id}-error`, hidden: true });
       const path = [...spot.path, part];
       form.register({ path, key: written(path), node: of, controls: [of], error });
-      if (kind === null) of.addEventListener("input", () => early.add(part));
+      if (kind === null) of.addEventListener("input", changed);
       return error;
     }), drop);
   };

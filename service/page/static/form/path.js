@@ -1,5 +1,7 @@
 /** Places in a job: lists of keys, such as ["load", 0, "force"], and what stands there. */
 
+import { isRange } from "../lib/typed.js";
+
 /** Return what stands at a path of a job; undefined where there is nothing. @param {unknown} job @param {Form.Path} path @returns {unknown} */
 export function at(job, path) {
   let part = job;
@@ -67,6 +69,6 @@ export function isTable(part) {
  * @param {{ at: (path: Form.Path) => unknown }} form @param {string} name @returns {string | number | null}
  */
 export function valueOf(form, name) {
-  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find((one) => typeof one === "number" || (typeof one === "string" && one !== ""));
+  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find((one) => typeof one === "number" || (typeof one === "string" && one !== "" && !isRange(one)));
   return typeof found === "string" || typeof found === "number" ? found : null;
 }

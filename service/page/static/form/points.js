@@ -7,7 +7,7 @@ import { unitSelect } from "./controls.js";
 import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
 import { at, idOf, put, written } from "./path.js";
-import { convert, factorsOf, join, split } from "../lib/units.js";
+import { convert, join, measureOf, split } from "../lib/units.js";
 
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 
@@ -32,11 +32,11 @@ export function points(form, path, columns, why, { optional = false, title = "po
   const write = () => {
     delete text.dataset.wrong;
     const same = text.value === drawn && chosen().join(" ") === begun;
-    const read = pointsOf(text.value, columns.map(({ kind }) => Object.keys(factorsOf(kind))));
+    const read = pointsOf(text.value, columns.map(({ kind }) => Object.keys({ ...measureOf(kind).factors, ...measureOf(kind).spoken })));
     if (read.wrong) text.dataset.wrong = read.wrong;
     read.units.forEach((unit, n) => {
       const select = units[n];
-      if (unit && select) select.value = select.dataset.from = unit;
+      if (unit && select) select.value = select.dataset.from = measureOf(columns[n].kind).spoken[unit] ?? unit;
     });
     const none = optional && !read.rows.length;
     columns.forEach(({ key }, n) => form.put([...path, key], same ? given[n] : none ? undefined : read.rows.map((row) => (units[n] ? join(row[n], units[n]?.value ?? "") : Number(row[n])) ?? "")));

@@ -4,8 +4,8 @@ import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { drawnFrom, taken } from "./typed_field.js";
-import { convert, join, split } from "../lib/units.js";
+import { drawnFrom, entered } from "./typed_field.js";
+import { convert, join, split, spread } from "../lib/units.js";
 
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
 
@@ -19,10 +19,10 @@ const STEPS = 20; // at least, of the step that is begun with
  * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, drop?: string, removed?: () => void }} looks drop: what the button says that calls removed
  */
 export function range(form, path, { label, why, kind = "length", fixed = true, drop: text = "Remove", removed }) {
-  const given = form.at(path);
+  const given = spread(form.at(path), kind) ?? form.at(path);
   const mode = modeOf(given);
-  const ends = endsOf(given, mode);
-  const parts = ends.map((end) => split(end, kind));
+  const begun = endsOf(given, mode);
+  const parts = begun.map((end) => split(end, kind));
   const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, kind).unit;
   const numbers = parts.map((one) => convert(one.number, one.unit, unit, kind));
   const select = h("select", { id: idOf(path, "c"), class: "mode" }, MODES.filter(([value]) => fixed || value !== "fixed").map(([value, text]) => h("option", { value, selected: value === mode }, text)));
@@ -33,22 +33,28 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
     ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, values, separated by commas` })]
     : numbers.map((value, place) => numberInput(idOf(path, place), value, `${label}, ${titles[place]}`));
   const series = mode === "series" ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"])) : null;
-  if (!list) inputs.forEach((input, place) => drawnFrom(input, ends[place], units));
+  if (!list) inputs.forEach((input, place) => drawnFrom(input, begun[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
+  /** What was typed in an input; only an end of the range can become a range. @param {HTMLInputElement} one @param {number} place */
+  const read = (one, place) => entered(one, { kind, select: units, range: place < 2 });
+  const ends = () => (list ? undefined : inputs.map((one, place) => read(one, place).ends).find(Boolean));
   /** @returns {unknown[]} */
-  const values = () => (list ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined))) : inputs.map((one) => (units ? taken(one, { kind, select: units }) : plain(taken(one)))));
+  const values = () => (list ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined))) : inputs.map((one, place) => (units ? read(one, place).value : plain(read(one, place).value))));
   /** @param {Mode} to */
   const write = (to = mode) => {
     const found = values();
+    const both = ends();
+    if (both) found.splice(0, 2, ...(units ? both : both.map(plain)));
     const some = found.filter((one) => one !== undefined);
     const between = { min: found[0] ?? "", max: (list ? found.at(-1) : found[1] ?? found[0]) ?? "" };
-    if (to === "range") form.put(path, some.length ? [between.min, between.max] : undefined);
+    if (to === "range" || (to === "fixed" && both)) form.put(path, some.length ? [between.min, between.max] : undefined);
     else if (to === "fixed") form.put(path, some[0]);
     else if (to === "step") form.put(path, { ...between, step: mode === "step" ? found[2] ?? "" : firstStep(inputs, units?.value ?? "") });
     else if (to === "series") form.put(path, { ...between, series: series?.value ?? seriesOf(form)[0] });
     else form.put(path, { [to]: mode === "step" ? some.slice(0, 2) : some });
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
+  inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(() => form.redraw()))); // once the next field has the focus
   series?.addEventListener("change", () => write());
   units?.addEventListener("change", () => {
     const from = units.dataset.from ?? units.value;

@@ -1,9 +1,9 @@
 /** Fields of numbers: what was typed is read, said beside the field, and put in order when the field is left. */
 
 import { read } from "../lib/typed.js";
-import { factorsOf, join } from "../lib/units.js";
+import { join, measureOf } from "../lib/units.js";
 
-/** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null }} Measure */
+/** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null, range?: boolean }} Measure range: whether a range may stand for a value */
 
 const NAME = /[a-z]{3,}(?:_[a-z]+)*/g;
 
@@ -23,25 +23,38 @@ export function drawnFrom(input, given, select) {
  * only the service can say what it means; undefined for nothing. What cannot be read is said at the field.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {string | number | undefined}
  */
-export function taken(input, { kind = null, percent = false, select = null } = {}) {
-  const found = read(valued(input), { unit: select?.value ?? "", factors: factorsOf(kind), percent });
+export function taken(input, measure = {}) {
+  return entered(input, measure).value;
+}
+
+/**
+ * Return the same as {value}; or {ends}, in the unit that the field shows, of a range that is typed as its middle and half its width.
+ * @param {HTMLInputElement} input @param {Measure} measure @returns {{ value?: string | number, ends?: string[] }}
+ */
+export function entered(input, { kind = null, percent = false, select = null, range = false } = {}) {
+  const found = read(valued(input), { unit: select?.value ?? "", ...measureOf(kind), percent, range });
   delete input.dataset.wrong;
   const before = drawn.get(input);
   if (before && before.value === input.value && before.unit === select?.value) {
     for (const name of ["said", "number"]) delete input.dataset[name];
     say(input);
-    return /** @type {string | number} */ (before.given);
+    return { value: /** @type {string | number} */ (before.given) };
   }
   if (input.value !== input.dataset.number) for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
   if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
+  if (found.ends) {
+    input.dataset.said = found.said;
+    say(input);
+    return { ends: found.ends.map((end) => join(end, found.unit) ?? "") };
+  }
   if (found.number === undefined) {
     say(input);
-    return found.empty ? undefined : input.value.trim().replace(/^=\s*/, "");
+    return { value: found.empty ? undefined : input.value.trim().replace(/^=\s*/, "") };
   }
   if (select && found.unit !== select.value) select.value = select.dataset.from = found.unit; // to a share, or from one
   if (found.said) [input.dataset.said, input.dataset.number] = [found.said, found.number];
   say(input);
-  return join(found.number, found.unit);
+  return { value: join(found.number, found.unit) };
 }
 
 /**

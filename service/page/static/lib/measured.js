@@ -2,7 +2,7 @@
 
 import { fromShown, plainUnitOf, unitOf } from "./numbers.js";
 import { read } from "./typed.js";
-import { factorsOf, kindOf } from "./units.js";
+import { kindOf, measureOf } from "./units.js";
 
 /** @typedef {{ value: number, said: string | null, wrong?: undefined, empty?: undefined } | { wrong: string, value?: undefined, empty?: undefined } | { empty: true, value?: undefined, wrong?: undefined }} Measured */
 
@@ -13,7 +13,7 @@ import { factorsOf, kindOf } from "./units.js";
 export function measured(typed, unit) {
   const shown = plainUnitOf(unit);
   const kind = kindOf(shown);
-  const found = read(typed, { unit: shown, factors: factorsOf(kind) });
+  const found = read(typed, { unit: shown, ...measureOf(kind) });
   if (found.empty) return { empty: true };
   const value = found.number !== undefined && found.unit === shown ? fromShown(Number(found.number), unit) : NaN;
   if (found.number !== undefined && Number.isFinite(value)) return { value, said: found.said };

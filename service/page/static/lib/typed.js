@@ -1,15 +1,18 @@
-/** Numbers as people type them: with a decimal comma, a unit, or as a sum: "150,5", "6 in", "2*75", "1/2 in", "3 in + 5 mm". */
+/** Numbers as people type them: with a decimal comma, a unit, or as a sum: "150,5", "6 in", "2*75", "1/2 in", "3 in + 5 mm"; and ranges as "180 mm +- 0.5 mm". */
 
 /**
  * @typedef {object} Field What a field takes.
  * @property {string} unit the one that it shows; a number without one is in it
  * @property {Record<string, number>} factors what one of each unit is in the first; those that no number changes into are left out
+ * @property {Record<string, string>} [spoken] other words for units, each with the unit that it means here
  * @property {boolean} [percent] whether a share may stand for a value
+ * @property {boolean} [range] whether a range may stand for a value
  *
  * @typedef {{ value: number, unit: string | null }} Part A number, with its unit once it has one.
- * @typedef {{ number?: undefined, wrong?: undefined, empty?: true }} Nothing nothing was typed, or what only the service can read
- * @typedef {{ number: string, unit: string, said: string | null, wrong?: undefined, empty?: undefined }} Read
- * @typedef {{ wrong: string, number?: undefined, empty?: undefined }} Wrong
+ * @typedef {{ number?: undefined, ends?: undefined, wrong?: undefined, empty?: true }} Nothing nothing was typed, or what only the service can read
+ * @typedef {{ number: string, unit: string, said: string | null, ends?: undefined, wrong?: undefined, empty?: undefined }} Read
+ * @typedef {{ ends: [string, string], unit: string, said: string, number?: undefined, wrong?: undefined, empty?: undefined }} Ends
+ * @typedef {{ wrong: string, number?: undefined, ends?: undefined, empty?: undefined }} Wrong
  */
 
 const PLAIN = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d{1,3})?$/i;
@@ -17,7 +20,10 @@ const MIXED = /^(\d+)\s+(\d+)\s*\/\s*(\d+)(?![\d.,])/; // one and a half, as on 
 const SPACED = /^\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d])(?:[.,]\d+)?/;
 const DIGITS = /^(?:\d|[.,](?=\d))[\d.,]*(?:e[+-]?\d{1,3})?/i;
 /** Other spellings of units. @type {Record<string, string>} */
-const SPELLINGS = { '"': "in", "″": "in", inch: "in", "'": "foot", "′": "foot", ft: "foot", feet: "foot", um: "µm", "μm": "µm", "°": "deg", "1/min": "rpm" };
+const SPELLINGS = { '"': "in", "″": "in", inch: "in", "'": "foot", "′": "foot", ft: "foot", feet: "foot", um: "µm", "μm": "µm", "°": "deg" };
+const SPREAD = /^(?:\+\/?-|±)/; // between the middle of a range and half its width
+const SIGN = /^(?!\+\/?-)[+-]/;
+const WORD = /^[^\d\s.,+\-*/×·÷()±]/;
 
 /** What is wrong with a number, as a sentence. */
 class Unreadable extends Error {}
@@ -27,9 +33,9 @@ class Unknown extends Error {}
 
 /**
  * Return what was typed into a field: {number, unit, said}, the number as text in the unit of the field, and in words how it
- * was read unless that is plain; {wrong} with a sentence; {empty}; or {} for what only the service can read.
+ * was read unless that is plain; {ends, unit, said} of a range; {wrong} with a sentence; {empty}; or {} for what only the service can read.
  * A comma or point before exactly three digits: a comma is taken for thousands, as this page writes them, and that is said.
- * @param {string} typed @param {Field} field @returns {Nothing | Read | Wrong}
+ * @param {string} typed @param {Field} field @returns {Nothing | Read | Ends | Wrong}
  */
 export function read(typed, field) {
   const text = typed.trim().replaceAll("−", "-").replace(/^=\s*/, "");
@@ -37,19 +43,28 @@ export function read(typed, field) {
   if (PLAIN.test(text)) return { number: text, unit: field.unit, said: null };
   try {
     const parser = new Parser(text, field);
-    const { value, unit } = parser.whole();
-    if (!Number.isFinite(value)) return { wrong: `${shown(typed)} has no finite value.` };
+    const { value, unit, half } = parser.whole();
+    if (!Number.isFinite(value + (half ?? 0))) return { wrong: `${shown(typed)} has no finite value.` };
     const same = unit === null || unit === field.unit || !(unit in field.factors) || !(field.unit in field.factors);
-    const number = tidy(same ? value : (value * field.factors[unit]) / field.factors[field.unit]);
+    /** @param {number} of */
+    const converted = (of) => tidy(same ? of : (of * field.factors[unit]) / field.factors[field.unit]);
+    const number = converted(value);
     const into = same ? (unit ?? field.unit) : field.unit;
-    const result = `${number}${into ? ` ${into}` : ""}`;
+    /** @type {[string, string] | null} */
+    const ends = half === null ? null : [converted(value - half), converted(value + half)];
+    const result = `${ends ? ends.join(" to ") : number}${into ? ` ${into}` : ""}`;
     const said = parser.doubtful ? `${shown(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.` : result === text ? null : `${shown(typed)} = ${result}`;
-    return { number, unit: into, said };
+    return ends ? { ends, unit: into, said: said ?? result } : { number, unit: into, said };
   } catch (problem) {
     if (problem instanceof Unreadable) return { wrong: problem.message };
     if (problem instanceof Unknown) return {};
     throw problem;
   }
+}
+
+/** Whether a text states a range by its middle and half its width, whatever the two are. @param {string} text */
+export function isRange(text) {
+  return /\+\/?-|±/.test(text.replaceAll("−", "-"));
 }
 
 /** Reads sums of terms; a unit belongs to the product before it, so that 1/2 in is half an inch. */
@@ -64,17 +79,22 @@ class Parser {
     this.spellings = spellingsOf(field);
   }
 
+  /** @returns {Part & { half: number | null }} half: half the width of a range, in the unit of its middle */
   whole() {
-    const found = this.sum();
+    const { value, unit } = this.sum();
+    const by = this.taken(SPREAD) ? this.sum() : null;
+    if (by && !this.field.range) throw new Unreadable(`${shown(this.text)} is a range; write a single value here.`);
     if (this.rest) throw new Unreadable(this.rest[0] === ")" ? `A bracket is closed in ${shown(this.text)} that was not opened.` : `A sign such as + or * is missing before ${shown(this.rest)}.`);
-    return found;
+    if (!by) return { value, unit, half: null };
+    const half = Math.abs(unit === null || by.unit === null || by.unit === unit ? by.value : (by.value * this.factor(by.unit)) / this.factor(unit));
+    return { value, unit: unit ?? by.unit, half };
   }
 
   /** @returns {Part} */
   sum() {
     const terms = [this.term()];
     const signs = [1];
-    for (let sign = this.taken(/^[+-]/); sign; sign = this.taken(/^[+-]/)) {
+    for (let sign = this.taken(SIGN); sign; sign = this.taken(SIGN)) {
       signs.push(sign === "-" ? -1 : 1);
       terms.push(this.term());
     }
@@ -112,7 +132,7 @@ class Parser {
   measured(part) {
     const found = this.spellings.find(([spelling]) => this.rest.startsWith(spelling) && !(/\w$/.test(spelling) && /^[\w^]/.test(this.rest.slice(spelling.length))));
     if (!found) {
-      if (/^[^\d\s.,+\-*/×·÷()]/.test(this.rest)) throw new Unknown();
+      if (WORD.test(this.rest)) throw new Unknown();
       return part;
     }
     this.rest = this.rest.slice(found[0].length).trimStart();
@@ -122,13 +142,14 @@ class Parser {
 
   /** @returns {Part} */
   operand() {
-    const sign = this.taken(/^[+-]/);
+    const sign = this.taken(SIGN);
     if (sign) {
       const { value, unit } = this.operand();
       return { value: sign === "-" ? -value : value, unit };
     }
     if (this.taken(/^\(/)) {
       const inner = this.sum();
+      if (SPREAD.test(this.rest)) throw new Unreadable(`A range such as 180 mm +- 0.5 mm has no brackets around it; got ${shown(this.text)}.`);
       if (!this.taken(/^\)/)) throw new Unreadable(`A bracket of ${shown(this.text)} is not closed.`);
       return inner;
     }
@@ -140,7 +161,7 @@ class Parser {
     }
     const digits = this.taken(SPACED) || this.taken(DIGITS);
     if (digits) return { value: this.number(digits.replace(/[\s\u00a0\u202f]/g, "")), unit: null };
-    if (/^[^\d\s.,+\-*/×·÷()]/.test(this.rest)) throw new Unknown();
+    if (WORD.test(this.rest)) throw new Unknown();
     throw new Unreadable(this.rest ? `A number is missing before ${shown(this.rest)}.` : `A number is missing at the end of ${shown(this.text)}.`);
   }
 
@@ -173,11 +194,11 @@ class Parser {
 }
 
 /** Return how units of a field may be written, each with the unit, the longest first. @param {Field} field @returns {[string, string][]} */
-function spellingsOf({ factors, percent }) {
+function spellingsOf({ factors, spoken, percent }) {
   const units = Object.keys(factors);
   /** @type {[string, string][]} */
   const found = units.flatMap((unit) => [unit, unit.replaceAll(" ", ""), unit.replaceAll(" ", "·"), unit.replace("^2", "²").replace("^3", "³")].map((one) => /** @type {[string, string]} */ ([one, unit])));
-  for (const [spelling, unit] of Object.entries(SPELLINGS)) if (unit in factors) found.push([spelling, unit]);
+  for (const [spelling, unit] of Object.entries({ ...SPELLINGS, ...spoken })) if (unit in factors) found.push([spelling, unit]);
   if (percent) found.push(["%", "%"]);
   return found.sort(([one], [other]) => other.length - one.length);
 }

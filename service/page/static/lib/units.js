@@ -1,9 +1,12 @@
 /** The units that a field offers, and values with units as job files have them: "40 mm". */
 
 import { system, unitTable } from "./numbers.js";
+import { read } from "./typed.js";
 
 /** @type {Record<string, Record<string, number>>} */
 let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
+/** @type {Record<string, Record<string, string>>} */
+let SPOKEN = {}; // by kind, the unit that other words mean there: 1/min of a speed
 /** @type {Record<string, Record<string, string>>} */
 let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
@@ -12,12 +15,17 @@ const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 export async function readyKinds() {
   const { kinds: known } = await unitTable();
   KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
+  SPOKEN = Object.fromEntries(known.map(({ name, spoken }) => [name, spoken]));
   USUAL = { si: Object.fromEntries(known.map(({ name, si }) => [name, si])), inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])) };
 }
 
-/** Return what one of each unit of a kind is in its SI unit; nothing for a number without a kind. @param {string | null | undefined} kind */
-export function factorsOf(kind) {
-  return KINDS[kind ?? ""] ?? {};
+/**
+ * Return what is known of the units of a kind: {factors, what one of each is in its SI unit; spoken, other words for them}; nothing for a
+ * number without a kind.
+ * @param {string | null | undefined} kind
+ */
+export function measureOf(kind) {
+  return { factors: KINDS[kind ?? ""] ?? {}, spoken: SPOKEN[kind ?? ""] ?? {} };
 }
 
 /** Return the names of all kinds. */
@@ -51,9 +59,23 @@ export function split(value, kind) {
   if (value === undefined || value === null) return { number: "", unit: kind ? usual(kind) : "" };
   if (typeof value === "number") return { number: String(value), unit: Object.keys(KINDS[kind ?? ""] ?? { "": 1 })[0] };
   const match = NUMBER.exec(String(value));
-  const known = match && (match[2] === "%" || (kind && match[2].trim() in KINDS[kind]));
-  if (known) return { number: match[1], unit: match[2].trim() };
+  const { factors, spoken } = measureOf(kind);
+  const word = match?.[2].trim() ?? "";
+  const unit = spoken[word] ?? word;
+  if (match && (unit === "%" || unit in factors)) return { number: match[1], unit };
   return { number: String(value), unit: "" };
+}
+
+/**
+ * Return the ends of a range that a job states as its middle and half its width, "180 mm +- 0.5 mm", each as a value of a job; null for
+ * what states no such range.
+ * @param {unknown} value @param {string | null | undefined} kind @returns {[string, string] | null}
+ */
+export function spread(value, kind) {
+  const found = typeof value === "string" ? read(value, { unit: "", ...measureOf(kind), range: true }) : {};
+  if (!found.ends || (kind && !found.unit)) return null;
+  const [low, high] = found.ends.map((end) => (found.unit ? `${end} ${found.unit}` : end));
+  return [low, high];
 }
 
 /** Return the value of a job for a number and a unit as typed; undefined for an empty number. @param {string} number @param {string} unit */

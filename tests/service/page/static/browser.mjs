@@ -27,6 +27,7 @@ const UNITS = {
   pressure: { Pa: 1, MPa: 1e6, GPa: 1e9, psi: 4.4482216152605 / 0.0254 ** 2 },
   time: { s: 1, min: 60 },
 };
+const SPOKEN = { "angular speed": { "1/min": "rpm", "min^-1": "rpm", spm: "rpm", Hz: "rev/s" } };
 const USUAL = {
   si: { length: "mm", angle: "deg", "angular speed": "rpm", stiffness: "N/mm", pressure: "MPa" },
   inch: {
@@ -37,6 +38,7 @@ const USUAL = {
 const KINDS = Object.entries(UNITS).map(([name, units]) => ({
   name,
   units: Object.entries(units).map(([unit, factor]) => ({ unit, factor })),
+  spoken: SPOKEN[name] ?? {},
   si: USUAL.si[name] ?? Object.keys(units)[0],
   inch: USUAL.inch[name] ?? Object.keys(units)[0],
 }));

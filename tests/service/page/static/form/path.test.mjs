@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { at, idOf, isTable, put, renamed, written } from "../../../../../service/page/static/form/path.js";
+import { at, idOf, isTable, put, renamed, valueOf, written } from "../../../../../service/page/static/form/path.js";
 import { draws } from "../draws.mjs";
 
 const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
@@ -70,4 +70,10 @@ test("keys that are formulas are written in quotes, long ones as far as the serv
 
 test("a key that is called otherwise stays in its place", () => {
   assert.deepEqual(Object.keys(renamed({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), ["a", "b c + 1", "d"]);
+});
+
+test("a name has the value that its length or requirement has, and none where that is a range", () => {
+  const job = { constraints: { stroke: { equals: "90 mm" }, time_ratio: { equals: "1.2 +- 0.1" } }, variables: { rod: "150 mm", crank: "40 mm ± 1 mm", offset: ["0 mm", "5 mm"] } };
+  const form = { at: (path) => at(job, path) };
+  assert.deepEqual(["stroke", "rod", "time_ratio", "crank", "offset", "height"].map((name) => valueOf(form, name)), ["90 mm", "150 mm", null, null, null, null]);
 });

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { choose } from "../browser.mjs";
 import { draws } from "../draws.mjs";
 
-const { convert, join, kindOf, readyKinds, split, unitsOf, usual } = await import("../../../../../service/page/static/lib/units.js");
+const { convert, join, kindOf, readyKinds, split, spread, unitsOf, usual } = await import("../../../../../service/page/static/lib/units.js");
 await readyKinds();
 
 // One of the first unit in the second, from handbooks and not by way of SI: what the page computes must agree.
@@ -54,6 +54,19 @@ test("a plain number of a job is in the SI unit, and nothing has the usual one",
 
 test("what is no value with a unit stays whole, for the service to say what is wrong", () => {
   for (const given of ["forty mm", "40 parsecs", "mm", "", "40 mm wide"]) assert.deepEqual(split(given, "length"), { number: given, unit: "" });
+});
+
+test("a range that a job states as its middle and half its width has two ends, in its own unit", () => {
+  assert.deepEqual(spread("40 mm +- 10 mm", "length"), ["30 mm", "50 mm"]);
+  assert.deepEqual(spread("180±0.5 in", "length"), ["179.5 in", "180.5 in"]);
+  assert.deepEqual(spread("300 1/min +- 5 1/min", "angular speed"), ["295 rpm", "305 rpm"]);
+  assert.deepEqual(spread("1.2 +- 0.1", null), ["1.1", "1.3"]);
+  for (const given of ["40 mm", "40 +- 10", "rod +- 10 mm", "+- 3 mm", "40 mm +- 2 deg", 40, undefined, ["40 mm +- 10 mm"], { equals: "40 mm +- 1 mm" }]) assert.equal(spread(given, "length"), null);
+});
+
+test("a speed in a word of plates is one in the unit that it means", () => {
+  for (const [given, parts] of [["300 1/min", ["300", "rpm"]], ["60 spm", ["60", "rpm"]], ["2.5 Hz", ["2.5", "rev/s"]]]) assert.deepEqual(Object.values(split(given, "angular speed")), parts);
+  assert.deepEqual(split("5 Hz", "length"), { number: "5 Hz", unit: "" });
 });
 
 test("a number that is left empty is no value; a minus of any kind is one", () => {
