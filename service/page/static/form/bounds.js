@@ -16,9 +16,9 @@ export const SAID = { equals: "exactly", min: "at least", max: "at most" };
 
 /**
  * Return the controls of the bounds that stand at a spot, and what they are: {mode, keys, inputs, controls}.
- * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void }} given any: whether nothing may be asked; again: draws them anew
+ * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void, here?: () => void }} given any: whether nothing may be asked; again: draws them anew; here: without what is around them
  */
-export function bounds(form, spot, { label, kind, any = false, again }) {
+export function bounds(form, spot, { label, kind, any = false, again, here = again }) {
   const stated = form.at(spot.path);
   const ends = spread(at(stated, ["equals"]), kind);
   const given = ends ? { min: ends[0], max: ends[1] } : stated;
@@ -47,7 +47,12 @@ export function bounds(form, spot, { label, kind, any = false, again }) {
     form.put(spot.path, names.length ? found : undefined);
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
-  inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(again))); // once the next field has the focus
+  const drawn = () => {
+    if (!select.isConnected) return; // drawn anew meanwhile
+    write();
+    here();
+  };
+  inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(drawn))); // once the next control has the focus
   units?.addEventListener("change", () => {
     changeUnit(units, inputs, kind);
     write();

@@ -1,6 +1,6 @@
 /** A field of the form: label, control, explanation and what is wrong with it, tied together for everybody. */
 
-import { h } from "../lib/dom.js";
+import { byId, focused, h } from "../lib/dom.js";
 import { idOf, written } from "./path.js";
 import { capital, inWords, WORDS } from "../lib/words.js";
 
@@ -32,6 +32,17 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   });
   if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error, tell });
   return node;
+}
+
+/**
+ * Put a field that is made anew in the place of one; what has the focus in it keeps it.
+ * @param {Form.Whole} form @param {HTMLElement} node @param {() => HTMLElement} make
+ */
+export function replace(form, node, make) {
+  const focus = focused(node)?.id;
+  form.forget((one) => one.node === node);
+  node.replaceWith(make());
+  if (focus) byId(focus)?.focus();
 }
 
 /**

@@ -72,6 +72,7 @@ function row(form, table, key, place, asked, what) {
     if (typeof given === "number") form.put([...spot.path, key], join(String(given), usual(now)));
   };
   const draw = () => {
+    const focus = focused(below)?.id;
     form.forget((one) => below.contains(one.node));
     const begun = form.at(spot.path);
     const changed = () => Object.entries(form.at(spot.path) ?? {}).forEach(([bound, value]) => value !== at(begun, [bound]) && early.add(bound));
@@ -83,6 +84,7 @@ function row(form, table, key, place, asked, what) {
       if (kind === null) of.addEventListener("input", changed);
       return error;
     }), drop);
+    if (focus) byId(focus)?.focus();
   };
   const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
   drop.addEventListener("click", () => {
@@ -112,9 +114,7 @@ function row(form, table, key, place, asked, what) {
     if (kind === null && now !== null) for (const key of early) withUnit(key, now);
     kind = now;
     early.clear();
-    const focus = focused(below)?.id;
     draw();
-    if (focus) byId(focus)?.focus();
   });
   return made;
 }

@@ -2,7 +2,7 @@
 
 import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
-import { field } from "./field.js";
+import { field, replace } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
 import { drawnFrom, entered } from "./typed_field.js";
 import { convert, join, split, spread } from "../lib/units.js";
@@ -54,7 +54,12 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
     else form.put(path, { [to]: mode === "step" ? some.slice(0, 2) : some });
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
-  inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(() => form.redraw()))); // once the next field has the focus
+  const again = () => {
+    if (!made.isConnected) return; // drawn anew meanwhile
+    write();
+    replace(form, made, () => range(form, path, { label, why, kind, fixed, drop: text, removed }));
+  };
+  inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(again))); // once the next control has the focus
   series?.addEventListener("change", () => write());
   units?.addEventListener("change", () => {
     const from = units.dataset.from ?? units.value;
