@@ -138,7 +138,7 @@ WEAR = _kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0
 RATIO = _kind("a ratio", "", "3.2", 1e9)
 JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, face("in/s^3", _PER_INCH))
 _VOLUME = face("in^3", 1.0 / _INCH**3), face("cm^3", 1e6)
-VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME)
+VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME, believed=(1e-9, 1.0))
 ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
 TIME = _kind("a time", "s, min", "30 s", 1e9)
 

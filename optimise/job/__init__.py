@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
@@ -18,7 +18,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ...model.errors import InputError, InputWarning, JobError
+from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
 from ...model.machine.strength import Material
 from ...objectives.units import shown
@@ -31,7 +31,7 @@ from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
-from .plain_numbers import plain_bounds, plain_numbers
+from .plain_numbers import PlainNumbers, plain_bounds, plain_numbers, plain_values
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
@@ -143,28 +143,42 @@ def parse_job(
     data, _ = with_options(data)
     own = declared(data, allowed=allow_user_code)
     job = job_with(own)
-    doubts: list[str] = []
+    doubts: list[PlainNumbers] = []
     try:
         stated = job.model_validate(data)
         stated = with_values(stated, values, "values") if values else stated
-        doubts = [item.warning for item in plain_numbers(job, data, values or {}) if item.warning]
+        doubts = plain_numbers(job, data, values or {})
         problem = problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
-        doubts += [item.warning for item in plain_bounds(problem, data) if item.warning]
-        return replace(problem, warnings=tuple(dict.fromkeys(doubts))) if doubts else problem
+        doubts += plain_bounds(problem, data)
+        warned = tuple(dict.fromkeys(item.warning for item in doubts if item.warning))
+        return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
-        found = explain(error, _schema() if job is Job else schema_of(job))
+        doubts = plain_values(job, data)
+        found = [_with_doubts(one, doubts) for one in explain(error, _schema() if job is Job else schema_of(job))]
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []
         raise JobError("\n  ".join([*heading, *found[:MOST], *more])) from None
     except InputError as error:  # a number that means another unit is a likely cause
-        place = re.match(r"[a-z_][^:;=]*: ", str(error)) if doubts else None
-        key = place[0] if place else ""
-        text = key + "; ".join((*doubts, str(error)[len(key) :]))
+        if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
+            doubts += plain_bounds(error.problem, data)
+        text = _with_doubts(str(error), doubts, everywhere=isinstance(error, InfeasibleError))
         if not isinstance(error, JobError):
             raise JobError(text) from None
         error.args = (text,)
         raise
+
+
+def _with_doubts(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: bool = False) -> str:
+    """Return a refusal with the warnings of plain numbers that may be its cause, after the key that it begins with.
+
+    everywhere: whether those at other keys may be too.
+    """
+    place = re.match(r"[a-z_][^:;=]*(?=: )", sentence)
+    key = place[0] if place else ""
+    found = [item.warning for item in doubts if item.warning and (everywhere or not key or item.concerns(key))]
+    rest = sentence[len(key) :].removeprefix(": ")
+    return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(found), rest))
 
 
 def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:

@@ -43,6 +43,13 @@ class Grid:
     rule: str
 
 
+def swap(lower: object, upper: object) -> str:
+    """Return the remedy for ends of a range that cross. A number beside a value with a unit mostly lacks its unit."""
+    plain = [end for end in (lower, upper) if isinstance(end, float | int) and end]
+    mixed = len(plain) == 1 and any(isinstance(end, str) for end in (lower, upper))
+    return f"give {plain[0]:g} its unit" if mixed else "swap the two"
+
+
 def says_values(given: object) -> bool:
     """Return whether a value of a job has a key of a table of values."""
     return isinstance(given, Mapping) and not KEYS.isdisjoint(given)
@@ -67,7 +74,8 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     lower, upper = read(given["min"]), read(given["max"])
     if lower > upper:
         raise InputError(
-            f"must run from min to max; got {shown(given['min'])} to {shown(given['max'])}, an empty range; swap them"
+            f"must run from min to max; got {shown(given['min'])} to {shown(given['max'])}, an empty range; "
+            f"{swap(given['min'], given['max'])}"
         )
     room = _ROOM * max(abs(lower), abs(upper))
     found = _multiples if words == ["step"] else _preferred

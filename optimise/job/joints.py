@@ -9,7 +9,7 @@ from ...model.errors import JobError
 from ...model.machine.clearance import Clearance, Joint, Law
 from ...model.machine.friction import Friction, Pin
 from .sections import PinsPart
-from .values import Built, Checked, Fraction, Limited, PositiveLength, Pressure, optional, required
+from .values import Built, Checked, Fraction, Limited, PositiveClearance, PositiveLength, Pressure, optional, required
 
 Coefficient = Annotated[
     Fraction,
@@ -67,7 +67,7 @@ class ClearancePart(Checked[Clearance]):
     renamed: ClassVar = {"radial_clearance": "radius"}
 
     joint: Joint = required("which pin is loose", "crank pin")
-    radial_clearance: PositiveLength = required(
+    radial_clearance: PositiveClearance = required(
         "radius of the bearing less radius of the journal: half the difference of the diameters", "0.2 mm"
     )
     journal_radius: PositiveLength = required("of the pin", "10 mm")

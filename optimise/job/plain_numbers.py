@@ -35,7 +35,7 @@ class PlainNumbers:
     def note(self) -> str:
         """The first of the numbers as it is read."""
         number = plain_in(self.value)[0]
-        return f"{self.key} = {number:g} is {self._reading(number)}"
+        return f"{self.key} = {number:g} is {number:g} {self.kind.unit}{self._usual(number, ' = {}')}"
 
     @property
     def warning(self) -> str | None:
@@ -49,19 +49,27 @@ class PlainNumbers:
         text = toml(self.value)
         given = text if len(text) <= _LONGEST else shown(self.value)
         what = "mixes numbers with and without a unit" if mixed else "has no unit"
-        said = f"{self.key} = {given} {what}: {number:g} is {self._reading(number)}"
+        what = f"{what} and is" if number == self.value else f"{what}: {number:g} is"
+        read = f'"{number:g} {self.kind.unit}"'
+        said = f"{self.key} = {given} {what} read as {read[1:-1]}{self._usual(number, ' ({})')}"
+        usual = f"{number:g} {self.kind.metric.symbol}"
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
             return f"{said}; write it with its unit"
-        usual = self.kind.metric.symbol
-        return f'{said}; write "{number:g} {usual}" if that is meant, or "{number:g} {self.kind.unit}"'
+        if usual == read[1:-1]:
+            return f"{said}; write {read}"
+        return f'{said}; if you mean {usual}, write "{usual}", otherwise {read}'
+
+    def concerns(self, key: str) -> bool:
+        """Return whether the value stands at a key of the job, in it, or in the table of it."""
+        return any(f"{one}.".startswith(f"{other}.") for one, other in ((self.key, key), (key, self.key)))
 
     def _is_believed(self, number: float) -> bool:
-        return self.kind.believed is None or self.kind.believed[0] <= abs(number) <= self.kind.believed[1]
+        return self.kind.believed is None or self.kind.believed[0] <= abs(number) < self.kind.believed[1]
 
-    def _reading(self, number: float) -> str:
+    def _usual(self, number: float, form: str) -> str:
+        """Return the number in the usual unit in a form of words; "" if that is the SI unit."""
         usual = self.kind.metric
-        also = f" = {usual.factor * number:.6g} {usual.symbol}" if usual.symbol != self.kind.unit else ""
-        return f"{number:g} {self.kind.unit}{also}"
+        return form.format(f"{usual.factor * number:.6g} {usual.symbol}") if usual.symbol != self.kind.unit else ""
 
 
 def plain_numbers(
@@ -87,6 +95,11 @@ def plain_numbers(
     kinds = {path: kind for path, _, _, kind in _placed(job, tried)}
     more = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
     return [*placed.values(), *more]
+
+
+def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
+    """Return the numbers without a unit that stand in their own places, in the tables of a job that may be invalid."""
+    return [PlainNumbers(key, value, kind) for _, key, value, kind in _placed(job, data)]
 
 
 def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:

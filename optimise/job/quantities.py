@@ -19,6 +19,7 @@ from pydantic import (
     ModelWrapValidatorHandler,
     SerializerFunctionWrapHandler,
     Tag,
+    ValidationError,
     create_model,
     model_serializer,
     model_validator,
@@ -33,8 +34,9 @@ from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import closest, shown, spread
 from ..problem.requirements import SENSES, Constraint, Objective, Word
+from .grids import swap
 from .messages import key_of, toml
-from .values import Part, Physical, optional, required
+from .values import Part, Physical, of_spread, optional, required
 
 
 class Bounds(Part):
@@ -44,8 +46,13 @@ class Bounds(Part):
     @classmethod
     def _possible(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         if isinstance(data, Mapping) and set(data) == {"equals"} and (ends := spread(data["equals"])):
-            data = dict(zip(("min", "max"), ends, strict=True))
-        bounds = handler(data)
+            try:
+                bounds = handler(dict(zip(("min", "max"), ends, strict=True)))
+            except ValidationError as error:
+                refused = error.errors()[0].get("ctx", {}).get("error")
+                raise (of_spread(data["equals"], ends, refused) if isinstance(refused, InputError) else error) from None
+        else:
+            bounds = handler(data)
         lower, upper, equals = (getattr(bounds, name) for name in ("min", "max", "equals"))
         if lower is None and upper is None and equals is None:
             raise InputError("must say min, max or equals; got an empty table; add one of the three")
@@ -59,8 +66,8 @@ class Bounds(Part):
 
 def _crossed(given: Mapping[Any, object]) -> str:
     return (
-        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}; swap the two or leave "
-        "out one"
+        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}; "
+        f"{swap(given['min'], given['max'])} or leave out one"
     )
 
 

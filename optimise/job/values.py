@@ -5,8 +5,9 @@ Each says in the JSON Schema what it accepts, and writes back what it reads: SI 
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, cast
 
@@ -28,7 +29,7 @@ from ...objectives import kinds, units
 from ...objectives.kinds import Kind
 from ...objectives.units import Sign, shown, spread, to_si
 from .beside import SOURCE
-from .grids import Grid, grid_schema, read_grid, says_values
+from .grids import Grid, grid_schema, read_grid, says_values, swap
 
 SHORTEST = 1e-9
 """m; a shorter link is a mistaken unit."""
@@ -106,8 +107,20 @@ def values_in(value: object) -> list[object]:
 
 
 def plain_in(value: object) -> list[float]:
-    """Return the numbers without a unit in a value, a list, or a table of values. Zero needs no unit."""
-    return [x for x in values_in(value) if isinstance(x, int | float) and not isinstance(x, bool) and x]
+    """Return the finite numbers without a unit in a value, a list, or a table of values. Zero needs no unit."""
+    numbers = (x for x in values_in(value) if isinstance(x, int | float) and not isinstance(x, bool) and x)
+    return [x for x in numbers if isinstance(x, int) or math.isfinite(x)]
+
+
+def of_spread(value: object, ends: Sequence[object], error: InputError) -> InputError:
+    """Return the refusal of a range in the words of its ends, which were refused; `error` for a value without ends."""
+    if ends[0] == value:
+        return error
+    rule = str(error).partition(";")[0]
+    return InputError(
+        f"{rule}; got {shown(value)}, which is {ends[0]} to {ends[1]}; "
+        "correct its unit, its middle or the part after +-"
+    )
 
 
 class _Read:
@@ -120,8 +133,13 @@ class _Read:
 
     def _noted(self, value: object, info: core_schema.ValidationInfo) -> object:
         """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
-        found = self.read(value)
-        if info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value):
+        plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value)
+        try:
+            found = self.read(value)
+        except InputError:
+            if not plain:
+                raise
+        if plain:
             raise PydanticCustomError(PLAIN, "has no unit", {"kind": self.kind})
         return found
 
@@ -255,13 +273,15 @@ class RangeOf(_Read):
                 keys = (f"{key} = {shown(end)}" for key, end in zip(("min", "max", "step"), ends, strict=True))
                 write = f"for steps within a range write {{ {', '.join(keys)} }}"
             raise InputError(f"must be a range [lower, upper] or one value; got {shown(value)}; {write}")
-        lower, upper = (self._length(end) for end in ends)
+        try:
+            lower, upper = (self._length(end) for end in ends)
+        except InputError as error:
+            raise (error if isinstance(value, list | tuple) else of_spread(value, ends, error)) from None
         if lower > upper:
-            what = f"must run from its lower to its upper end; got {shown(ends[0])} to {shown(ends[1])}"
-            plain = plain_in(value)
-            if len(plain) == 1:
-                raise InputError(f'{what}; {plain[0]:g} without a unit is {plain[0]:g} m; write "{plain[0]:g} mm"')
-            raise InputError(f"{what}, an empty range; swap the two")
+            raise InputError(
+                f"must run from its lower to its upper end; got {shown(ends[0])} to {shown(ends[1])}, an empty range; "
+                f"{swap(*ends)}"
+            )
         return lower, upper
 
     def _length(self, value: object) -> float:
@@ -372,6 +392,7 @@ Length = Annotated[float, Physical(kinds.LENGTH)]
 PositiveLength = Annotated[float, Physical(kinds.LENGTH, "positive")]
 Radius = Annotated[float, Physical(kinds.LENGTH, "zero or more")]
 Clearance = Annotated[float, Physical(_FIT, "zero or more")]
+PositiveClearance = Annotated[float, Physical(_FIT, "positive")]
 Angle = Annotated[float, Physical(kinds.ANGLE)]
 AngleTolerance = Annotated[float, Physical(kinds.ANGLE, "zero or more")]
 AngularSpeed = Annotated[float, Physical(kinds.ANGULAR_SPEED)]

@@ -31,7 +31,7 @@ from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
 from .amounts import values_of
 from .crank_speed import TIME_KEYS
-from .grids import Grid, read_grid, says_values
+from .grids import Grid, read_grid, says_values, swap
 from .messages import explain
 from .model import Job
 from .paths import stated, unknown_path, with_number
@@ -286,7 +286,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     given = spread(given) or given
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
-            f"{key}: must be a range [lower, upper] {{ choices = [...] }} or values; got {shown(given)}; "
+            f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {shown(given)}; "
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
@@ -294,7 +294,8 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     lower, upper = (_number(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
-            f"{key}: must run from its lower to its upper end; got {shown(given[0])} to {shown(given[1])}; swap the two"
+            f"{key}: must run from its lower to its upper end; got {shown(given[0])} to {shown(given[1])}; "
+            f"{swap(*given)}"
         )
     sets = []
     for place, low, high in _differing(jobs[0].machine(), jobs[1].machine(), ""):

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import slidercrank as sc
-from slidercrank.model.errors import InfeasibleError, InputWarning, JobError
+from slidercrank.model.errors import InputWarning, JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.notes import notes_of
 
@@ -23,6 +23,9 @@ PRESS = {
     "variables": {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": [0, "0.1 m"]},
     "objectives": {"peak_torque": "minimise", "transmission_angle": "maximise"},
 }
+CLEARANCE = {"joint": "crank pin", "radial_clearance": "0.1 mm", "journal_radius": "10 mm"}
+SPEEDS = {"crank_angles": ["0 deg", "90 deg", "180 deg", "270 deg"], "speeds": [120, 130, 120, 110]}
+COMPRESSOR = {"bore": "70 mm", "suction": "1 bar", "discharge": "8 bar", "clearance_volume": 11.5}
 
 
 def put(path: str, value: Any) -> dict[str, Any]:
@@ -42,21 +45,53 @@ def put(path: str, value: Any) -> dict[str, Any]:
         (
             "mechanism.speed",
             120,
-            'mechanism.speed = 120 has no unit: 120 is 120 rad/s = 1145.92 rpm; write "120 rpm" if that is meant, or '
-            '"120 rad/s"',
+            "mechanism.speed = 120 has no unit and is read as 120 rad/s (1145.92 rpm); if you mean 120 rpm, write "
+            '"120 rpm", otherwise "120 rad/s"',
         ),
         (
             "variables.crank",
             [20, 200],
-            'variables.crank = [20, 200] has no unit: 20 is 20 m = 20000 mm; write "20 mm" if that is meant, or "20 m"',
+            'variables.crank = [20, 200] has no unit: 20 is read as 20 m (20000 mm); if you mean 20 mm, write "20 mm", '
+            'otherwise "20 m"',
         ),
         ("variables.rod", ["60 mm", 0.6], 'variables.rod = ["60 mm", 0.6] mixes numbers with and without a unit: 0.6'),
-        ("variables.crank", {"choices": [0.02, 25]}, "variables.crank = { choices = [0.02, 25] } has no unit: 25 is"),
-        ("load.0.positions", [0.1, 200], "load #1.positions = [0.1, 200] has no unit: 200 is 200 m = 200000 mm"),
-        ("tolerances.crank", 0.015, 'tolerances.crank = 0.015 has no unit: 0.015 is 0.015 m = 15 mm; write "0.015 mm"'),
-        ("tolerances.crank_angle", 30, "tolerances.crank_angle = 30 has no unit: 30 is 30 rad = 1718.87 deg"),
-        ("constraints", {"rod - crank": {"max": 40}}, 'constraints."rod - crank".max = 40 has no unit: 40 is 40 m'),
-        ("variables.mechanism.speed", [30, 60], "variables.mechanism.speed = [30, 60] has no unit: 30 is 30 rad/s"),
+        (
+            "variables.crank",
+            {"choices": [0.02, 25]},
+            "variables.crank = { choices = [0.02, 25] } has no unit: 25 is read as 25 m",
+        ),
+        (
+            "load.0.positions",
+            [0.1, 200],
+            "load #1.positions = [0.1, 200] has no unit: 200 is read as 200 m (200000 mm)",
+        ),
+        (
+            "tolerances.crank",
+            0.015,
+            "tolerances.crank = 0.015 has no unit and is read as 0.015 m (15 mm); if you mean 0.015 mm, write",
+        ),
+        ("tolerances.crank_angle", 30, "tolerances.crank_angle = 30 has no unit and is read as 30 rad (1718.87 deg)"),
+        (
+            "constraints",
+            {"rod - crank": {"max": 40}},
+            'constraints."rod - crank".max = 40 has no unit and is read as 40 m',
+        ),
+        (
+            "variables.mechanism.speed",
+            [30, 60],
+            "variables.mechanism.speed = [30, 60] has no unit: 30 is read as 30 rad/s",
+        ),
+        (
+            "clearance",
+            CLEARANCE | {"journal_radius": 10},
+            "clearance.journal_radius = 10 has no unit and is read as 10 m",
+        ),
+        ("variables.crank", 10, "variables.crank = 10 has no unit and is read as 10 m (10000 mm)"),
+        (
+            "load.0.forces",
+            ["1 N", 2],
+            'load #1.forces = ["1 N", 2] mixes numbers with and without a unit: 2 is read as 2 N; write "2 N"',
+        ),
     ],
 )
 def test_a_number_without_a_unit_of_a_size_that_no_machine_has_is_warned_of(path: str, value: Any, said: str) -> None:
@@ -98,21 +133,80 @@ def test_what_an_option_of_a_choice_sets_without_a_unit_is_warned_of() -> None:
 def test_a_value_put_in_place_of_a_number_of_the_job_is_judged_in_its_place() -> None:
     assert parse_job(put("mechanism.speed", 30), {"mechanism.speed": "300 rpm"}).warnings == ()
     (warning,) = parse_job(PRESS, {"mechanism.speed": 300}).warnings
-    assert warning.startswith("mechanism.speed = 300 has no unit: 300 is 300 rad/s = 2864.79 rpm")
+    assert warning.startswith("mechanism.speed = 300 has no unit and is read as 300 rad/s (2864.79 rpm)")
 
 
-def test_a_range_whose_first_end_has_no_unit_is_not_called_empty_alone() -> None:
-    with pytest.raises(JobError, match=r'got 20 to "200 mm"; 20 without a unit is 20 m; write "20 mm"'):
-        parse_job(put("variables.crank", [20, "200 mm"]))
+@pytest.mark.parametrize(
+    ("path", "value", "key", "meant"),
+    [
+        ("variables.crank", [20, "200 mm"], "variables.crank", "20 mm"),
+        ("variables.crank", {"min": 20, "max": "60 mm", "step": "1 mm"}, "variables.crank", "20 mm"),
+        ("variables.mechanism.speed", [60, "120 rpm"], "variables.mechanism.speed", "60 rpm"),
+        ("constraints.stroke", {"min": 50, "max": "100 mm"}, "constraints.stroke", "50 mm"),
+    ],
+)
+def test_ends_that_cross_for_want_of_a_unit_are_not_to_be_swapped(path: str, value: Any, key: str, meant: str) -> None:
+    with pytest.raises(JobError) as refused:
+        parse_job(put(path, value))
+    said = str(refused.value)
+    assert said.startswith(f"{key}: {key}")
+    assert f'write "{meant}"' in said
+    assert f"; give {meant.split()[0]} its unit" in said
+    assert "swap" not in said
 
 
-def test_an_impossible_requirement_names_the_missing_unit_as_its_cause() -> None:
-    with pytest.raises(InfeasibleError, match=r'constraints\.stroke\.equals = 150 has no unit.*write "150 mm"'):
-        parse_job(put("constraints.stroke", {"equals": 150}))
+@pytest.mark.parametrize(
+    ("path", "value", "key", "meant"),
+    [
+        ("constraints.stroke", {"equals": 150}, "constraints.stroke", "150 mm"),
+        ("constraints", {"rod": {"equals": 150}}, "constraints.rod", "150 mm"),
+        ("constraints", {"offset": {"min": 15}}, "constraints.offset", "15 mm"),
+        ("variables.crank", {"min": "20 mm", "max": "60 mm", "step": 1}, "variables.crank", "1 mm"),
+        ("load.0.positions", [10, "60 mm"], "load #1.positions", "10 mm"),
+        ("load", [COMPRESSOR], "load #1.clearance_volume", "11.5 cm^3"),
+        ("mechanism.speed_profile", SPEEDS, "mechanism", "120 rpm"),
+        ("clearance", CLEARANCE | {"radial_clearance": 0.1}, "clearance", "0.1 mm"),
+        ("mechanism.speed_profile", SPEEDS | {"crank_angles": [0, 90, 180]}, "mechanism.speed_profile", "90 deg"),
+    ],
+)
+def test_a_refusal_begins_with_the_missing_unit_that_may_be_its_cause(
+    path: str, value: Any, key: str, meant: str
+) -> None:
+    with pytest.raises(JobError) as refused:
+        parse_job(put(path, value))
+    said = str(refused.value)
+    assert said.startswith(f"{key}: {key}")
+    assert f'if you mean {meant}, write "{meant}"' in said
+
+
+def test_a_refusal_elsewhere_has_no_word_of_plain_numbers() -> None:
+    job = put("mechanism.speed", 120)
+    job["objectives"] = {"time_ratio": "maximum", "stroke": "maximise"}
+    with pytest.raises(JobError, match=r"objectives\.time_ratio: must be") as refused:
+        parse_job(job)
+    assert "120" not in str(refused.value)
+    job["objectives"] = {"time_ratio": "maximise"}
+    job["variables"]["offset"] = "0 mm"
+    with pytest.raises(JobError, match=r"objectives\.time_ratio: without offset") as refused:
+        parse_job(job)
+    assert "120" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "said"),
+    [
+        ("constraints.stroke", {"equals": "0.1 +- 0.001"}, 'a length with its unit; got "0.1 +- 0.001"'),
+        ("variables.crank", "40 mm +- 50 mm", 'positive; got "40 mm +- 50 mm", which is -10.0 mm to 90.0 mm'),
+    ],
+)
+def test_a_range_with_a_middle_is_refused_as_it_was_typed(path: str, text: Any, said: str) -> None:
+    with pytest.raises(JobError) as refused:
+        parse_job(put(path, text))
+    assert str(refused.value).startswith(f"{path}: must be {said}")
 
 
 def test_python_warns_once_for_each_problem_and_names_the_line_that_stated_it() -> None:
-    with pytest.warns(InputWarning, match="120 rad/s = 1145.92 rpm") as found:
+    with pytest.warns(InputWarning, match="120 rad/s \\(1145.92 rpm\\)") as found:
         problem = sc.problem(put("mechanism.speed", 120))
     assert [warning.filename for warning in found] == [__file__]
     for _ in range(3):

@@ -81,7 +81,7 @@ def test_doubtful_numbers_come_first_in_a_check_and_are_said_by_every_command(tm
     job = fronts.job_file(tmp_path)
     text = job.read_text().replace('"300 rpm"', "120").replace('rod = ["60 mm", "600 mm"]', 'rod = ["60 mm", 0.6]')
     job.write_text(text)
-    speed = "mechanism.speed = 120 has no unit: 120 is 120 rad/s = 1145.92 rpm; write "
+    speed = "mechanism.speed = 120 has no unit and is read as 120 rad/s (1145.92 rpm); if you mean 120 rpm, write "
     done = command("check", job)
     assert [line[:72] for line in done.stdout.splitlines()[1:3]] == [
         f"  warning       {speed}"[:72],
@@ -116,7 +116,7 @@ def test_a_number_of_another_unit_is_said_before_a_search(tmp_path: Path, runs: 
     job.write_text(job.read_text().replace('"300 rpm"', "30"))
     done = command("submit", job, "--store", tmp_path / "store.db", "--json")
     assert json.loads(done.stdout)["state"] == "queued"
-    assert "warning: mechanism.speed = 30 has no unit: 30 is 30 rad/s = 286.479 rpm" in done.stderr
+    assert "warning: mechanism.speed = 30 has no unit and is read as 30 rad/s (286.479 rpm)" in done.stderr
 
 
 @pytest.mark.parametrize(("gravity", "told"), [(None, True), ("0", False), ('"9.81 m/s^2"', False)])

@@ -47,7 +47,9 @@ def test_a_number_that_probably_means_another_unit_is_among_the_warnings(shared:
     (warning,) = preview(shared, job)["understood"]["warnings"]
     plate = {"mechanism": feeder["mechanism"] | {"speed": "2400 1/min"}}
     assert "crank speed 2400 rpm (counter-clockwise)" in preview(shared, feeder | plate)["understood"]["given"]
-    assert warning.startswith("mechanism.speed = -251 has no unit: -251 is -251 rad/s = -2396.87 rpm; write")
+    assert warning.startswith(
+        "mechanism.speed = -251 has no unit and is read as -251 rad/s (-2396.87 rpm); if you mean"
+    )
 
 
 @pytest.mark.parametrize(
