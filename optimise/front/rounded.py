@@ -17,6 +17,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.table_columns import slack_field
 from ..problem.violation import FEASIBLE, violated_by
+from .rounding_search import REACHES
 from .slack import slack_of
 
 if TYPE_CHECKING:
@@ -93,6 +94,8 @@ class Rounded:
         if not self.judged:
             return f"no rounded design within {counted(self.reach, 'step')} turns fully; give smaller steps"
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
+        if self.reach < REACHES[0]:
+            near += f" (not {REACHES[0]}, as {len(self.steps)} numbers are rounded together)"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
             within = f" within {self._allowed_in_words(system)}" if self.allowed else ""

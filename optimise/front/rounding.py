@@ -39,6 +39,9 @@ def rounding(
 ) -> Steps[Rounded]:
     """Return the best designs of round numbers near a given one; where none meets all requirements, the nearest.
 
+    Where the best loses more than 1 % of a range and fewer than `count` meet all, those follow that miss a requirement
+    by 1 % of its bound at most and lose at least a quarter less.
+
     The nearest: first the design whose greatest relative miss is least; a miss is the distance of a value beyond a
     bound and what is allowed there, divided by the bound. Of equal misses the least loss comes first, then the least
     distance from the given design in steps. After it come those that miss more but lose at least a quarter less than

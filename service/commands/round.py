@@ -46,8 +46,9 @@ def round(
 
     All combinations of multiples of the steps around the design are judged exactly. Listed are those that meet every
     requirement, or miss it by no more than --allow says, and that no other one beats in every objective, least loss
-    first: the greatest over the objectives, each by its range over the front. Where there are none, the nearest are
-    listed, each with what it misses and by how much; the exit code is then 3. Ctrl-C ends the search.
+    first: the greatest over the objectives, each by its range over the front. If the best loses much, those that miss
+    little and lose clearly less follow. Where none meets all, the nearest are listed, each with what it misses and by
+    how much; the exit code is then 3. Ctrl-C ends the search.
     """
     folder, result, front = front_of_run(run, runs, number)
     steps = steps_of(to, front.part(number - 1), key="--to")

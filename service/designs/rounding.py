@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, Kind, System, shown_in
+from ...objectives.units import shown
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
@@ -59,7 +61,7 @@ def allowed_of(allow: Sequence[str], *, key: str) -> dict[str, float | str]:
         name = metric_key(name)
         if not (equals and name and value):
             raise InputError(
-                f"{key} is a requirement, =, and by how much it may be missed; got {text!r}; write it like "
+                f"{key} is a requirement, =, and by how much it may be missed; got {shown(text)}; write it like "
                 f"{_ALLOWED_EXAMPLE}"
             )
         if name in found:
@@ -72,7 +74,8 @@ def _step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, read as in a job."""
     from ...optimise.job.grids import step_of
 
-    return step_of(text, lambda given: value_of(key, str(given), kind, sign="positive"))
+    small = replace(kind, example="0.1 mm") if kind is LENGTH else kind  # not as long as a link
+    return step_of(text, lambda given: value_of(key, str(given), small, sign="positive"))
 
 
 def rounded_record(found: Rounded) -> dict[str, Any]:

@@ -185,6 +185,7 @@ def test_a_search_that_is_interrupted_ends_with_exit_code_130(
         (1, ["rod=1 mm", "rod_in=2 mm"], "got rod twice"),
         (1, ["rod=700 mm"], "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
         (1, ["1e-12 mm"], "the step of crank must be 1e-09 of"),
+        (1, ["1 kg"], 'got "1 kg", which is a mass; write it like "0.1 mm"'),
     ],
 )
 def test_a_wrong_request_is_one_sentence_and_exit_code_2(
@@ -207,7 +208,7 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
         (["stroke=0.1"], "the allowed miss of stroke must be a length with its unit"),
         (["stroke=1 deg"], "the allowed miss of stroke must be a length"),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
-        (["0.1 mm"], "--allow is a requirement, =, and by how much it may be missed; got '0.1 mm'"),
+        (["0.1 mm"], '--allow is a requirement, =, and by how much it may be missed; got "0.1 mm"'),
         (["stroke=1 mm", "stroke=2 mm"], "--allow gives each requirement once; got stroke twice"),
         (["stroke_in=1 mm", "stroke=2 mm"], "got two for stroke"),
     ],
