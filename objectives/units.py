@@ -225,7 +225,7 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
     number = float(exact)
     if (sign == "positive" and number <= 0.0) or (sign == "zero or more" and number < 0.0):
         if number < 0.0 and isinstance(value, str):
-            write = f"write it without the minus sign, {shown(value.translate(_TYPESET).strip().removeprefix('-'))}"
+            write = f"write {shown(value.translate(_TYPESET).strip().removeprefix('-'))}"
         raise InputError(f"must be {sign}; got {shown(value)}; {write}")
     return number
 
@@ -326,10 +326,14 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         raise InputError(f"must be a finite number; got {shown(text)}; {write}")
     if re.search(r"\d,\d", text):
         point, parted = text.replace(",", "."), text.replace(",", "")
-        write = f"write {shown(point)}" if text.count(",") == 1 else f"write {shown(parted)}"
+        if text.count(",") > 1:
+            raise InputError(f"must not contain commas; got {shown(text)}; write {shown(parted)}")
         if re.fullmatch(r"\s*[-+]?[1-9]\d{0,2},\d{3}(?!\d).*", text):
-            write += f", or {shown(parted)} if the comma separates thousands"
-        raise InputError(f"{rule} without a comma; got {shown(text)}; the decimal sign is a point; {write}")
+            raise InputError(
+                f"must not contain a comma; got {shown(text)}; write {shown(parted)} if the comma separates thousands, "
+                f"or {shown(point)} if it is a decimal comma"
+            )
+        raise InputError(f"use a decimal point, not a comma; got {shown(text)}; write {shown(point)}")
     match = _VALUE.fullmatch(text.translate(_TYPESET))
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
@@ -353,7 +357,10 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         which = f", which is {(energies or others)[0].name}" if others else ""
         force = _WEIGHT.sub(r"\1f", unit)
         if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
-            write = f'the force of a weight has the unit lbf, ozf or kgf: write "{match[1]} {force}"'
+            newtons = f"{float(number * _unit(force)[0]):.4g} {kind.unit}"
+            write = f'a weight is a force: write "{match[1]} {force}" or "{newtons}"'
+        elif others and kind.plain == "mass" and _unit("N")[1] == dimension:
+            write = f"write the mass in {kind.unit}"
         raise InputError(f"{rule}; got {shown(text)}{which}; {write}")
     for unit_of_kind, symbols, other in _APART:
         if kind.unit == unit_of_kind and re.search(symbols, unit):

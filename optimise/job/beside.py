@@ -33,7 +33,8 @@ def text_beside(files: Files, key: str, file: str) -> str:
     if isinstance(files, Path):
         return text_of(bytes_of(files / path_from_text(file), name, LARGEST), name)
     if file not in files:
-        raise JobError(f"{name} must be among the files that are sent; got {', '.join(files) or 'none'}; send it too")
+        sent = f" ({', '.join(files)})" if files else ""
+        raise JobError(f"{name} not found among the files sent with the job{sent}; send it too")
     content = files[file]
     return content if isinstance(content, str) else text_of(content, name)
 

@@ -79,7 +79,8 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
     job's own quantities. Raises JobError, naming column and remedy.
     """
     if header[0] != "name":
-        raise JobError(f'{name} must begin with the column "name"; got {shown(header[0])}; rename or move it')
+        remedy = "rename it" if header[0].casefold() == "name" else "rename or move it"
+        raise JobError(f'{name}: the first column must be headed "name"; got {shown(header[0])}; {remedy}')
     found: list[Column] = []
     for place, text in enumerate(header[1:], 1):
         if text.startswith("#"):
@@ -115,13 +116,13 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
                 f'"{name}{f" ({unit})" if unit else ""}" and bound {key} in [constraints]'
             ) from None
         if kind is not None:
-            _require_unit(unit, kind, where)
+            _require_unit(unit, kind, where, text)
         return Column(place, text, name, word, unit, kind)
     if _PATH.fullmatch(name):
         return Column(place, text, name, None, unit)
     of = FACTS.get(_quantities().get(identifier(name), ""))
     if of is not None and not _GIVEN & set(of.offered):
-        _require_unit(unit, of.kind, where)
+        _require_unit(unit, of.kind, where, text)
         return Column(place, text, of.name, "max" if of.better == "low" else "min", unit, of.kind, added=True)
     _require_kept(text, name, unit, where, own)
     return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), kept=True)
@@ -204,11 +205,11 @@ def _limited(text: str, own: frozenset[str]) -> tuple[str, Kind | None]:
     return text_of(node), kind_of_formula(node, {name: kinds[name] for name in names})
 
 
-def _require_unit(unit: str, kind: Kind, where: str) -> None:
-    """Refuse a limit's unit that is none of its quantity."""
+def _require_unit(unit: str, kind: Kind, where: str, head: str) -> None:
+    """Refuse a limit's unit that is none of its quantity. head: of the column, with the unit."""
     if kind.unit and not unit:
         raise JobError(
-            f"{where}: must have the unit of {kind.name} in brackets; got none; write it like ({_unit(kind.example)})"
+            f"{where}: the heading has no unit; write, for example, {shown(f'{head} ({_unit(kind.example)})')}"
         )
     try:
         to_si(f"1 {unit}" if kind.unit else 1.0, kind)

@@ -77,6 +77,13 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
     """Return the curve of a table's columns with units of some kinds. Raises `InputError` for none or several."""
     kinds = (*over, *of)
     heads = [head for place, text in enumerate(table.heads) if (head := _head(place, text, kinds)) is not None]
+    if not heads and len(table.heads) == 2:
+        units = zip(table.heads, (over, of), strict=True)
+        example = ",".join(f"{text} ({_likely(text, kinds).metric.symbol})" for text, kinds in units)
+        raise InputError(
+            f"{table.name}: the columns have no units; got {', '.join(map(shown, table.heads))}; write, for example, "
+            f"{shown(example)}"
+        )
     angles = [head for head in heads if head.kind is ANGLE and ANGLE in over]
     x = _one(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
     y = _one(table, [head for head in heads if head.kind in of and head is not x], of)
@@ -89,6 +96,11 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
         raise InputError(f"{table.name} must have two points at least; got {len(at)}; add rows")
     curve = Curve(table.name, x, y, at, values, (table.understood([x.place, y.place]),))
     return _rising(curve, table) if x.kind is not TIME else curve
+
+
+def _likely(text: str, kinds: Sequence[Kind]) -> Kind:
+    """Return the kind that a head names; the first one without a name."""
+    return next((kind for kind in kinds if kind.plain.split()[-1] in text.casefold()), kinds[0])
 
 
 def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:

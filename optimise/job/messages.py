@@ -120,7 +120,7 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
         ), ""
     near = closest(str(key), allowed)
     choice = f"did you mean {near}?" if near else _elsewhere(str(key), schema) or possible
-    return f"{place}: unknown key; got {shown(value)}; {choice}", key_of([*path, near]) if near else ""
+    return f"{place}: unknown key {shown(str(key))}; {choice}", key_of([*path, near]) if near else ""
 
 
 def _elsewhere(key: str, schema: Schema) -> str:
@@ -129,7 +129,7 @@ def _elsewhere(key: str, schema: Schema) -> str:
     if key in schema["properties"] and key not in tables:
         return f"{key} stands above the first table of the file; move it there"
     owners = [f"[{name}]" for name, keys in tables.items() if key in keys]
-    return f"{key} is a key of {' or '.join(owners)}; move it there" if owners else ""
+    return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
@@ -171,6 +171,7 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
         first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
         write = f"; write {path[-1]} = {', '.join(filter(None, (first, ' or '.join(others))))}"
+        return f"must be exact, a minimum or a maximum; {got}{write}"
     return f"{rule_of(details)}; {got}{write}"
 
 

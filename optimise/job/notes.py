@@ -11,7 +11,7 @@ from ...objectives.registry import FACTS
 from ...objectives.units import shown
 from .beside import SOURCE
 from .catalogue import Catalogue, with_options
-from .messages import key_of
+from .messages import key_of, toml
 from .model import Job, job_with
 from .own import declared
 from .plain_numbers import plain_numbers
@@ -37,8 +37,8 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
     notes += [note for table in tables for note in _of_catalogue(table)]
     notes += [
-        f"constraints.{name}: high values are the good ones, and max alone keeps them out; write min for the least "
-        "that is allowed"
+        f"constraints.{name}: larger is better, but max = {toml(given['max'])} excludes larger values; for a minimum "
+        f"write {{ min = {toml(given['max'])} }}"
         for name, given in data.get("constraints", {}).items()
         if name in FACTS and FACTS[name].better == "high" and isinstance(given, Mapping) and set(given) == {"max"}
     ]

@@ -57,7 +57,9 @@ class Bounds(Part):
         if lower is None and upper is None and equals is None:
             raise InputError("must say min, max or equals; got an empty table; add one of the three")
         if equals is not None and not (lower is None and upper is None):
-            raise InputError("must have either equals, or min and max; got both; leave out one of the two")
+            given = data if isinstance(data, Mapping) else {"equals": equals, "min": lower, "max": upper}
+            got = " and ".join(f"{word} {shown(given[word])}" for word in ("equals", "min", "max") if word in given)
+            raise InputError(f"equals cannot be combined with min or max; got {got}; leave out equals or the other")
         both = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
         if both and lower > upper:
             raise InputError(_crossed(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))

@@ -115,8 +115,7 @@ def _require_shorter(problem: Problem) -> None:
             if limit >= ends.lower:
                 raise JobError(
                     f"tolerances.{name}: must be less than the {name} itself, which may be {1e3 * ends.lower:g} mm; "
-                    f"got {1e3 * limit:g} mm; lower it (a plain number is in m), or raise the lower end of "
-                    f"variables.{name}"
+                    f"got {1e3 * limit:g} mm; lower it"
                 )
 
 

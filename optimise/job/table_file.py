@@ -23,7 +23,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.units import is_value, shown
+from ...objectives.units import is_value, number_and_unit, shown
 
 _SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
 """In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
@@ -56,7 +56,7 @@ def bytes_of(path: Path, name: str, most: int) -> bytes:
         with path.open("rb") as file:
             content = file.read(most + 1)
     except FileNotFoundError:
-        raise InputError(f"{name} must be a file; got none of that name; check the name and the folder") from None
+        raise InputError(f"{name} not found; check the name and the folder") from None
     except IsADirectoryError:
         raise InputError(f"{name} must be a file; got a folder; name a file in it") from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
@@ -184,7 +184,8 @@ class TableFile:
         word = "comma" if decimal == "," else "point"
         said = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
-            said += f", so that {example} is {number}"
+            said = f"the {word} is read as a decimal {word}, so {example} is {number}; if it separates thousands, "
+            said += f"write {example.replace(decimal, '')}"
         if (example is not None or decimal == ",") and said not in self.said:
             self.said.append(said)
         wrong = re.compile(rf"^(?!{_whole(grouping, decimal)}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
@@ -235,7 +236,9 @@ class TableFile:
         elif got.startswith("="):
             why = f"the formula {shown(got)}; save values instead of formulas"
         else:
-            why = f"{shown(got)}; write the number alone, its unit stands in the first line"
+            with_unit = number_and_unit(got) if is_value(got) else None
+            number = with_unit[0] if with_unit and with_unit[1] else "the number alone"
+            why = f"{shown(got)}; write {number}, as the unit belongs in the heading"
         raise InputError(f"{self.at(int(portion.lines[n]), place)}: must be a number; got {why}")
 
     def at(self, line: int, place: int) -> str:

@@ -271,8 +271,8 @@ class RangeOf(_Read):
             write = 'write it like ["20 mm", "200 mm"]'
             if len(ends) == 3:
                 keys = (f"{key} = {shown(end)}" for key, end in zip(("min", "max", "step"), ends, strict=True))
-                write = f"for steps within a range write {{ {', '.join(keys)} }}"
-            raise InputError(f"must be a range [lower, upper] or one value; got {shown(value)}; {write}")
+                write = f"for a range with steps write {{ {', '.join(keys)} }}"
+            raise InputError(f"must be one value or a range [lower, upper]; got {shown(value)}; {write}")
         try:
             lower, upper = (self._length(end) for end in ends)
         except InputError as error:

@@ -154,7 +154,7 @@ BAD = [
     ("80 (mm)", kinds.LENGTH, ["no unit"]),
     ("80 mm^99", kinds.LENGTH, ["no unit"]),
     ('3.15"', kinds.LENGTH, ["write inch"]),
-    ("0,05 mm", kinds.LENGTH, ["comma", "decimal sign is a point"]),
+    ("0,05 mm", kinds.LENGTH, ["use a decimal point, not a comma"]),
     ("0.1 %", kinds.LENGTH, ["%", "tolerance"]),
     ("", kinds.LENGTH, ['""', "80 mm"]),
     ("mm", kinds.LENGTH, ["one number and one unit"]),

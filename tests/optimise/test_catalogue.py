@@ -149,7 +149,7 @@ ROW = "A,10,5,1"
             f'{HEADER}\nA,"10,500",5,1',
             "must show its decimal sign; got 10,500, which may mean a thousand times as much",
         ),
-        (f"{HEADER}\nA,10 N m,5,1", "write the number alone, its unit stands in the first line"),
+        (f"{HEADER}\nA,10 N m,5,1", "write 10, as the unit belongs in the heading"),
         (f"{HEADER}\nA,nan,5,1", 'got "nan"'),
         (f"{HEADER}\nA,1e999,5,1", 'got "1e999"'),
         (f"{HEADER}\n{ROW}\n\nA,11,5,1", 'row 4, column name: names must differ; got "A" of row 2 again; rename one'),
@@ -158,14 +158,14 @@ ROW = "A,10,5,1"
             "name,peak_torque max (kg)\nA,1",
             'column "peak_torque max (kg)": must have a unit of a torque; got "kg"; write it like (N m)',
         ),
-        ("name,peak_torque max\nA,1", "must have the unit of a torque in brackets; got none"),
+        ("name,peak_torque max\nA,1", 'the heading has no unit; write, for example, "peak_torque max (N m)"'),
         ("name,time_ratio max (mm)\nA,1", 'got "mm"; leave it out'),
         ("name,stroke (mm)\nA,1", "a quantity needs min, max or equals"),
         ("name,peak_torqe max (N m)\nA,1", 'is called "peak_torqe"; did you mean peak_torque or'),
         ("name,stroke max (mm),stroke max (m)\nA,1,1", "columns must differ"),
         ("name,(mm)\nA,1", "must be a quantity or formula with min, max or equals, or the path of a number"),
         ("name,# price\nA,1", "must have a column beside the name"),
-        ("motor,stroke max (mm)\nA,1", 'must begin with the column "name"; got "motor"'),
+        ("motor,stroke max (mm)\nA,1", 'the first column must be headed "name"; got "motor"; rename or move'),
         ('name,stroke max (mm)\n"A,1', "must be a table in CSV; got unexpected end of data in row 2"),
         ("name,stroke max (mm)\nA\0,1", "must be a CSV text file; got a spreadsheet or other binary file"),
         (
@@ -237,7 +237,7 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="must have at most 10 MB; got more; keep the rows"):
         load_job(job)
     (tmp_path / "gearmotors.csv").unlink()
-    with pytest.raises(JobError, match="must be a file; got none of that name; check the name and the folder"):
+    with pytest.raises(JobError, match="not found; check the name and the folder"):
         load_job(job)
     for elsewhere in ("/etc/passwd", "../gearmotors.csv"):
         job.write_text(JOB.replace("gearmotors.csv", elsewhere))

@@ -101,7 +101,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("crank + peak_torque max (mm)", "adds mm and N m; only values of one kind go together"),
         ("crank + rud max (mm)", 'is called "rud"; did you mean rod?'),
         ("crank + rod max (N)", 'must have a unit of a length; got "N"; write it like (mm)'),
-        ("crank + rod max", "must have the unit of a length in brackets; got none; write it like (mm)"),
+        ("crank + rod max", 'the heading has no unit; write, for example, "crank + rod max (mm)"'),
         ("rod / crank max (mm)", 'must have a unit of a ratio; got "mm"; leave it out'),
         ("crank == rod max (mm)", "'=' has no meaning in it"),
         ("min(crank max (mm)", "got the formula"),
@@ -137,7 +137,7 @@ def test_files_of_a_problem_in_python_lie_in_its_folder(tmp_path: Path, monkeypa
     found = sc.problem(tables, folder=tmp_path)
     assert [limit.upper for variant in found.variants for limit in variant.limits] == [0.04]
     assert found.mechanism.speed_profile is not None
-    with pytest.raises(JobError, match=r'"c\.csv" must be a file; got none of that name'):
+    with pytest.raises(JobError, match=r'"c\.csv" not found'):
         sc.problem(tables | {"mechanism": TABLES["mechanism"]}, folder=tmp_path / "none")
     monkeypatch.chdir(tmp_path)
     assert sc.problem(tables) == found

@@ -294,7 +294,7 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="load #1: a file lies beside the job file, or its content is sent with the job"):
         parse_job(job({"file": "trace.csv"}))
     with pytest.raises(
-        JobError, match=re.escape('load #1.file: "a.csv" must be among the files that are sent; got b.csv')
+        JobError, match=re.escape('load #1.file: "a.csv" not found among the files sent with the job (b.csv)')
     ):
         with_files(job({"file": "a.csv"}), {"b.csv": ""})
     assert parse_job(with_files(job({"file": "trace.csv"}), tmp_path)).mechanism.loads == loads

@@ -79,9 +79,21 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
 @pytest.mark.parametrize(
     ("text", "numbers", "said"),
     [
-        ("a;b\n1.300;2\n", [1.3, 2.0], "decimal point, so that 1.300 is 1.3"),
-        ("a,b\n1.300,0.5\n", [1.3, 0.5], "decimal point, so that 1.300 is 1.3"),
-        ("a;b\n1,300;2\n", [1.3, 2.0], "decimal comma, so that 1,300 is 1.3"),
+        (
+            "a;b\n1.300;2\n",
+            [1.3, 2.0],
+            "the point is read as a decimal point, so 1.300 is 1.3; if it separates thousands, write 1300",
+        ),
+        (
+            "a,b\n1.300,0.5\n",
+            [1.3, 0.5],
+            "the point is read as a decimal point, so 1.300 is 1.3; if it separates thousands, write 1300",
+        ),
+        (
+            "a;b\n1,300;2\n",
+            [1.3, 2.0],
+            "the comma is read as a decimal comma, so 1,300 is 1.3; if it separates thousands, write 1300",
+        ),
         ("a;b\n1.300;0,5\n", [1300.0, 0.5], "decimal comma"),
         ("a;b\n1.000,5;30,5\n", [1000.5, 30.5], "decimal comma"),
         ("a;b\n1.000.000;2\n", [1e6, 2.0], "decimal comma"),
@@ -105,7 +117,7 @@ def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbe
         ('a,b\n"1,300",5\n', "must show its decimal sign; got 1,300, which may mean a thousand times as much"),
         ("a;b\n1,300;2.500\n", "must show its decimal sign; got 1,300 and 2.500"),
         ("a;b\n12.34,5;2\n", 'row 2, column "a": must be a number; got "12.34,5"'),
-        ("a;b\n1;2 mm\n", 'row 2, column "b": must be a number; got "2 mm"; write the number alone'),
+        ("a;b\n1;2 mm\n", 'row 2, column "b": must be a number; got "2 mm"; write 2, as the unit belongs'),
         ("a;b\n1;=A2\n", 'got the formula "=A2"; save values instead of formulas'),
         ("a,b\n0,5,1\n", "row 2 must have 2 cells, as the first line; got 3; .* separate them by semicolons"),
         ("a,b\n\n1\n", "row 3 must have 2 cells, as the first line; got 1"),

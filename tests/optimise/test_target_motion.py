@@ -99,10 +99,10 @@ motion_deviation = "minimise"
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (None, "got none of that name"),
+        (None, "not found; check the name"),
         (
             "angle,position\n0,1\n",
-            r"must have one column of an angle \(deg\) or a time \(s\), its unit in brackets or at the end",
+            'the columns have no units; got "angle", "position"; write, for example, "angle .deg.,position .mm.',
         ),
         ("crank_angle_deg,position_mm\n0,100\n90\n", "row 3 must have 2 cells, as the first line; got 1"),
         (

@@ -108,7 +108,7 @@ def test_speeds_of_plates_are_checked_in_rpm_and_one_that_nothing_follows_may_be
     job.write_text(job.read_text() + 'peak_torque = "minimise"\n')
     done = command("check", job)
     assert done.exit_code == 2  # peak_torque stands in the last table, [optimiser]
-    assert "peak_torque is a key of [constraints] or [objectives]; move it there" in done.stderr
+    assert "it belongs in [constraints] or [objectives]; move it there" in done.stderr
 
 
 def test_a_number_of_another_unit_is_said_before_a_search(tmp_path: Path, runs: Path, command: Command) -> None:

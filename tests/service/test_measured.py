@@ -177,7 +177,7 @@ def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monke
     for file, words in (
         (tmp_path, "must be a file; got a folder"),
         (large, "must have at most 0.001 MB; got more"),
-        (tmp_path / "none.csv", "got none of that name"),
+        (tmp_path / "none.csv", "not found; check the name"),
         (sheet, "must be a CSV text file; got a spreadsheet or other binary file; save"),
     ):
         done = command("analyse", *SIEVE, "--measured", file)

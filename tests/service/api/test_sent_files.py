@@ -45,9 +45,9 @@ def test_files_are_sent_as_texts_or_bytes_and_read_as_those_beside_a_job(
 def test_a_file_that_is_missing_or_broken_is_refused_in_a_sentence(shared: httpx.Client) -> None:
     asked = body(TRACE)
     for files, words in (
-        ({"other.csv": TRACE}, 'load #1.file: "trace.csv" must be among the files that are sent; got other.csv'),
+        ({"other.csv": TRACE}, 'load #1.file: "trace.csv" not found among the files sent with the job (other.csv)'),
         ({"trace.csv": "data:text/csv;base64,?"}, "files.trace.csv: must be a text or base64; got a broken one"),
-        ({"trace.csv": "a;b\n1;2\n"}, "its unit in brackets or at the end of its name"),
+        ({"trace.csv": "a;b\n1;2\n"}, 'the columns have no units; got "a", "b"'),
     ):
         assert words in refused(shared.post("/check", json={**asked, "files": files}), 422)
     sentence = refused(shared.post("/check", json={"job": asked["job"]}), 422)
