@@ -53,10 +53,16 @@ class PlainNumbers:
         read = f'"{number:g} {self.kind.unit}"'
         said = f"{self.key} = {given} {what} read as {read[1:-1]}{self._usual(number, ' ({})')}"
         usual = f"{number:g} {self.kind.metric.symbol}"
+        every = isinstance(self.value, list | tuple) and len(doubtful) == len(self.value) > 1
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
             return f"{said}; write it with its unit"
         if usual == read[1:-1]:
             return f"{said}; write {read}"
+        if every and len(text) <= _LONGEST:
+            in_usual, in_si = (
+                toml([f"{one:g} {unit}" for one in numbers]) for unit in (self.kind.metric.symbol, self.kind.unit)
+            )
+            return f"{said}; if you mean {self.kind.metric.symbol}, write {in_usual}, otherwise {in_si}"
         return f'{said}; if you mean {usual}, write "{usual}", otherwise {read}'
 
     def concerns(self, key: str) -> bool:

@@ -51,8 +51,8 @@ def put(path: str, value: Any) -> dict[str, Any]:
         (
             "variables.crank",
             [20, 200],
-            'variables.crank = [20, 200] has no unit: 20 is read as 20 m (20000 mm); if you mean 20 mm, write "20 mm", '
-            'otherwise "20 m"',
+            "variables.crank = [20, 200] has no unit: 20 is read as 20 m (20000 mm); if you mean mm, write "
+            '["20 mm", "200 mm"], otherwise ["20 m", "200 m"]',
         ),
         ("variables.rod", ["60 mm", 0.6], 'variables.rod = ["60 mm", 0.6] mixes numbers with and without a unit: 0.6'),
         (
@@ -176,7 +176,8 @@ def test_a_refusal_begins_with_the_missing_unit_that_may_be_its_cause(
         parse_job(put(path, value))
     said = str(refused.value)
     assert said.startswith(f"{key}: {key}")
-    assert f'if you mean {meant}, write "{meant}"' in said
+    assert "; if you mean " in said
+    assert f'"{meant}"' in said
 
 
 def test_a_refusal_elsewhere_has_no_word_of_plain_numbers() -> None:
