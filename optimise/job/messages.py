@@ -170,7 +170,7 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
         first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
-        write = f"; write {path[-1]} = {', '.join(filter(None, (first, ' or '.join(others))))}"
+        write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(others))))}"
         return f"must be exact, a minimum or a maximum; {got}{write}"
     return f"{rule_of(details)}; {got}{write}"
 
@@ -201,7 +201,7 @@ def _example(schema: Schema, path: Sequence[Any]) -> str:
 def toml(value: object) -> str:
     """Return a value in the notation of TOML, on one line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key_of([key])} = {toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(toml(item) for item in value) + "]"
     return shown(value)

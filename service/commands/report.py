@@ -35,7 +35,7 @@ def report(
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
-    require_ending("--out", out, ".html", ".htm", ".pdf", "")
+    require_ending("--out", out, ".html", ".htm", ".pdf")
     folder, result = run_of(run, runs)
     number = choice.number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")

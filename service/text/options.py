@@ -143,19 +143,17 @@ def speed_option(text: str) -> float:
 
 
 def require_ending(option: str, file: Path | None, *endings: str) -> None:
-    """Refuse a file to write whose name does not end as its content does, a directory, and standard output.
+    """Refuse a file to write that ends as other content does, a directory, and standard output.
 
-    endings: of its names, with their points, "" among them where the option completes a name.
+    endings: of its names, with their points; a name may have none.
     """
     if file is None:
         return
-    first = next(filter(None, endings))
     if str(file) == "-":
         raise InputError(f"{option} writes a file; got -; name one")
-    if file.is_dir() or file.suffix.lower() not in endings:
-        name = file / f"name{first}" if file.is_dir() or not file.stem else file.with_suffix(first)
-        said = " or ".join(filter(None, endings))
-        raise InputError(f"{option} writes a file that ends with {said}; got {file}; name it {name}")
+    if file.is_dir() or file.suffix.lower() not in ("", *endings):
+        name = file / f"name{endings[0]}" if file.is_dir() else file.with_suffix(endings[0])
+        raise InputError(f"{option} writes a file that ends with {' or '.join(endings)}; got {file}; name it {name}")
 
 
 def given_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
