@@ -110,7 +110,7 @@ motion_deviation = "minimise"
             'row 3, column "position_mm": must be a number; got "wide"',
         ),
         ("crank_angle_deg,position_mm\n0,100\n90,110\n80,120\n", "must increase"),
-        ("crank_angle_deg,position_mm\n0,100\n90,110\n", "at least 3 entries"),
+        ("crank_angle_deg,position_mm\n0,100\n90,110\n", "3 different points at least"),
         ('crank_angle_deg,position_mm\n"0,100\n', "must be a table in CSV; got unexpected end of data in row 2"),
         ("", "must begin with a line that names its columns"),
     ],

@@ -161,7 +161,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
     [
         ("{ cosines = [1.2] }", "got -20 % of the mean at 180 deg"),
         ("{ }", "harmonics or of points; got neither"),
-        ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" must be a file; got none of that name"),
+        ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" not found"),
         (
             '{ crank_angles = [0, 1, 2, 3], speeds = ["9 rpm", "-8 rpm", "9 rpm", "9 rpm"] }',
             "must not be zero or change its sign, .*; got -8 rpm at 57.2958 deg",
