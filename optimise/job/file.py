@@ -13,15 +13,13 @@ from typing import Any
 
 from ...model.errors import JobError
 from ...objectives.units import shown
-from .messages import key_of
+from .messages import DEEPEST, key_of
 from .toml_errors import in_words, key_at
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes half of it, of ten characters each."""
 MOST = 50_000
 """Values, lists and tables of a job: enough for two [[load]] tables of 10,000 points. Each takes up to 30 us."""
-DEEPEST = 8
-"""Tables within tables; a job has five at most."""
 # Possessive, and a text that is not closed ends with the file: the search takes a time in proportion to its length.
 _WORD = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"?+|'[^'\n]*+'?+)"""
 _TEXT = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|''' + r"""'''(?:[^']|'(?!''))*+(?:'''|\Z)"""

@@ -16,6 +16,9 @@ _MOST_KEYS = 20  # that are told where none is near
 MOST = 8
 """Number of problems of one job that are listed."""
 
+DEEPEST = 8
+"""Tables within tables; a job has five at most."""
+
 LONGEST = 100
 """Number of problems that are looked at: each costs a search for a near key."""
 

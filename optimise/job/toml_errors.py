@@ -72,9 +72,10 @@ def _both(lines: list[str], number: int, path: str) -> str:
 
 def _unit_of(path: str) -> str | None:
     """Return the unit of the example of a key, "" for a number without one; None for an unknown key."""
-    from . import job_schema
+    from .model import Job
+    from .schema import schema_of
 
-    schema, words = job_schema(), [word.strip() for word in path.split(".")]
+    schema, words = schema_of(Job), [word.strip() for word in path.split(".")]
     for keys in (words, [words[0], 0, *words[1:]]):
         example = next((node["examples"][0] for node in nodes_at(schema, keys) if node.get("examples")), None)
         example = example[0] if isinstance(example, list) and example else example

@@ -18,8 +18,8 @@ from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import shown
 from .amounts import Amounts
 from .beside import LARGEST, unread
-from .file import DEEPEST
 from .grids import says_values
+from .messages import DEEPEST
 from .quantities import ConstraintsPart
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 

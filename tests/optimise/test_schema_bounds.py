@@ -65,11 +65,11 @@ TOGETHER = {
 
 
 def numbers() -> list[tuple[str, str, Node]]:
-    """Return table, key and node of every number that has a bound."""
+    """Return table, key and node of every number that has a bound; a load in a file is refused until that is read."""
     return [
         (table, key, one)
         for table, node in DEFS.items()
-        for key, of in (node.get("properties", {}).items() if table in CLASSES else ())
+        for key, of in (node.get("properties", {}).items() if table in CLASSES and table != "FileLoad" else ())
         for one in (of, *of.get("anyOf", []))
         if one.get("type") in ("number", "integer") and WORDS & set(one)
     ]
