@@ -369,7 +369,7 @@ class PartOfStroke(_Read):
             return value
         found = self._text.fullmatch(value) if isinstance(value, str) else None
         part = found[1].lower() if found else ""
-        if not found or (part == "whole" and found[2].lower() != "stroke"):
+        if not found or (part == "whole" and f"{part} {found[2].lower()}" != "whole stroke"):
             raise InputError(
                 f'must be "first" or "last" and a length, or "whole stroke"; got {shown(value)}; write it like '
                 '"last 60 mm"'

@@ -26,7 +26,7 @@ def test_each_load_says_what_it_does_and_one_that_pushes_is_questioned(form: Ope
     expect(first).to_contain_text("350 N outward, helps the outward stroke, throughout")
     beside = page.get_by_role("complementary")
     expect(beside).to_contain_text("do more work on the machine than they take")
-    expect(beside).to_contain_text("state it as a force against a stroke; state what should drive as a force along one")
+    expect(beside).to_contain_text("if the load should resist, reverse its sign or state it as a force that")
 
     first.get_by_label("kind of load", exact=True).select_option("helps")
     expect(first).to_contain_text("helps the inward stroke")
