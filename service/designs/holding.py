@@ -8,6 +8,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...model.swing.closure import passes
+from ...objectives.tables.evaluate import evaluated
 
 if TYPE_CHECKING:
     from ...model.arrays import Array
@@ -60,7 +61,9 @@ def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
     """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
-    found, slopes = design.part.evaluate(values[None], [constraint.quantity for constraint in equal], gradients=True)
+    part, names = design.part, [constraint.quantity for constraint in equal]
+    # Not `Problem.evaluate`, which warns of lengths that people give: these are on the way to others.
+    found, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
     return found[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
