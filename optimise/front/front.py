@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
@@ -33,7 +33,7 @@ from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
 from .rounding import ranges_or_sizes, rounding
-from .rounding_search import Stage, Steps
+from .rounding_search import Stage
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -269,15 +269,12 @@ class ParetoFront:
         design within 32 steps meets all within that, the nearest are given, `met` is False; `misses` has the amounts.
         progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounding`.
         """
-        search = self.rounding(row, to, count=count, allow=allow)
-        while True:
-            try:
-                at = next(search)
-            except StopIteration as end:
-                found: Rounded = end.value
+        for found in self.rounding(row, to, count=count, allow=allow):
+            if isinstance(found, Rounded):
                 return found
             if progress is not None:
-                progress(at)
+                progress(found)
+        raise AssertionError("the search ends with its answer")
 
     def rounding(
         self,
@@ -286,8 +283,8 @@ class ParetoFront:
         *,
         count: int = 5,
         allow: Mapping[str, float | str] | None = None,
-    ) -> Steps[Rounded]:
-        """Return the search of `rounded` as a generator: it yields where it is, and returns the answer."""
+    ) -> Generator[Stage | Rounded, None, None]:
+        """Yield where the search of `rounded` is, several times a second, and at last its answer; closing ends it."""
         part, given = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = []
@@ -296,7 +293,7 @@ class ParetoFront:
             also = f"; the least that also serves the given design is {least}" if least not in ("", label) else ""
             stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
-        return rounding(part, given, span, to, count=count, allow=allow, notes=stay)
+        yield (yield from rounding(part, given, span, to, count=count, allow=allow, notes=stay))
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.

@@ -39,10 +39,7 @@ class _Asked:
 
 def _asked(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
     """Return what a job asks of the amounts of a catalogue that it names."""
-    objectives, constraints, own = (
-        given if isinstance(given := tables.get(name), Mapping) else {}
-        for name in ("objectives", "constraints", "quantity")
-    )
+    objectives, constraints, own = (_table_of(tables, name) for name in ("objectives", "constraints", "quantity"))
     plain = {column.name for column in columns if column.kept}
     words: set[str] = set()  # in formulas, through which they may count either way
     for key, value in (*objectives.items(), *constraints.items()):

@@ -100,7 +100,7 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
 
 def _likely(text: str, kinds: Sequence[Kind]) -> Kind:
     """Return the kind that a head names; the first one without a name."""
-    return next((kind for kind in kinds if kind.plain.split()[-1] in text.casefold()), kinds[0])
+    return next((kind for kind in kinds if _names(text, kind)), kinds[0])
 
 
 def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:

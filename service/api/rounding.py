@@ -6,7 +6,7 @@ import contextlib
 import itertools
 import json
 from collections.abc import AsyncIterator, Generator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Request, Response
@@ -22,10 +22,6 @@ from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 from .throttle import SIMULATING
-
-if TYPE_CHECKING:
-    from ...optimise.front.rounded import Rounded
-    from ...optimise.front.rounding_search import Stage
 
 router = APIRouter(tags=["designs"], responses=problem_responses(409))
 
@@ -117,9 +113,14 @@ def round_design(
 
     def search() -> _Events:
         """Yield kind and data of the events."""
+        from ...optimise.front.rounding_search import Stage
+
         with SIMULATING.turn():
-            rounded = yield from _told(found.front.rounding(design - 1, steps, count=given.count, allow=allowed))
-            record = json_ready(rounded_record_in(units, rounded_record(rounded), rounded))
+            for at in found.front.rounding(design - 1, steps, count=given.count, allow=allowed):
+                if isinstance(at, Stage):
+                    yield "progress", json.dumps(vars(at))
+                else:
+                    record = json_ready(rounded_record_in(units, rounded_record(at), at))
         yield "rounded", RoundedModel(job=found.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()
@@ -128,17 +129,6 @@ def round_design(
         *_, (_, data) = itertools.chain([first], events)
         return Response(data, media_type="application/json")
     return StreamingResponse(_lines(first, events), headers=STREAM_HEADERS, media_type=STREAM)
-
-
-def _told(search: Generator[Stage, None, Rounded]) -> Generator[_Event, None, Rounded]:
-    """Return what a search returns, its stages as events."""
-    while True:
-        try:
-            at = next(search)
-        except StopIteration as end:
-            found: Rounded = end.value
-            return found
-        yield "progress", json.dumps(vars(at))
 
 
 async def _lines(first: _Event, events: _Events) -> AsyncIterator[bytes]:

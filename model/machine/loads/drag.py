@@ -55,7 +55,7 @@ class Drag(Load):
 
     @property
     def range(self) -> str:
-        """All of a stroke."""
+        """How it follows the speed."""
         return "with the square of the speed"
 
 

@@ -44,7 +44,7 @@ class Viscous(Load):
 
     @property
     def range(self) -> str:
-        """All of a stroke."""
+        """How it follows the speed."""
         return "in proportion to the speed"
 
 
