@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
 import typer
 
@@ -24,7 +24,7 @@ from .restarts import restarts
 from .runaway import runaway
 from .starts import starts
 from .suspends import suspends
-from .verdict import Verdict
+from .usage import Usage
 
 app = typer.Typer(add_completion=False, help=__doc__)
 Where = Annotated[Literal["sqlite", "postgresql"], typer.Option("--store", help="Kind of the store.")]
@@ -77,7 +77,7 @@ def _pauses(where: Where = "sqlite", count: Count = 50, seed: Seed = 1) -> None:
 @app.command("restarts")
 def _restarts(seconds: Annotated[float, typer.Option(help="For how long, s.")] = 300.0, seed: Seed = 1) -> None:
     """Crash and start PostgreSQL at random moments."""
-    _counted("{} crashes of PostgreSQL", lambda: restarts(seconds, seed))
+    _report("{} crashes of PostgreSQL", lambda: restarts(seconds, seed))
 
 
 @app.command("full")
@@ -113,7 +113,7 @@ def _suspends(count: Annotated[int, typer.Option(help="How many suspensions.")] 
 @app.command("commits")
 def _commits(where: Where = "sqlite", every: Annotated[int, typer.Option(help="Each one of so many.")] = 1) -> None:
     """Let every commit of a job's life fail, each in three ways."""
-    _counted(f"{{}} failed commits on {where}", lambda: commits(where, every))
+    _report(f"{{}} failed commits on {where}", lambda: commits(where, every))
 
 
 @app.command("dask")
@@ -126,42 +126,35 @@ def _dask(
     """Kill and suspend workers and schedulers of a Dask cluster under robust jobs."""
     from .dask_faults import strike
 
-    begin = time.monotonic()
-    struck = strike(workers, schedulers, seed, suspensions=suspensions)
-    print(f"dask, {time.monotonic() - begin:.0f} s: {struck.line()}", flush=True)
-    if struck.violations or struck.lost or struck.doubled:
-        raise typer.Exit(1)
+    _report("dask", lambda: strike(workers, schedulers, seed, suspensions=suspensions))
 
 
 @app.command("flood")
 def _flood(count: Annotated[int, typer.Option(help="How many of each kind.")] = 5, seed: Seed = 1) -> None:
     """Send an API endless bodies, addresses and headers, and hold half-open connections."""
+    _report("flood", lambda: flood(count, seed))
+
+
+class Outcome(Protocol):
+    """Outcome of a round. violations: everything that is not as it has to be, in words."""
+
+    violations: list[str]
+
+    def line(self) -> str:
+        """Return the figures."""
+
+
+def _report(title: str, inject: Callable[[], Outcome | tuple[int, Outcome]]) -> None:
+    """Inject faults, and print their outcome and what they left. title: with a place for the count, if there is one."""
     begin = time.monotonic()
-    flooded = flood(count, seed)
-    print(f"flood, {time.monotonic() - begin:.0f} s: {flooded.line()}", flush=True)
-    for violation in flooded.violations:
+    with Usage() as usage:
+        injected = inject()
+    count, outcome = injected if isinstance(injected, tuple) else (0, injected)
+    print(f"{title.format(count)}, {time.monotonic() - begin:.0f} s: {outcome.line()}\n  {usage.line()}", flush=True)
+    violations = [*outcome.violations, *(f"left: {process}" for process in usage.left)]
+    for violation in violations:
         print(f"  {violation}")
-    if flooded.violations:
-        raise typer.Exit(1)
-
-
-def _counted(title: str, inject: Callable[[], tuple[int, Verdict]]) -> None:
-    begin = time.monotonic()
-    count, verdict = inject()
-    _show(title.format(count), time.monotonic() - begin, verdict)
-
-
-def _report(title: str, inject: Callable[[], Verdict]) -> None:
-    begin = time.monotonic()
-    verdict = inject()
-    _show(title, time.monotonic() - begin, verdict)
-
-
-def _show(title: str, seconds: float, verdict: Verdict) -> None:
-    print(f"{title}, {seconds:.0f} s: {verdict.line()}", flush=True)
-    for violation in verdict.violations:
-        print(f"  {violation}")
-    if verdict.violations:
+    if violations:
         raise typer.Exit(1)
 
 

@@ -60,7 +60,7 @@ class Struck:
         return (
             f"{self.workers} workers and {self.schedulers} schedulers killed, {self.suspensions} suspended, in "
             f"{self.jobs} jobs of {self.evaluations} evaluations: {self.lost} lost, {self.doubled} counted twice, "
-            f"{len(self.violations)} fronts that differ"
+            f"{len(self.violations)} violations"
         )
 
 
@@ -120,6 +120,8 @@ def _compare(struck: Struck, alone: ParetoFront, found: ParetoFront) -> None:
     struck.evaluations += found.evaluations
     struck.lost += max(0, alone.evaluations - found.evaluations)
     struck.doubled += max(0, found.evaluations - alone.evaluations)
+    if found.evaluations != alone.evaluations:
+        struck.violations.append(f"run {struck.jobs} has {found.evaluations} evaluations, not {alone.evaluations}")
     if found.dimensions.tobytes() != alone.dimensions.tobytes() or not found.designs.equals(alone.designs):
         struck.violations.append(f"the front of run {struck.jobs} differs")
 
