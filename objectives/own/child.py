@@ -110,6 +110,7 @@ def main() -> None:
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
+    sys.stdout = sys.stderr  # each line at once, also of a function that is killed
     path, limit, name, folders = pickle.load(requests)
     with open(path, "wb", buffering=0) as log:  # noqa: PTH123 - its descriptor is what faulthandler needs
         faulthandler.enable(file=log)

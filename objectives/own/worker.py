@@ -1,7 +1,7 @@
 """The other end of `child`: starting the process, asking it, and saying what became of it.
 
-The process is in a group with a guard, a shell that reads from a pipe which nobody writes to. It ends when this process
-does, by whatever: then the guard kills the group, also a function that holds the interpreter, ignores signals or forks.
+The process has a guard (see `guard`), which is the one started here. It ends when this process does, by whatever, and
+with it all that the function started, also a function that holds the interpreter, ignores signals or forks.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import tempfile
 import threading
 import time
 import weakref
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -35,11 +36,16 @@ _TICK = 0.1  # s between two questions whether the call is to end
 _PAUSE = 1.0  # s that a tick takes at most, on a busy machine; longer, and this process was suspended
 _ENDING = 5.0  # s that a process without an output has to end
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
-_CHILD = (sys.executable, "-P", "-c", "from slidercrank.objectives.own.child import main; main()")
-_GUARD = ("/bin/sh", "-c", 'read _; rm -f "$1"; kill -9 0', "guard")  # its own group
+_PROGRAM = "from slidercrank.objectives.own.guard import main; main()"
+_KILLED = 9, 128 + 9  # exit codes
 
 Message = tuple[bytes, bytes]
 Process = subprocess.Popen[bytes]
+
+
+def is_guard(command: Sequence[str]) -> bool:
+    """Whether a command line is that of a guard, or of its function's process."""
+    return _PROGRAM in command
 
 
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()
@@ -74,7 +80,6 @@ class Worker:
         self.function, self.folders = function, folders
         self.limit, self.longest = min(limit, longest), longest
         self._process: Process | None = None
-        self._guard: Process | None = None
         self._mechanism: Mechanism | None = None
         self._late = self._paused = False
         self._lock = threading.Lock()
@@ -106,16 +111,20 @@ class Worker:
         # Only a name: the child opens it, and what it says of a crash is read here.
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
-        group: dict[str, Any] = {}
-        guard: Process | None = None
-        if os.name == "posix":
-            # The guard comes first: there is no moment at which the child runs without it.
-            guard = subprocess.Popen((*_GUARD, self._log), stdin=subprocess.PIPE, bufsize=0, process_group=0)
-            group = {"process_group": guard.pid}
+        watched, held = os.pipe()
+        options: dict[str, Any] = {"pass_fds": (watched,), "process_group": 0} if os.name == "posix" else {}
         # Without buffers: a fork would copy what they hold, and locks of them that a thread has at that moment.
-        process = subprocess.Popen(_CHILD, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, **group)
-        self._process, self._guard, self._late = process, guard, False
-        self._end = weakref.finalize(self, _end, process, guard, self._log)
+        self._process = process = subprocess.Popen(
+            (sys.executable, "-P", "-c", _PROGRAM, str(watched), self._log),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            bufsize=0,
+            **options,
+        )
+        os.close(watched)
+        self._lifeline = os.fdopen(held, "wb", buffering=0)
+        self._late = False
+        self._end = weakref.finalize(self, _end, process, self._lifeline, self._log)
         _running.add(self)
         self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
         threading.Thread(
@@ -127,13 +136,12 @@ class Worker:
     def forget(self) -> None:
         """Leave the process to the one that started it, of which this one is a fork."""
         self._end.detach()  # at the end of this process, too
-        for one in (self._process, self._guard):
-            if one is not None:
-                for pipe in (one.stdin, one.stdout):
-                    if pipe is not None:
-                        pipe.close()  # the copy of the pipe here would keep the guard from its work
-                one.returncode = 0  # not a child of this process: nothing to wait for
-        self._process = self._guard = self._mechanism = None
+        if self._process is not None:
+            for pipe in (self._lifeline, self._process.stdin, self._process.stdout):
+                if pipe is not None:
+                    pipe.close()  # a copy of the lifeline would keep the guard from its work
+            self._process.returncode = 0  # not a child of this process: nothing to wait for
+        self._process = self._mechanism = None
         self._lock = threading.Lock()  # a thread that is not here may have held the other one
 
     def _send(self, request: tuple[Any, ...]) -> None:
@@ -194,10 +202,10 @@ class Worker:
         """Return why the process ended. Raises `_Suspended` if the reason is no fault of the function."""
         assert self._process is not None
         try:
-            code = self._process.wait(_ENDING)
+            code: int | None = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:  # it closed its output and goes on
-            self._process.kill()
-            code = self._process.wait()
+            self._end()
+            code = self._process.poll()
         text = Path(self._log).read_text(encoding="utf-8", errors="replace") if Path(self._log).exists() else ""
         if "Timeout (" in text and self._paused:  # its watch counts time for which it is suspended, too
             self.close()
@@ -210,7 +218,7 @@ class Worker:
             raised = "correct it, or raise the limit if it is only slow"
             remedy = raised if self.limit < self.longest else "no call may take longer here; correct it"
             return f"must return within {self.limit:g} s; it still ran{where} then; {remedy}"
-        if code == -9:
+        if code in _KILLED:
             return "must return; its process was killed, for lack of memory perhaps; let it take less"
         return f"must return, not end the process; it ended with code {code}{where}; correct the function"
 
@@ -235,15 +243,14 @@ def _read(stream: IO[bytes], length: int) -> bytes:
     return bytes(content)
 
 
-def _end(process: Process, guard: Process | None, log: str) -> None:
-    if guard is not None:
-        with contextlib.suppress(OSError):  # all of them have ended
-            os.killpg(guard.pid, signal.SIGKILL)
-        guard.wait()
-        assert guard.stdin is not None
-        guard.stdin.close()
-    process.kill()
-    process.wait()
+def _end(process: Process, lifeline: IO[bytes], log: str) -> None:
+    """End a process by its guard, which may be suspended. It alone stays with what it may not kill."""
+    process.terminate()
+    if os.name == "posix":
+        process.send_signal(signal.SIGCONT)
+    lifeline.close()
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(_ENDING)
     assert process.stdin is not None
     with contextlib.suppress(OSError):  # what was not sent yet has nobody to read it
         process.stdin.close()

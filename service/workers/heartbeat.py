@@ -14,6 +14,7 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 
 from ...model.errors import LeaseLost, StoreError
 from ...objectives.counted import counted
+from ...objectives.own.worker import is_guard
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result
 from ..store import NO_LIMITS, NOT_DONE, Claim, Limits
@@ -179,8 +180,13 @@ def leave(code: int) -> None:
     """End this process at once, whatever its other threads do, and before it its children with their groups."""
     import psutil
 
-    for child in psutil.Process().children(recursive=True):
+    waiting = psutil.Process().children()
+    while waiting:
+        child = waiting.pop()
         with contextlib.suppress(psutil.Error, OSError):
+            if is_guard(child.cmdline()):
+                continue  # it kills what its function has started, once the process that asks has ended
+            waiting += child.children()
             if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:
                 os.killpg(child.pid, signal.SIGKILL)
             child.kill()

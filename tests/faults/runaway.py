@@ -1,4 +1,4 @@
-"""Own functions that never return, by every way of looping: cancelled, out of time, killed with their worker, ended."""
+"""Own functions that never return, leave processes behind or print for ever: cancelled, out of time, killed, ended."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any
 
-import psutil
+from slidercrank.objectives.own.guard import PRINTED
 
 from .lifeline import die_with_parent
-from .serving import Serving, alive, left_over
+from .serving import Serving, left_over
 from .verdict import Verdict
 
 SOON = 2.0  # s, within which a function is gone once its call is to end
+_OF_THE_SERVICE = 1_000_000  # bytes of its own log
 SLACK = 1.0  # s, for looking at it on a busy machine
 LOOPS = {
     "python": "while True: pass",
@@ -33,10 +34,25 @@ LOOPS = {
     "forks": "import os\n    os.fork()\n    while True: pass",
     "forks twice": "import os\n    if not os.fork(): os.fork()\n    while True: pass",
     "catches all": "while True:\n        try: sum(range(99))\n        except BaseException: pass",
+    "leaves its session": "import os\n    if not os.fork(): os.setsid()\n    while True: pass",
+    "starts a daemon": (
+        "import os, signal, time\n    if not os.fork():\n        os.setsid()\n"
+        "        for n in (1, 2, 3, 10, 12, 15): signal.signal(n, signal.SIG_IGN)\n"
+        "        if os.fork(): os._exit(0)\n    while True: time.sleep(1)"
+    ),
+    "starts a chain": (
+        "import os, time\n    if not os.fork():\n        while True:\n            if os.fork(): os._exit(0)\n"
+        "            os.setsid()\n            time.sleep(0.005)\n    while True: time.sleep(1)"
+    ),
+    "starts a program": (
+        "import subprocess, time\n    subprocess.Popen(['sleep', '1000'], start_new_session=True, close_fds=False)\n"
+        "    while True: time.sleep(1)"
+    ),
+    "prints": "import os\n    while True: os.write(1, b'x' * 65536)",
+    "prints lines": "while True: print('a line')",
 }
 _FUNCTION = """
 import os
-import pathlib
 
 calls = 0
 
@@ -44,7 +60,7 @@ def judge(designs):
     global calls
     calls += 1
     if calls > {after}:
-        pathlib.Path(f"{{__file__}}.{{os.getpid()}}").touch()
+        os.set_inheritable(os.open(f"{{__file__}}.{{os.getpid()}}", os.O_CREAT), True)
         loop()
     return designs.crank
 
@@ -118,7 +134,8 @@ def _in_a_service(
     options = [word for function in allowed for word in ("--allow-quantity", function)]
     options += ["--lease", "2", "--grace", "1"]
     for end in ends:
-        with Serving(str(folder / f"{end.name}.db"), *options, folder=str(folder)) as serving:
+        log = folder / f"{end.name}.log"
+        with Serving(str(folder / f"{end.name}.db"), *options, folder=str(folder), log=str(log)) as serving:
             serving.until_ready()
             for when in ("after",) if short else _WHEN:
                 _cancelled(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
@@ -126,55 +143,71 @@ def _in_a_service(
                     _out_of_time(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
                 _worker_killed(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
             function = f"loops_{next(kinds)}_after:judge"
-            _under_way(verdict, serving, folder, function, "after")
+            _, marker = _under_way(verdict, serving, folder, function, "after")
             serving.stop_watching()
             serving.process.send_signal(end)
             # Its workers have their grace, which is a second, and five more to end.
-            _gone(verdict, f"{function}, service ended by {end.name}", serving.functions(), 1.0 + 5.0 + SOON)
+            _gone(verdict, f"{function}, service ended by {end.name}", marker, 1.0 + 5.0 + SOON)
         serving.judge(verdict)
         left_over(verdict, serving, within=10.0)
+        most = PRINTED * len(_markers(folder)) + _OF_THE_SERVICE
+        if log.stat().st_size > most:
+            verdict.violate("printed", f"{log.stat().st_size / 1e6:.0f} MB in the log, in place of {most / 1e6:.0f}")
 
 
-def _under_way(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str, **limits: float) -> int:
-    """Return the number of a job whose function has come to its loop."""
+def _under_way(
+    verdict: Verdict, serving: Serving, folder: Path, function: str, when: str, **limits: float
+) -> tuple[int, Path]:
+    """Return the number of a job whose function has come to its loop, and the file that it has opened then."""
     verdict.jobs += 1
+    before = _markers(folder)
     number = serving.submit(_tables(function), **limits)
-    if not serving.until(lambda: _loops(serving, folder, number, when), 120.0):
+    if not serving.until(
+        lambda: _markers(folder) - before and (when == "before" or serving.job(number)["records"] > 2), 120.0
+    ):
         verdict.violate("lost", f"{function}: it does not loop: {serving.job(number)}")
-    return number
+    return number, _latest(folder, before)
 
 
-def _loops(serving: Serving, folder: Path, number: int, when: str) -> bool:
-    return (when == "before" or serving.job(number)["records"] > 2) and _looping(folder, serving.functions())
+def _markers(folder: Path) -> set[Path]:
+    """Return the files of functions that have come to their loop; all that they start have theirs open, too."""
+    return set(folder.glob("loops_*.py.*"))
 
 
-def _looping(folder: Path, functions: list[psutil.Process]) -> bool:
-    """Whether one of these processes has come to its loop: it leaves a file with its number."""
-    return any(list(folder.glob(f"loops_*.py.{process.pid}")) for process in functions)
+def _latest(folder: Path, before: set[Path]) -> Path:
+    return max(_markers(folder) - before, key=lambda file: file.stat().st_mtime, default=folder / "none")
+
+
+def _is_open(file: Path) -> bool:
+    """Whether a process has a file open."""
+    for link in Path("/proc").glob("[0-9]*/fd/*"):
+        try:
+            if link.readlink() == file:
+                return True
+        except OSError:  # it has just been closed
+            continue
+    return False
 
 
 def _cancelled(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
-    number = _under_way(verdict, serving, folder, function, when)
-    functions = serving.functions()
+    number, marker = _under_way(verdict, serving, folder, function, when)
     serving.cancel(number)
-    _gone(verdict, f"{function}, cancelled", functions, SOON)
+    _gone(verdict, f"{function}, cancelled", marker, SOON)
     _ended(verdict, serving, number, function, "cancelled")
 
 
 def _out_of_time(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
     begin = time.monotonic()
-    number = _under_way(verdict, serving, folder, function, when, seconds=15.0)
-    functions = serving.functions()
-    _gone(verdict, f"{function}, out of time", functions, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0)
+    number, marker = _under_way(verdict, serving, folder, function, when, seconds=15.0)
+    _gone(verdict, f"{function}, out of time", marker, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0)
     _ended(verdict, serving, number, function, "cancelled")
 
 
 def _worker_killed(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
-    number = _under_way(verdict, serving, folder, function, when)
-    functions = serving.functions()
+    number, marker = _under_way(verdict, serving, folder, function, when)
     for worker in serving.workers():
         worker.kill()
-    _gone(verdict, f"{function}, worker killed", functions, SOON)
+    _gone(verdict, f"{function}, worker killed", marker, SOON)
     serving.cancel(number)
     _ended(verdict, serving, number, function, "cancelled")
 
@@ -186,13 +219,13 @@ def _ended(verdict: Verdict, serving: Serving, number: int, function: str, state
         verdict.violate("lost", f"{function}: {job['state']}, {job['reason']}")
 
 
-def _gone(verdict: Verdict, what: str, functions: list[psutil.Process], within: float) -> None:
+def _gone(verdict: Verdict, what: str, marker: Path, within: float) -> None:
     begin = time.monotonic()
-    while any(map(alive, functions)) and time.monotonic() - begin < within + SLACK:
+    while (left := _is_open(marker)) and time.monotonic() - begin < within + SLACK:
         time.sleep(0.02)
     verdict.resumed(time.monotonic() - begin)
-    if any(map(alive, functions)):
-        verdict.violate("left", f"{what}: its process goes on after {within + SLACK:.1f} s")
+    if left:
+        verdict.violate("left", f"{what}: its processes go on after {within + SLACK:.1f} s")
 
 
 def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: str, blow: signal.Signals) -> None:
@@ -200,6 +233,7 @@ def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: st
     job = folder / "job.toml"
     job.write_text(JOB.replace("FUNCTION", function))
     runs = folder / f"runs {function} {blow.name}".replace(":", " ")
+    before = _markers(folder)
     process = subprocess.Popen(
         [
             sys.executable,
@@ -219,17 +253,15 @@ def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: st
         env={**os.environ, "SLIDERCRANK_STORE": str(runs.with_suffix(".db"))},
         preexec_fn=die_with_parent,
     )
-    own = psutil.Process(process.pid)
     end = time.monotonic() + 120.0
-    functions: list[psutil.Process] = []
-    while not _looping(folder, functions) and time.monotonic() < end and process.poll() is None:
-        functions = own.children(recursive=True)
+    while not _markers(folder) - before and time.monotonic() < end and process.poll() is None:
         time.sleep(0.1)
-    if process.poll() is not None or not functions:
+    marker = _latest(folder, before)
+    if process.poll() is not None or not _is_open(marker):
         verdict.violate("lost", f"{function} on the command line: it ended with {process.poll()} before {blow.name}")
         return
     process.send_signal(blow)
-    _gone(verdict, f"{function} on the command line, {blow.name}", functions, SOON)
+    _gone(verdict, f"{function} on the command line, {blow.name}", marker, SOON)
     try:
         code = process.wait(30.0)
     except subprocess.TimeoutExpired:

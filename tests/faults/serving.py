@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, cast
 
 import httpx
@@ -26,16 +27,21 @@ class Serving:
     """While entered, a service of its own. slowest: answer of /health/live, s. seen: all processes that it ever had."""
 
     def __init__(
-        self, address: str, *arguments: str, folder: str | None = None, environment: Mapping[str, str] | None = None
+        self,
+        address: str,
+        *arguments: str,
+        folder: str | None = None,
+        environment: Mapping[str, str] | None = None,
+        log: str = os.devnull,
     ) -> None:
-        """Take a store, further arguments, and the folder in which it runs."""
+        """Take a store, further arguments, the folder in which it runs, and the file that gets what it prints."""
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = free.getsockname()[1]
         self.slowest, self.unanswered = 0.0, 0
         self.seen: dict[int, psutil.Process] = {}
         self._command = [sys.executable, "-m", "slidercrank", "serve", "--store", address, "--port", str(port)]
         self._command += ["--workers", "1", "--cores", "1", "--submissions-per-minute", "0", *arguments]
-        self._folder, self._environment = folder, dict(environment or {})
+        self._folder, self._environment, self._log = folder, dict(environment or {}), log
         self._client = httpx.Client(
             base_url=f"http://127.0.0.1:{port}/api/v1",
             headers={"Authorization": f"Bearer {TOKEN}"},
@@ -47,15 +53,16 @@ class Serving:
         self._watch = threading.Thread(target=self._look, daemon=True)
 
     def __enter__(self) -> Serving:
-        self.process = subprocess.Popen(
-            self._command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            cwd=self._folder,
-            env={**os.environ, "SLIDERCRANK_TOKEN": TOKEN, **self._environment},
-            preexec_fn=die_with_parent,
-        )
+        with Path(self._log).open("ab") as log:
+            self.process = subprocess.Popen(
+                self._command,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                cwd=self._folder,
+                env={**os.environ, "SLIDERCRANK_TOKEN": TOKEN, **self._environment},
+                preexec_fn=die_with_parent,
+            )
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -77,7 +84,7 @@ class Serving:
 
     def functions(self) -> list[psutil.Process]:
         """Return the processes of own functions, with all that they have started."""
-        return [process for process in self.look_at_processes() if says(process, "own.child")]
+        return [process for process in self.look_at_processes() if says(process, "own.guard")]
 
     def until_ready(self) -> None:
         """Wait until it answers and has a worker; watch it from then on."""

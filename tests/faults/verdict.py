@@ -74,6 +74,7 @@ KINDS_OF_WRONG = (
     "events missed",
     "late",
     "left",
+    "printed",
 )
 
 

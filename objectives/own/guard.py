@@ -1,0 +1,144 @@
+"""Guard of a custom function process: its parent, which ends all that the function starts and bounds what it prints.
+
+The guard ends everything when the function's process ends, on SIGTERM, and when the process that asks is gone, by
+whatever: that one alone holds the other end of a pipe, the lifeline. The guard forks the function's process before
+anything large is imported, so it adds no start of another program.
+
+On Linux, a process whose parent has ended becomes a child of the guard, so neither `setsid` nor a double fork escapes.
+On other systems with forks, the group of the function's process is ended. On Windows there is no guard.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+PRINTED = 1_000_000
+"""Bytes that a function and all that it starts may print."""
+_LEFT_OUT = f"\nA function of your own printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
+_DEATH_SIGNAL, _SUBREAPER = 1, 36  # PR_SET_PDEATHSIG and PR_SET_CHILD_SUBREAPER of <linux/prctl.h>
+_PAUSE, _LONGEST_PAUSE = 0.001, 0.1  # s between two searches for processes that are left: first, and at most
+_FLUSH = 1.0  # s for the last output, if nobody reads standard error
+
+
+def main() -> None:
+    """Run the process of a function, behind a guard where processes can fork."""
+    lifeline, log = sys.argv[1:]
+    del sys.argv[1:]  # modules of the user may read it
+    if hasattr(os, "fork"):
+        _fork(int(lifeline), log)
+    from .child import main as answer
+
+    answer()
+
+
+def _fork(lifeline: int, log: str) -> None:
+    """Fork the function's process and return in it alone; the other one is the guard, and ends with it.
+
+    lifeline: descriptor. log: file about crashes, which nobody reads once the process that asks is gone.
+    """
+    signals = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
+    signal.signal(signal.SIGCHLD, lambda *_: None)  # macOS drops a signal without a handler, even one waited for
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    _set(_SUBREAPER, 1)
+    printed, output = os.pipe()
+    function = os.fork()
+    if not function:
+        _set(_DEATH_SIGNAL, signal.SIGKILL)
+        os.dup2(output, 2)
+        for pipe in (lifeline, printed, output):
+            os.close(pipe)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        return
+    os.setpgid(function, function)  # a function that kills its own group leaves the guard alive
+    for pipe in (0, 1, output):  # requests and answers are the function's
+        os.close(pipe)
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    relay = threading.Thread(target=_relay, args=(printed,), daemon=True)
+    relay.start()
+    family = _Family(function)
+    while family.code is None and signal.sigwait(signals) == signal.SIGCHLD:
+        family.reap()
+    if family.code is None:
+        Path(log).unlink(missing_ok=True)
+    family.end()
+    relay.join(_FLUSH)
+    os._exit(family.code or 0)
+
+
+class _Family:
+    """Process of a function and all that descends from it.
+
+    code: its exit code, 128 + N after signal N as shells have it; None while it runs.
+    """
+
+    def __init__(self, function: int) -> None:
+        """Take the number of the function's process, which leads its group."""
+        self.function = function
+        self.code: int | None = None
+
+    def reap(self) -> bool:
+        """Take note of children that have ended, and return whether others are left."""
+        with contextlib.suppress(ChildProcessError):
+            while (ended := os.waitpid(-1, os.WNOHANG))[0]:
+                if ended[0] == self.function:
+                    code = os.waitstatus_to_exitcode(ended[1])
+                    self.code = 128 - code if code < 0 else code
+            return True
+        return False
+
+    def end(self) -> None:
+        """Kill all of them until none is left; meanwhile some fork, and orphans become children."""
+        with contextlib.suppress(OSError):
+            os.killpg(self.function, signal.SIGKILL)  # a whole group at one moment, forks under way included
+        pause = _PAUSE
+        while self.reap():
+            for process in _descendants(os.getpid()):
+                with contextlib.suppress(OSError):
+                    os.kill(process, signal.SIGKILL)
+            time.sleep(pause)
+            pause = min(2.0 * pause, _LONGEST_PAUSE)
+
+
+def _descendants(process: int) -> Iterator[int]:
+    """Yield the processes that descend from another one, each once its children are listed (Linux)."""
+    waiting = [process]
+    while waiting:
+        parent = waiting.pop()
+        with contextlib.suppress(OSError):  # it has ended
+            for task in Path(f"/proc/{parent}/task").iterdir():
+                waiting += map(int, (task / "children").read_text().split())
+        if parent != process:
+            yield parent
+
+
+def _end_with(lifeline: int) -> None:
+    os.read(lifeline, 1)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def _relay(printed: int) -> None:
+    """Pass on what is printed, up to `PRINTED`; read the rest too, so that nobody waits for a full pipe."""
+    left = PRINTED
+    while piece := os.read(printed, 1 << 16):
+        if left >= 0:
+            rest = _LEFT_OUT.encode() if len(piece) > left else b""
+            with contextlib.suppress(OSError):  # standard error is closed
+                os.write(2, piece[:left] + rest)
+            left -= len(piece)
+
+
+def _set(attribute: int, value: int) -> None:
+    """Set an attribute of this process (Linux)."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(attribute, value)
