@@ -99,10 +99,11 @@ AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1
 _DEG = face("deg", 57.29577951308232)
 ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
 _RPM = face("rpm", 9.549296585513721)
-_PLATES = (
-    *((unit, "rpm") for unit in ("1/min", "min^-1", "min-1", "min**-1", "U/min", "r/min", "spm", "strokes/min")),
-    ("Hz", "rev/s"),
+_PER_MINUTE = (
+    *("/min", "1/min", "min^-1", "min-1", "min**-1", "U/min", "u/min", "Upm", "UPM", "r/min", "r.p.m.", "Rpm"),
+    *("spm", "SPM", "stroke/min", "strokes/min", "Strokes/min"),
 )
+_PLATES = (*((unit, "rpm") for unit in _PER_MINUTE), *((unit, "rev/s") for unit in ("Hz", "hz", "HZ")))
 """Units on plates of motors and machines, which count turns."""
 _SPEEDS = "rad/s, rpm, rev/s"
 ANGULAR_SPEED = _kind("an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES)

@@ -93,7 +93,7 @@ _LOADS = (
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
 _SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;") + " on the slider"
-_SPEED = 'it comes from a turning crank; got speed 0; add for example [mechanism] speed = "300 rpm"'
+_SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
     _tolerances,
@@ -104,13 +104,12 @@ FRICTION = Need(
     "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use {instead}",
     without="equal",
 )
-SPEED = Need(_speed, _SPEED)
-TURNING = _defining(_speed, _SPEED)
+SPEED = _defining(_speed, _SPEED)
 REPEATS = _defining(
     lambda machine: machine.fullest.acceleration == 0.0,
     "a stroke time needs a speed that repeats every turn; got a crank acceleration; leave it out, or use time_ratio",
 )
-MOTION = Need(_motion, _SPEED)
+MOTION = _defining(_motion, _SPEED)
 """A crank that turns or is about to."""
 MASSES = Need(_masses, _MASSES)
 SWINGING_MASSES = Need(_swinging, _MASSES)

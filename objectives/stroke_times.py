@@ -15,11 +15,11 @@ from ..model.machine.members import cylinder_count
 from ..model.machine.numbers import of_numbers, require_width
 from ..model.machine.raw import Raw
 from .kinds import RATIO, TIME
-from .needs import ONE_TIMING, REPEATS, TURNING
+from .needs import ONE_TIMING, REPEATS, SPEED
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _SECTION = "2. Closed forms"
-_NEEDS = (TURNING, REPEATS, ONE_TIMING)
+_NEEDS = (SPEED, REPEATS, ONE_TIMING)
 
 
 def evaluate_stroke_times(

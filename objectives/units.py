@@ -29,7 +29,7 @@ Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
 """Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
 
-_OTHERS = (Kind("a frequency, without saying whether of turns or radians", "s^-1", "", 0.0, Face("1/s", "")),)
+_OTHERS = (Kind("a frequency that may count turns or radians", "s^-1", "", 0.0, Face("1/s", "")),)
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
 # within the two forces. Degrees carry pi to 36 digits.
@@ -126,6 +126,7 @@ PATTERN = rf"^\s*{_NUMBER}\s*(1\s*/\s*)?[^\d\s.+-].*$"
 """Pattern of a value with a unit, for a JSON Schema."""
 _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*)|\s+(1\s*/.*))?\s*", re.ASCII | re.DOTALL)
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
+_INVERSE = re.compile(r"^1?\s*/")
 _SPREAD = re.compile(rf"({_NUMBER})\s*(.*?)\s*(?:\+/?-|±)\s*({_NUMBER})\s*(.*)", re.DOTALL)
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
 _LONGEST = 60
@@ -339,6 +340,10 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
     if _SPREAD.fullmatch(text.translate(_TYPESET).strip()):
         raise InputError(f"{rule}, a single value; got {shown(text)}, which is a range; {write}")
+    if kind.spoken and (two := re.fullmatch(r"\s*([+-]?\d+)1/\s*min\s*", text)):
+        raise InputError(
+            f'{rule}; got {shown(text)}, which can be read in two ways; write "{two[1]} rpm" or "{two[1]}1 rpm"'
+        )
     number, unit = Fraction(match[1]), dict(kind.spoken).get(_unit_in(match), _unit_in(match))
     if not unit and kind.unit:
         bare = " (in a job file, without quotes)" if "plain number" in write else ""
@@ -373,15 +378,15 @@ def _unit(text: str) -> tuple[Fraction, Dimension]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
     Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a
-    product after it ("N/m s") reads either way and is refused.
+    product after it ("N/m s") reads either way and is refused. Nothing or a 1 may stand before it: "1/s".
     """
-    rest, factor, dimension = text.rstrip(), Fraction(1), dict[str, int]()
+    rest, factor, dimension = _INVERSE.sub("/", text.rstrip()), Fraction(1), dict[str, int]()
     divided, first = False, True
     while rest:
         match = _FACTOR.match(rest)
-        if match is None or (first and match[1]):
+        if match is None or (first and match[1] not in ("", "/")):
             hint = _HINTS.get(rest.strip())
-            raise InputError(f"{shown(rest.strip())} is no unit{f', {hint}' if hint else ''}")
+            raise InputError(f"{shown(rest.strip())} is not a unit{f', {hint}' if hint else ''}")
         sign, name = match[1], match[2]
         if divided:
             raise InputError("a unit ends with the name after its division sign")
@@ -405,7 +410,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
         hint = _HINTS.get(name)
         near = None if hint else closest(name, _COMMON)
         meant = f", {hint}" if hint else f", did you mean {near}?" if near else ""
-        raise InputError(f"{shown(name)} is no known unit{meant}")
+        raise InputError(f"{shown(name)} is not a known unit{meant}")
     value = registry.Quantity(Fraction(1), name).to_root_units()
     powers = tuple((str(base), int(power)) for base, power in value.dimensionality.items())
     return Fraction(value.magnitude), powers

@@ -114,7 +114,7 @@ def simulate(
     `SlidercrankError` for a contact that is too soft to hold the journal.
     """
     if not mechanism.speed:
-        raise InputError("a joint with clearance is simulated over turns of the crank; got speed 0; give a crank speed")
+        raise InputError("a joint with clearance is simulated over turns of the crank; got none; give a crank speed")
     require_plain(mechanism, "the simulation of a loose joint")
     require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
     if not 0 <= discard < cycles:

@@ -15,6 +15,7 @@ from .drive import Drive
 from .friction import Friction
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
+from .loads.words import between
 from .speed_profile import Profile
 from .start import Start
 from .strength import Strength
@@ -192,6 +193,17 @@ class Mechanism:
     def fullest(self) -> Mechanism:
         """The machine with every varying number at its end of greatest size: it has all that some design has."""
         return self.at([item.fullest for item in self.varying]) if self.varying else self
+
+    @property
+    def ends(self) -> tuple[Mechanism, Mechanism]:
+        """The machines with the lower and with the upper ends of all varying numbers."""
+        return self.at([item.lower for item in self.varying]), self.at([item.upper for item in self.varying])
+
+    @property
+    def load_texts(self) -> list[str]:
+        """Each load in a sentence, with the ranges of its varying numbers."""
+        low, high = self.ends
+        return [between(one.text, other.text) for one, other in zip(low.loads, high.loads, strict=True)]
 
     def at(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, of its varying numbers (k,)."""

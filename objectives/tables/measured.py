@@ -87,7 +87,7 @@ def columns_of(
         hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
-        raise InputError("time becomes a crank angle at the crank speed; got speed 0; give the speed, or crank angles")
+        raise InputError("time becomes a crank angle at the crank speed; got no speed; give one, or crank angles")
     elif mechanism.acceleration:
         raise InputError(
             f"time becomes a crank angle at constant speed; got a crank acceleration of {mechanism.acceleration:g} "

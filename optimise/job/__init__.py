@@ -11,7 +11,6 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import replace
-from functools import cache
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,7 @@ from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .own import declared, modules_beside
-from .plain_numbers import PlainNumbers, plain_bounds, plain_numbers, plain_values
+from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_noting
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
@@ -145,16 +144,15 @@ def parse_job(
     job = job_with(own)
     doubts: list[PlainNumbers] = []
     try:
-        stated = job.model_validate(data)
+        stated, doubts = read_noting(job, data, values)
         stated = with_values(stated, values, "values") if values else stated
-        doubts = plain_numbers(job, data, values or {})
         problem = problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
         doubts += plain_bounds(problem, data)
         warned = tuple(dict.fromkeys(item.warning for item in doubts if item.warning))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = plain_values(job, data)
-        found = [_with_doubts(one, doubts) for one in explain(error, _schema() if job is Job else schema_of(job))]
+        found = [_with_doubts(one, doubts) for one in explain(error, schema_of(job))]
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []
@@ -195,9 +193,4 @@ def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
 
 def job_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
-    return deepcopy(_schema())
-
-
-@cache
-def _schema() -> dict[str, Any]:
-    return schema_of(Job)
+    return deepcopy(schema_of(Job))

@@ -21,7 +21,8 @@ from .catalogue_columns import Column, columns_of
 from .catalogue_screening import screened
 from .messages import key_of
 from .paths import unknown_path, with_number
-from .table_file import TableFile, of_numbers, read_table
+from .table_file import TableFile, read_table
+from .table_layout import of_numbers
 
 MOST_ROWS = 50_000
 MOST_OPTIONS = 200

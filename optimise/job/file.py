@@ -14,7 +14,7 @@ from typing import Any
 from ...model.errors import JobError
 from ...objectives.units import shown
 from .messages import DEEPEST, key_of
-from .toml_errors import in_words, key_at
+from .toml_errors import in_words
 
 LARGEST = 1_000_000
 """Bytes. A job of as many values as are allowed takes half of it, of ten characters each."""
@@ -28,11 +28,6 @@ _DEEP = rf"{_WORD}(?:{_DOT}{_WORD}){{{DEEPEST}}}"
 _PASSED = re.compile(rf"(?s)(?:{_TEXT})|\"(?:[^\"\\\n]|\\.)*+\"?+|'[^'\n]*+'?+|#[^\n]*+")
 """Texts and comments."""
 _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_DOT}{_WORD})*+|.))*+{_DEEP}")
-_LONGEST = 60  # of a value that is repeated in a message
-_QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'|#.*")
-_BARE = r"(?:[+-]?\d[\d.]*(?:e[+-]?\d+)?[ \t]*)?[A-Za-zµ°%]"  # how a word begins, or a number with its unit
-_LINE = re.compile(rf"[^=\[{{]+=\s*({_BARE}[^=\[{{]*)")
-_PART = re.compile(rf"[=:,\[{{]\s*({_BARE}[^=,:\]}}]*)(?=[,\]}}]|$)")
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -87,9 +82,14 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
         raise _too_deep() from None
     except JobError:
         raise
-    except ValueError as error:
-        said = _unquoted(text, str(error))
-        raise JobError(said or f"the file is no valid JSON: {error}; correct the line") from None
+    except json.JSONDecodeError as error:
+        line = text.split("\n")[error.lineno - 1].strip()
+        raise JobError(
+            f"the file must be JSON; got {shown(line)} in line {error.lineno}, which cannot be read from column "
+            f"{error.colno} on; put names, texts and values with units in double quotes, and commas between entries"
+        ) from None
+    except ValueError:
+        raise _too_long() from None
     if not isinstance(data, dict):
         raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
     return data
@@ -113,32 +113,16 @@ def toml_tables(text: str) -> dict[str, Any]:
         raise _too_deep() from None
     except ValueError as error:
         if "set_int_max_str_digits" in str(error):  # advice for programmers
-            raise JobError(
-                "the file is no valid TOML: a number of a job has a few digits; got one of thousands; shorten it"
-            ) from None
-        said = in_words(text, str(error))
-        said = said or _unquoted(text, str(error))
-        raise JobError(said or f"the file is no valid TOML: {str(error)[:300]}; correct the line") from None
-
-
-def _unquoted(text: str, error: str) -> str | None:
-    """Return rule, line and remedy for a parser's error at a value that lacks quotes; None for another error."""
-    place = re.search(r"line (\d+)", error)
-    lines = text.splitlines()
-    line = lines[min(int(place[1]), len(lines)) - 1] if place else lines[-1]  # "at end of document"
-    line = "" if line.lstrip().startswith("[") else _QUOTED.sub("", line)
-    whole = _LINE.fullmatch(line)
-    for value in (match[1].strip() for match in ([whole] if whole else _PART.finditer(line))):
-        if len(value) <= _LONGEST and value not in ("true", "false", "null", "nan", "inf"):
-            where = f"line {place[1]}" if place else "the last line"
-            key = key_at(text, int(place[1]) if place else len(lines))
-            what = "a value with a unit" if value[0] in "+-.0123456789" else "text"
-            return f'{key}{": " if key else ""}{what} must be in quotes; got {value} in {where}; write "{value}"'
-    return None
+            raise _too_long() from None
+        raise JobError(in_words(text, str(error))) from None
 
 
 def _too_deep() -> JobError:
     return JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the file")
+
+
+def _too_long() -> JobError:
+    return JobError("a number of a job has a few digits; got one of thousands; shorten it")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -22,6 +22,8 @@ DEEPEST = 8
 LONGEST = 100
 """Number of problems that are looked at: each costs a search for a near key."""
 
+SEVERAL, SINGLE = "must be a list of tables, in double brackets", "must be a single table, in single brackets"
+
 Schema = dict[str, Any]
 
 _TABLE, _NUMBER, _WHOLE = "must be a table of keys", "must be a number", "must be a whole number"
@@ -121,12 +123,13 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
             f"{place}: a {noun} with {kind} has no such key; got {shown(value)}; a {noun} with {owners} has "
             f"it; {possible}"
         ), ""
-    near = closest(str(key), allowed)
-    choice = f"did you mean {near}?" if near else _elsewhere(str(key), schema) or possible
+    owner = place_of(str(key), schema)
+    near = None if owner else closest(str(key), allowed)
+    choice = f"did you mean {near}?" if near else owner or possible
     return f"{place}: unknown key {shown(str(key))}; {choice}", key_of([*path, near]) if near else ""
 
 
-def _elsewhere(key: str, schema: Schema) -> str:
+def place_of(key: str, schema: Schema) -> str:
     """Return in words where a key that its table does not have belongs; "" if no table has it either."""
     tables = {name: inner for name in schema["properties"] if (inner := _properties(schema, [name]))}
     if key in schema["properties"] and key not in tables:
@@ -145,16 +148,18 @@ def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
 def _sentence(details: ErrorDetails, schema: Schema) -> str:
     """Return rule, value and remedy of one problem."""
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
-    example = _example(schema, path)
+    example = example_of(schema, path)
     write = f"; write for example {example}" if example else ""
     got = f"got {shown(value)}"
     if kind == "value_error":
         return str(context["error"])
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
+    table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _properties(schema, [*path, 0]):
-        table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
-        return f"must be a list of tables; got a single one; write [[{table}]], in double brackets, for [{table}]"
+        return f"{SEVERAL}; got a single one; write [[{table}]] for [{table}]"
+    if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(one, Mapping) for one in value):
+        return f"{SINGLE}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
         said = re.findall(r"'([^']*)'", str(context.get("expected", "")))
@@ -192,7 +197,7 @@ def _any_of(words: Sequence[str]) -> str:
     return " or ".join(quoted) if len(quoted) < 3 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
-def _example(schema: Schema, path: Sequence[Any]) -> str:
+def example_of(schema: Schema, path: Sequence[Any]) -> str:
     """Return an example of the key, written as in a job file; "" if the schema has none."""
     for node in nodes_at(schema, path):
         if node.get("examples"):

@@ -15,6 +15,7 @@ from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.words import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
+from ...objectives.needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts
@@ -220,7 +221,7 @@ def require_no_speed(varying: Iterable[str]) -> None:
 
 
 def require_speed(mechanism: CrankSpeedPart, machine: Mechanism, asked: Iterable[Quantity], slow_stroke: bool) -> None:
-    """Raise JobError for a crank that turns through without a speed, if something that the job asks for follows it.
+    """Raise JobError for a crank that turns through without a speed, if something that the job asks for depends on it.
 
     asked: quantities of objectives and constraints. slow_stroke: whether the job asks which stroke is the slow one.
     """
@@ -228,11 +229,12 @@ def require_speed(mechanism: CrankSpeedPart, machine: Mechanism, asked: Iterable
         return
     given = [key for key in ("direction", "acceleration", "speed_profile") if getattr(mechanism, key)]
     follow = [*given, *(["slow_stroke"] if slow_stroke else [])]
-    follow += [of.name for of in asked if not of.undefined_because([machine]) and of.follows_speed(machine)][:1]
+    lacking = ((of, of.undefined_because([machine])) for of in asked)
+    follow += [of.name for of, why in lacking if (SPEED.missing in why if why else of.follows_speed(machine))][:1]
     if follow:
         raise JobError(
             f"mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; {follow[0]} "
-            'follows it; add for example speed = "300 rpm"'
+            'depends on it; add for example speed = "300 rpm"'
         )
 
 

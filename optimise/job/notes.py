@@ -14,7 +14,7 @@ from .catalogue import Catalogue, with_options
 from .messages import key_of, toml
 from .model import Job, job_with
 from .own import declared
-from .plain_numbers import plain_numbers
+from .plain_numbers import read_noting
 
 _MOST = 6  # plain numbers that are told one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
@@ -28,9 +28,8 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     than the one meant is among the warnings of the problem instead.
     """
     data, tables = with_options(data)
-    model = job_with(declared(data, allowed=True))
-    job = model.model_validate(data)
-    told = [item.note for item in plain_numbers(model, data) if not item.warning]
+    job, plain = read_noting(job_with(declared(data, allowed=True)), data)
+    told = [item.note for item in plain if not item.warning]
     notes = []
     if told:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""

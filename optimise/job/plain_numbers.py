@@ -17,7 +17,7 @@ from ...objectives.units import shown
 from ..problem.problem import Problem
 from .messages import key_of, keys_of, toml
 from .paths import with_number
-from .values import PLAIN, Part, plain_in, values_in
+from .values import PLAIN, Part, Table, plain_in, values_in
 from .variables import leaves_of, varying_in
 
 _LONGEST = 60  # of a value that a warning repeats
@@ -78,34 +78,36 @@ class PlainNumbers:
         return form.format(f"{usual.factor * number:.6g} {usual.symbol}") if usual.symbol != self.kind.unit else ""
 
 
-def plain_numbers(
-    job: type[Part], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
-) -> list[PlainNumbers]:
-    """Return the numbers without a unit in the tables of a job, those of ratios and counts aside.
+def read_noting(
+    job: type[Table], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
+) -> tuple[Table, list[PlainNumbers]]:
+    """Return the tables of a job as it reads them, and the numbers without a unit there, but for ratios and counts.
 
-    job: reads it. values: put in place of numbers of the job, by their paths.
+    values: put in place of numbers of the job, by their paths, in what is noted. Raises `ValidationError`.
     """
-    placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in _placed(job, data)}
+    read, found = _placed(job, data)
+    read = job.model_validate(data) if read is None else read
+    placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in found}
     for path in values or ():
         placed.pop(path, None)
     given = [(path, path, value) for path, value in (values or {}).items()]
     varying = [item for item in (*given, *_varying(data)) if plain_in(item[2])]
     if not varying:
-        return list(placed.values())
+        return read, list(placed.values())
     tried: Mapping[str, Any] = data
     for _, path, value in varying:
         try:
             tried = _with(tried, path, plain_in(value)[0])
         except LookupError:  # a word of the table, such as the name of a series
             continue
-    kinds = {path: kind for path, _, _, kind in _placed(job, tried)}
+    kinds = {path: kind for path, _, _, kind in _placed(job, tried)[1]}
     more = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
-    return [*placed.values(), *more]
+    return read, [*placed.values(), *more]
 
 
 def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
     """Return the numbers without a unit that stand in their own places, in the tables of a job that may be invalid."""
-    return [PlainNumbers(key, value, kind) for _, key, value, kind in _placed(job, data)]
+    return [PlainNumbers(key, value, kind) for _, key, value, kind in _placed(job, data)[1]]
 
 
 def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
@@ -119,10 +121,14 @@ def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNum
                         yield PlainNumbers(key_of([table, name, word]), value, kind)
 
 
-def _placed(job: type[Part], data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, Kind]]:
-    """Yield dotted path, key, value and kind of each value with a number without a unit that has a place of its own."""
+def _placed(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
+    """Return the tables of a valid job without such numbers as read, else None, and the numbers without a unit.
+
+    Of each that has a place of its own dotted path, key, value and kind.
+    """
+    found = []
     try:
-        job.model_validate(data, context=PLAIN)
+        return job.model_validate(data, context=PLAIN), []
     except ValidationError as error:
         for details in error.errors(include_url=False):
             if details["type"] == PLAIN:
@@ -130,7 +136,8 @@ def _placed(job: type[Part], data: Mapping[str, Any]) -> Iterator[tuple[str, str
                 keys = keys[:-1] if isinstance(keys[-1], int) else keys  # of a list, as a whole
                 value = reduce(getitem, keys, data)
                 path = ".".join(str(key + 1) if isinstance(key, int) else key for key in keys)
-                yield path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]
+                found.append((path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]))
+    return None, found
 
 
 def _varying(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:

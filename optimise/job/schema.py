@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 from pydantic import BaseModel
 
 
+@lru_cache(maxsize=16)
 def schema_of(job: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON Schema of a job, without its nulls."""
+    """Return the JSON Schema of a job, without its nulls; not to be changed, as it is kept."""
     schema = job.model_json_schema(mode="validation")
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
 

@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import codecs
 import csv
-import io
 import itertools
 import re
-from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,13 +21,26 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from ...objectives.units import is_value, number_and_unit, shown
+from .table_layout import (
+    EXPONENT,
+    MISSING,
+    SAMPLE,
+    SEPARATORS,
+    commented,
+    content_lines,
+    named_in,
+    of_numbers,
+    of_units,
+    separator_of,
+    split,
+    stated_separator,
+    title_lines,
+    with_plain_signs,
+    with_units,
+)
 
-_SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
-"""In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
-_COMMENT = re.compile(r"\s*(?:#|%|//)+\s*")
-_SAID = re.compile(r'\s*"?sep=(\\t|.)"?\s*', re.IGNORECASE)
-_SAMPLE = 200  # lines by which separators are told apart
 _MOST_COLUMNS = 1000
 _AT_ONCE = 50_000  # rows of which the cells are kept as single texts
 _MARKS = (
@@ -41,13 +52,8 @@ _MARKS = (
 )
 _BINARY = ("PK\x03\x04", "ÐÏ\x11à", "%PDF")
 """How spreadsheets and documents begin, as Latin-1 as Windows has it."""
-_MISSING = ("", "nan", "na", "n/a", "#n/a", "#nv", "null", "-")
-_EXPONENT = r"(?:[eE][+-]?\d{1,3})?"
 _BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a cell in quotes
-_NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}", re.ASCII)
-_LIKE_A_NUMBER = re.compile(rf"[+-]?[.,]?\d[\d.,]*{_EXPONENT}", re.ASCII)
-_BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))")
-"""Signs that part thousands and mean nothing else."""
+_NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){EXPONENT}", re.ASCII)
 
 
 def bytes_of(path: Path, name: str, most: int) -> bytes:
@@ -136,7 +142,7 @@ class TableFile:
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
-        digits = _plain(cell).replace(grouping, "").replace(decimal, ".")
+        digits = with_plain_signs(cell).replace(grouping, "").replace(decimal, ".")
         return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell
 
     @property
@@ -177,7 +183,7 @@ class TableFile:
 
     def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
         """Return the cells of columns with decimal points and without signs that part thousands."""
-        parts = [(portion, {n: _plain(portion.columns[n]) for n in places}) for portion in self.portions]
+        parts = [(portion, {n: with_plain_signs(portion.columns[n]) for n in places}) for portion in self.portions]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
         decimal, grouping = self.signs = self._decimal(signs)
         example = signs.first(_group(decimal))
@@ -228,7 +234,7 @@ class TableFile:
     def _one(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
         if _NUMBER.fullmatch(cell) and np.isfinite(float(cell)):
             return float(cell)
-        if missing and cell.casefold() in _MISSING:
+        if missing and cell.casefold() in MISSING:
             return float("nan")
         got = portion.columns[place].split("\n")[n]
         if not got:
@@ -244,11 +250,6 @@ class TableFile:
     def at(self, line: int, place: int) -> str:
         """Return the words for a cell in messages."""
         return f"{self.name}, row {line}, column {shown(self.heads[place])}"
-
-
-def _plain(text: str) -> str:
-    """Return cells without blanks that part thousands, and with plain minus signs."""
-    return _BLANKS.sub("", text).replace("\u2212", "-")
 
 
 class _Signs:
@@ -270,13 +271,13 @@ def _group(sign: str) -> str:
 
 def _whole(grouping: str, decimal: str) -> str:
     """Return the form of a number that is parted in threes."""
-    return rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{_EXPONENT}"
+    return rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{EXPONENT}"
 
 
 def _sure(decimal: str, grouping: str) -> str:
     """Return the form of a number whose decimal sign is certain: 0.3, .3, 1.3000, 1,300.5, and 1,000,000."""
-    one = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){_EXPONENT}"
-    parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{_EXPONENT}"
+    one = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
+    parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{EXPONENT}"
     return rf"{one}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
 
 
@@ -295,17 +296,20 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
 
 
 def _read(text: str, name: str, *, ragged: bool) -> TableFile:
-    separator = _separator(text)
-    lines = _split(_content(text), separator)
+    separator = separator_of(text)
+    lines = split(content_lines(text), separator)
+    above = list(itertools.islice(lines, SAMPLE))
+    titles = title_lines([cells for _, cells in above])
+    lines = itertools.chain(above[titles:], lines)
     head = next(lines, None)
     if head is None:
         raise InputError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
-    below = first[1] if first is not None and _units(first[1]) else None
+    below = first[1] if first is not None and of_units(first[1]) else None
     if below is not None:
         first = next(lines, None)
-    elif len(heads) == 1 and _said(text) and any(sign in heads[0] for sign in _SEPARATORS if sign != " "):
+    elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
         raise InputError(
             f'{name} must have its cells separated as its line "sep={separator}" says; got {shown(heads[0])}; correct '
             "that line, or leave it out"
@@ -314,11 +318,11 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     rows = lines if first is None else itertools.chain([first], lines)
     if of_numbers(heads):
         rows = itertools.chain([head], rows)
-        heads = _commented(text, separator, len(heads)) or heads
+        heads = commented(text, separator, len(heads)) or heads
     elif len(heads) != width:
-        line = next(line for line in _content(text) if line.strip())
-        heads = _named(line, separator, width) or heads
-    heads = _with_units(heads, below or [])
+        line = next(line for line in content_lines(text) if line.strip())
+        heads = named_in(line, separator, width) or heads
+    heads = with_units(heads, below or [])
     if of_numbers(heads):
         raise InputError(
             f"{name} must begin with a line that names its columns, with units; got {', '.join(heads)[:60]!r}; add one "
@@ -329,106 +333,9 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     found = list(_portions(rows, len(heads), name, ragged=ragged))
     if not found:
         raise InputError(f"{name} must have rows below the names of its columns; got none; add them")
-    said = [f"separated by {_SEPARATORS.get(separator, shown(separator))}"] if len(heads) > 1 else []
+    said = [f"separated by {SEPARATORS.get(separator, shown(separator))}"] if len(heads) > 1 else []
+    said += [f"{counted(titles, 'title line')} above the names of the columns skipped"] if titles else []
     return TableFile(name, tuple(heads), said, separator, found)
-
-
-def _content(text: str) -> Iterator[str]:
-    """Yield the lines of a text, empty ones in place of comments and of a first one that says the separator."""
-    begun = False
-    for line in io.StringIO(text):
-        empty = _COMMENT.match(line) or not line.strip()
-        yield "\n" if empty or (not begun and _SAID.fullmatch(line)) else line
-        begun = begun or not empty
-
-
-def _split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of each line with content."""
-    if separator == " ":
-        lines = (line.replace("\t", " ") for line in lines)
-    reader = csv.reader(lines, delimiter=separator, strict=True)
-    try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells):
-                yield reader.line_num, [cell for cell in cells if cell] if separator == " " else cells
-    except csv.Error as error:
-        why = str(error).encode("unicode_escape").decode()  # it names the sign between the values, perhaps a tab
-        raise csv.Error(f"{why} in row {reader.line_num}") from None
-
-
-def _separator(text: str) -> str:
-    """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
-    if said := _said(text):
-        return said
-    sample = [line for line in itertools.islice(_content(text), 10 * _SAMPLE) if line.strip()][:_SAMPLE]
-    best, separator = 0.0, ","
-    for sign in _SEPARATORS:
-        try:
-            rows = [cells for _, cells in _split(sample, sign)]
-        except csv.Error:
-            continue
-        widths = [len(row) for row in rows]
-        width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
-        if sign != " ":
-            width = widths[0] if widths else 1
-        elif not all(of_numbers(row) for row in rows[1 + (len(rows) > 1 and _units(rows[1])) :]):
-            continue
-        alike = widths.count(width) / len(widths) if width > 1 else 0.0
-        if alike and of_numbers(rows[0]) and _commented(text, sign, width):
-            alike += 1.0  # as many names as numbers
-        if alike > best:
-            best, separator = alike, sign
-    return separator
-
-
-def _said(text: str) -> str:
-    """Return the sign between cells that the first line with content says; empty if it says none."""
-    first = next((line for line in io.StringIO(text) if line.strip() and not _COMMENT.match(line)), "")
-    said = _SAID.fullmatch(first)
-    return "" if said is None else said[1].replace("\\t", "\t")
-
-
-def _units(cells: Sequence[str]) -> bool:
-    """Whether a line has units alone, two at least, as loggers write them below the names."""
-    units = [_unit(cell) for cell in cells if _unit(cell)]
-    return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
-
-
-def _unit(cell: str) -> str:
-    return cell.strip().strip("[]()-")
-
-
-def _with_units(heads: list[str], units: Sequence[str]) -> list[str]:
-    """Return names of columns with the units of a line below them, if it has as many cells."""
-    if len(units) != len(heads):
-        return heads
-    return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
-
-
-def of_numbers(cells: Sequence[str]) -> bool:
-    """Whether all of some cells are numbers, with any signs."""
-    return any(cells) and all(_LIKE_A_NUMBER.fullmatch(_plain(cell.strip())) for cell in cells if cell)
-
-
-def _commented(text: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of columns in the last comment before the numbers that has as many; None without one."""
-    found = None
-    for line in io.StringIO(text):
-        comment = _COMMENT.match(line)
-        if comment:
-            named = _named(line[comment.end() :], separator, width)
-            found = _with_units(found, named) if found and named and _units(named) else named or found
-        elif line.strip() and not _SAID.fullmatch(line):
-            break
-    return found
-
-
-def _named(line: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of so many columns in a line, also of more words than one between blanks; None without them."""
-    ways = [[cell.strip() for _, cells in _split([line], separator) for cell in cells]]
-    if separator == " ":
-        ways += [re.split(apart, line.strip()) for apart in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
-    return next((heads for heads in ways if len(heads) == width and not of_numbers(heads)), None)
 
 
 def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
@@ -438,8 +345,9 @@ def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, r
         for place, cells in some:
             if len(cells) != width and (any(cell.strip() for cell in cells[width:]) or not (ragged or cells[width:])):
                 raise InputError(
-                    f"{name}, row {place} must have {width} cells, as the first line; got {len(cells)}; correct it; "
-                    "where numbers have a decimal comma, separate them by semicolons"
+                    f"{name}, row {place} must have {width} cells, as the first line; got {len(cells)}; correct "
+                    "it, or delete lines above the names of the columns; where numbers have a decimal comma, separate "
+                    "them by semicolons"
                 )
         full = [cells[:width] + [""] * (width - len(cells)) for _, cells in some]
         columns = ["\n".join([_BREAK.sub(" ", cell.strip()) for cell in column]) for column in zip(*full, strict=True)]

@@ -376,7 +376,8 @@ class PartOfStroke(_Read):
             )
         if part == "whole":
             return load.StrokePart()
-        length = to_si(found[2], self.kind, sign="positive", plain=False)
+        of = replace(self.kind, example=f"{part} 60 mm")
+        length = to_si(found[2], of, sign="positive", plain=False)
         return load.StrokePart("first" if part == "first" else "last", length)
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:

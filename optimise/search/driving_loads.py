@@ -120,8 +120,8 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
 def _named(part: Problem, design: Array) -> str:
     """Return the loads that do positive net work on a design, numbered as in the job."""
     found = [
-        f"load #{k + 1} ({load.text})"
-        for k, load in enumerate(part.mechanism.loads)
+        f"load #{k + 1} ({text})"
+        for k, (load, text) in enumerate(zip(part.mechanism.loads, part.mechanism.load_texts, strict=True))
         if not load.drives and net_work(part, design, [k])[0] > 0.0
     ]
     return " and ".join(found[:_NAMED])

@@ -16,7 +16,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...model.errors import InputError, JobError, ServiceError
+from ...model.errors import InputError, ServiceError
 from ...model.file_names import path_from_text
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
@@ -255,17 +255,12 @@ class Client(Designs):
 
 def tables_of(job: JobSource) -> Record:
     """Return the tables of a job file, with the content of files beside it in them. Raises `JobError`."""
-    import tomllib
-
     from ...optimise.job import with_files
-    from ...optimise.job.file import read
+    from ...optimise.job.file import read, toml_tables
 
     if isinstance(job, Mapping):
         return dict(job)
     if isinstance(job, str) and "\n" in job:
-        try:
-            return tomllib.loads(job)
-        except ValueError as error:
-            raise JobError(f"the text is no valid TOML: {error}; correct the line") from None
+        return toml_tables(job)
     file = path_from_text(job)
     return with_files(read(file), file.parent)

@@ -14,6 +14,8 @@ from ...optimise.front.constant import is_constant
 from ...optimise.job import Job
 from ...optimise.job.box import STROKE_RATIOS, beyond_both
 from ...optimise.job.file import require_few
+from ...optimise.job.messages import place_of
+from ...optimise.job.schema import schema_of
 from ...optimise.job.stated_formulas import OwnName, StatedFormula, own_names, stated_formulas
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
@@ -74,9 +76,12 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
 def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
     """Return mistakes with those of formulas, which the others hide: a job is read before its formulas are.
 
-    What is said of the formula itself comes instead of what is said of its place.
+    What is said of the formula itself comes instead of what is said of its place, unless it is a key of another table.
     """
-    found = {of.key: of.wrong for of in formulas if of.wrong is not None}
+    schema = schema_of(Job)
+    found = {
+        of.key: of.wrong for of in formulas if of.wrong is not None and not place_of(of.key.split(".")[-1], schema)
+    }
     return [*(one for one in wrong if one.path not in found), *(Wrong(*item) for item in found.items())]
 
 

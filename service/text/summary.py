@@ -9,6 +9,7 @@ from ...model.cycle.pace import turn_time
 from ...model.linkage.values import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
+from ...model.machine.loads.words import between
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.two_turns import cycle_turns
@@ -17,9 +18,10 @@ from ...model.swing.ends import start_column
 from ...objectives.counted import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.varying_column import columns_of_numbers, varying_column
 from ...optimise.job.options import idle_options, impossible_options
 from ...optimise.problem.costs import Cost
+from ...optimise.problem.discrete import Discrete
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
@@ -28,6 +30,8 @@ from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import Sheet, sheets
+
+_MOST_VALUES = 6  # of a variable that are all told
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
@@ -40,14 +44,14 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": [*_motion(problem), *machine_in_words(problem, problem.mechanism), *_own(problem)],
-        "loads": [load.text for load in problem.mechanism.loads],
+        "given": [*_motion(problem), *_machine(problem), *_own(problem)],
+        "loads": problem.mechanism.load_texts,
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
         "variables": [
             *(f"{name} {_lengths(problem, name)}" for name in DIMENSIONS),
             *(_varying(item) for item in problem.mechanism.varying),
-            *(f"{item.name} {item.rule}: {len(item.values)} values" for item in problem.discrete),
+            *(_values(problem, item) for item in problem.discrete),
             *_choices(problem),
         ],
         "rules": [
@@ -95,6 +99,14 @@ def _is_fixed(sheet: Sheet) -> bool:
 def _degrees_of_freedom(sheet: Sheet) -> int:
     equalities = 0 if _is_fixed(sheet) else sum(constraint.equality for constraint in sheet.remaining)
     return len(sheet.free) - equalities
+
+
+def _machine(problem: Problem) -> list[str]:
+    """Return the machine of a problem line by line, with the ranges of its varying numbers."""
+    low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
+    if len(low) != len(high):  # a number that is zero at one end leaves its line out
+        return machine_in_words(problem, problem.mechanism)
+    return [between(one, other) for one, other in zip(low, high, strict=True)]
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
@@ -266,17 +278,32 @@ def _varying(item: Varying) -> str:
     return f"{item.name} {ends}"
 
 
+def _values(problem: Problem, item: Discrete) -> str:
+    """Return the values of a variable that has some only: the rule that gives them, and the first and last ones."""
+    unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
+    values = [f"{unit.factor * value:.6g}" for value in item.values]
+    few = values if len(values) <= _MOST_VALUES else [*values[:2], "...", values[-1]]
+    return f"{item.name} {item.rule}: {counted(len(values), 'value')}, {', '.join(few)} {unit.symbol}".rstrip()
+
+
 def _choices(problem: Problem) -> list[str]:
     """Return the options of each choice that a design can have, and the number of their combinations."""
     lines = []
     idle = {label for label, _ in impossible_options(problem)}
-    possible = [variant.labels for variant in problem.variants if ", ".join(variant.labels) not in idle]
+    possible = [variant for variant in problem.variants if ", ".join(variant.labels) not in idle]
     for place, name in enumerate(problem.choices):
-        lines.append(f"{name}: {', '.join(dict.fromkeys(labels[place] for labels in possible))}")
+        shown = dict.fromkeys(_option(name, variant.labels[place], variant.mechanism.speed) for variant in possible)
+        lines.append(f"{name}: {', '.join(shown)}")
     count = len(possible)
     if count > 1:
         lines.append(f"{count} combinations of choices, all tried")
     return lines
+
+
+def _option(name: str, label: str, speed: float) -> str:
+    """Return an option as the job states it, a speed in rpm too. speed: of the crank, rad/s."""
+    rpm = f"{speed * 30.0 / math.pi:.6g} rpm"
+    return f"{label} ({rpm})" if name == "speed" and label != rpm else label
 
 
 _MOST_TOLD = 12  # combinations whose limits are told one by one

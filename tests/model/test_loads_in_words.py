@@ -18,6 +18,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.varying import Varying
 from tests.model.virtual_work import load_force, outward_motion, path, stroke_ends
 
 _VERBS = "partly helps and partly resists|helps|resists"
@@ -79,6 +80,24 @@ OUTWARD: Final = "outward stroke"
 )
 def test_a_load_says_its_size_sign_effect_and_range(load: Load, words: str) -> None:
     assert load.text == words
+
+
+def test_a_load_that_varies_says_its_range() -> None:
+    random = np.random.default_rng(36)
+    for _ in range(50):
+        least, most = sorted(float(f"{force:.4g}") for force in random.uniform(1.0, 900.0, 2))
+        force = Varying(name="force", sets=(("loads.1.outward", -1.0),), lower=least, upper=most)
+        soft = Varying(name="stiffness", sets=(("loads.0.stiffness", 1.0),), lower=10.0 * least, upper=10.0 * most)
+        loads = (Spring(stiffness=5000.0, free_position=0.1), StrokeForce(outward=-350.0, inward=0.0))
+        spring, resistance = Mechanism(speed=9.0, loads=loads, varying=(force, soft)).load_texts
+        assert resistance == f"{least:.6g} to {most:.6g} N inward, resists the outward stroke, throughout"
+        assert spring.startswith(f"spring {10.0 * least:.6g} to {10.0 * most:.6g} N/m, free at 100 mm from the")
+    turned = Varying(name="force", sets=(("loads.1.outward", 1.0),), lower=-200.0, upper=100.0)
+    assert Mechanism(speed=9.0, loads=loads, varying=(turned,)).load_texts[1] == (
+        "200 N inward, resists the outward stroke, throughout; at the other end of the range 100 N outward, helps the "
+        "outward stroke, throughout"
+    )
+    assert Mechanism(loads=loads).load_texts == [load.text for load in loads]
 
 
 def random_load(random: np.random.Generator) -> Load:

@@ -225,7 +225,10 @@ def test_the_slow_stroke_of_cylinders_is_named_where_it_is_the_same() -> None:
 
 
 def test_times_need_a_speed_that_repeats() -> None:
-    for machine, said in ((Mechanism(), "turning crank"), (Mechanism(speed=1.0, acceleration=1.0), "crank accel")):
+    for machine, said in (
+        (Mechanism(), "needs a crank speed"),
+        (Mechanism(speed=1.0, acceleration=1.0), "crank accel"),
+    ):
         for name in TIMES:
             reason = QUANTITIES[name].undefined_because([machine])
             assert reason is not None

@@ -13,7 +13,10 @@ from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import closest, kind_of, shown, to_si
 
-PLATES = ["1/min", "min^-1", "U/min", "r/min", "spm", "strokes/min", "Hz"]
+PLATES = [
+    *("1/min", "/min", "min^-1", "U/min", "Upm", "r/min", "r.p.m.", "spm", "SPM", "stroke/min", "strokes/min"),
+    *("Hz", "hz"),
+]
 GOOD = [
     ("80 mm", kinds.LENGTH, 0.08),
     ("80mm", kinds.LENGTH, 0.08),
@@ -94,10 +97,11 @@ GOOD = [
     ("2500 cm^2", kinds.AREA, 0.25),
     (3.2, kinds.RATIO, 3.2),
     ("3.2", kinds.RATIO, 3.2),
-    *((f"300 {unit}", kinds.ANGULAR_SPEED, 10.0 * math.pi) for unit in PLATES[:-1]),
+    *((f"300 {unit}", kinds.ANGULAR_SPEED, 10.0 * math.pi) for unit in PLATES[:-2]),
     ("-300 1 / min", kinds.ANGULAR_SPEED, -10.0 * math.pi),
     ("300 min⁻¹", kinds.ANGULAR_SPEED, 10.0 * math.pi),
-    ("5 Hz", kinds.ANGULAR_SPEED, 10.0 * math.pi),
+    ("300/min", kinds.ANGULAR_SPEED, 10.0 * math.pi),
+    *((f"5 {unit}", kinds.ANGULAR_SPEED, 10.0 * math.pi) for unit in PLATES[-2:]),
 ]
 
 
@@ -115,10 +119,10 @@ BAD = [
     ("300 mm", kinds.ANGULAR_SPEED, ["angular speed", '"300 mm"', "is a length", '"300 rpm"']),
     *((f"5 {unit}", kind, [f'"5 {unit}"']) for unit in PLATES for kind in (kinds.LENGTH, kinds.TIME, kinds.JERK)),
     ("5 s^-1", kinds.ANGULAR_SPEED, ["frequency", "turns", "radians"]),
-    ("300 1/h", kinds.ANGULAR_SPEED, ["no unit", "300 rpm"]),
-    ("3001/min", kinds.ANGULAR_SPEED, ["300 rpm"]),
+    ("300 1/h", kinds.ANGULAR_SPEED, ["which is a frequency that may count turns or radians", "300 rpm"]),
+    ("3001/min", kinds.ANGULAR_SPEED, ["in two ways", '"300 rpm" or "3001 rpm"']),
     ("2 kHz", kinds.ANGULAR_SPEED, ["kHz", "300 rpm"]),
-    ("5 /s", kinds.ANGULAR_SPEED, ["no unit", "300 rpm"]),
+    ("5 /s", kinds.ANGULAR_SPEED, ["which is a frequency that may count turns or radians", "300 rpm"]),
     ("3 mN", kinds.TORQUE, ["torque", "is a force", "25 N m"]),
     ("3 J", kinds.TORQUE, ["torque", "is an energy", "25 N m"]),
     ("3 J/s", kinds.TORQUE, ["torque", "is a power", "25 N m"]),
@@ -136,7 +140,7 @@ BAD = [
     ("20 lb/in", kinds.STIFFNESS, ["stiffness", 'write "20 lbf/in"']),
     ("3 kg", kinds.TORQUE, ["torque", "is a mass", "25 N m"]),
     ("3 -mm", kinds.LENGTH, ["80 mm"]),
-    ("3 N--m", kinds.TORQUE, ["no unit"]),
+    ("3 N--m", kinds.TORQUE, ["not a unit"]),
     ("3 J", kinds.TORQUE, ["J", "N m"]),
     ("20 degC", kinds.ANGLE, ["degC", "temperatures"]),
     ("20 °C", kinds.ANGLE, ["°C", "temperatures"]),
@@ -151,8 +155,8 @@ BAD = [
     ("2*40 mm", kinds.LENGTH, ['"2*40 mm"', "80 mm"]),
     ("40 mm + 40 mm", kinds.LENGTH, ["80 mm"]),
     ("40 mm 2", kinds.LENGTH, ["80 mm"]),
-    ("80 (mm)", kinds.LENGTH, ["no unit"]),
-    ("80 mm^99", kinds.LENGTH, ["no unit"]),
+    ("80 (mm)", kinds.LENGTH, ["not a unit"]),
+    ("80 mm^99", kinds.LENGTH, ["not a unit"]),
     ('3.15"', kinds.LENGTH, ["write inch"]),
     ("0,05 mm", kinds.LENGTH, ["use a decimal point, not a comma"]),
     ("0.1 %", kinds.LENGTH, ["%", "tolerance"]),

@@ -47,34 +47,20 @@ CONTENTS = [
     (b"\x7fELF\x02\x01\x01\x00\x00", ["plain UTF-8 text", "binary", "save it as UTF-8"]),
     ("name = 'x'".encode("utf-16"), ["UTF-16", "save it as UTF-8"]),
     (b"name = 'x'\nunit = '5 \xb5m'\n", ["byte 0xb5 in line 2", "save it as UTF-8"]),
-    (b"name = 'x'\n[mechanism\n", ["no valid TOML", "line 2"]),
-    (b"name = " + b"1" * 5000, ["no valid TOML", "got one of thousands; shorten it"]),
-    (b"speed = 60 rpm", ['write "60 rpm"']),
-    (b"a = 1\nspeed = 60rpm # fast", ["line 2", 'write "60rpm"']),
-    (b'crank = ["20 mm", 200 mm]', ['write "200 mm"']),
-    (b"slider = { mass = 1.5 kg }", ['write "1.5 kg"']),
-    (b"peak_torque = minimise", ['write "minimise"']),
-    (b"name = Sieve, quick return", ['write "Sieve, quick return"']),
-    (b"offset = 5%", ['write "5%"']),
-    (
-        b'[mechanism]\nspeed = "3 rpm"\nspeed = "4 rpm"',
-        ["mechanism.speed: key given twice, in lines 2 and 3; remove one"],
-    ),
-    (b'[a]\nx.mass = "1 kg"\nx.mass = [\n 1,\n 2\n]\n', ["a.x.mass: key given twice, in lines 2 and 3; remove one"]),
-    (
-        b'[mechanism]\nslider = { mass = "1 kg", mass = "2 kg" }',
-        ["mechanism.slider.mass: key given twice, again in line 2; remove one"],
-    ),
-    (b"[friction]\n[mechanism]\n[friction]\n", ["[friction]: each table may come once", "in line 3; join the two"]),
-    (b"[[load]]\n[load]\n", ["[load]: each table", "write [[load]], in double brackets, here too"]),
-    (b"[friction]\nguide = 0,2\n", ["friction.guide: use a decimal point; got 0,2 in line 2; write 0.2"]),
-    (
-        b'crank = [ 0,02 , 0,2 ]  # "1,5"',
-        ["crank: use a decimal point; got 0,02 in line 1; write 0.02, or with its unit"],
-    ),
-    (b"slider = { mass = 1,5 }", ["slider.mass: use a decimal point; got 1,5 in line 1; write 1.5, or with its unit"]),
-    (b'x = "5 mm', ["correct the line"]),
-    (b"[mechanism", ["correct the line"]),
+    (b"name = 'x'\n[mechanism\n", ["got [mechanism in line 2", "write [mechanism]"]),
+    (b"name = " + b"1" * 5000, ["got one of thousands; shorten it"]),
+    (b"a = 1\nspeed = 60rpm # fast", ["line 2", 'write speed = "60rpm" # fast']),
+    (b'crank = ["20 mm", 200 mm]', ['write crank = ["20 mm", "200 mm"]']),
+    (b"slider = { mass = 1.5 kg }", ['write slider = { mass = "1.5 kg" }']),
+    (b"peak_torque = minimise", ['write peak_torque = "minimise"']),
+    (b"name = Sieve, quick return", ['write name = "Sieve, quick return"']),
+    (b"offset = 5%", ['write offset = "5%"']),
+    (b'[a]\nx.mass = "1 kg"\nx.mass = [\n 1,\n 2\n]\n', ["a.x.mass: may be given only once", "lines 2 and 3"]),
+    (b"[friction]\r\nguide = 0,2\r\n", ["got guide = 0,2 in line 2; write guide = 0.2"]),
+    (b'crank = [ 0,02 , 0,2 ]  # "1,5"', ['write crank = [ 0.02 , 0.2 ]  # "1,5"']),
+    (b'x = "5 mm', ['write x = "5 mm"']),
+    (b"[mechanism", ["write [mechanism]"]),
+    (b"x = [" + b"1, " * 200 + b"2 mm]", ["got 2 mm in line 1", 'write "2 mm"']),
     (b"\xff\xd8\xff\xe0" + bytes(range(1, 200)), ["UTF-8 text; got byte 0xff in line 1"]),
 ]
 
@@ -88,12 +74,12 @@ def test_content_that_is_no_toml_is_refused(content: bytes, words: list[str], tm
 
 
 JSON = [
-    ("{", ["no valid JSON", "line 1"]),
+    ("{", ['must be JSON; got "{" in line 1', "double quotes"]),
     ("[1, 2]", ["a JSON object", "[1, 2]", "braces"]),
     ('{"name": "a", "name": "b"}', ['got "name" twice', "remove one"]),
     ('{"name": null}', ["name: must have a value", "null", "leave the key out"]),
     ("[" * 50_000, ["nest at most 8 deep"]),
-    ('{"name": ' + "9" * 5000 + "}", ["no valid JSON"]),
+    ('{"name": ' + "9" * 5000 + "}", ["got one of thousands"]),
     ('{"mechanism": {"speed": NaN}, "name": "x", "variables": {}, "objectives": {}}', ["speed", "finite", "nan"]),
 ]
 

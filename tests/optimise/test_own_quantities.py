@@ -137,7 +137,7 @@ def test_a_missing_module_is_named(tmp_path: Path) -> None:
         ({"function": "judges"}, 'quantity.mine.function: must name a module and a function .* write it like "mymod'),
         (
             {"function": "a:b", "unit": "furlong"},
-            'quantity.mine.unit: must be a unit; got "furlong": "furlong" is no known unit',
+            'quantity.mine.unit: must be a unit; got "furlong": "furlong" is not a known unit',
         ),
         ({"function": "a:b", "gradient": "exact"}, 'quantity.mine.gradient: must be "complex step", "finite'),
         ({"function": "a:b", "limit": "5 mm"}, "quantity.mine.limit: must be a time; .* which is a length"),

@@ -13,7 +13,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputWarning, JobError
-from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job import parse_job, values
 from slidercrank.optimise.job.notes import notes_of
 
 PRESS = {
@@ -242,3 +242,20 @@ def test_designs_in_mm_are_warned_of_once_for_each_machine_and_problem(ask: str)
 def test_lengths_within_ranges_with_units_never_warn() -> None:
     ranges = {"crank": ["11 m", "12 m"], "rod": ["40 m", "60 m"], "offset": ["0.01 mm", "20 m"]}
     assert sc.problem(PRESS | {"variables": ranges}).evaluate([11.5, 50.0, 15.0]).shape == (2,)
+
+
+def test_a_job_of_values_with_units_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[object] = []
+    original = values.RangeOf.read
+
+    def counted(of: values.RangeOf, value: object) -> object:
+        read.append(value)
+        return original(of, value)
+
+    monkeypatch.setattr(values.RangeOf, "read", counted)
+    job = put("load.0.positions", ["0.1 m", "0.2 m"])
+    parse_job(job)
+    assert read.count(["20 mm", "200 mm"]) == 1
+    read.clear()
+    parse_job(put("mechanism.speed", 12.0))
+    assert read.count(["20 mm", "200 mm"]) == 2  # the numbers without a unit are named by a refusal

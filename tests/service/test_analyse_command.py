@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,21 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
         assert (value is None) == any(word in key for word in unknown), key
     assert "need masses" in done.stderr
     assert "need a crank speed" in done.stderr
+
+
+def test_what_needs_a_speed_says_that_a_job_has_none(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text().replace('speed = "300 rpm"\n', ""))
+    done = command("analyse", job, *FEEDER, "--show", "all")
+    text = " ".join(done.stdout.split())
+    assert "peak slider speed, peak slider acceleration, peak slider jerk" in text
+    assert "it needs a crank speed" in text
+    assert "peak slider speed 0" not in text
+    assert re.search("peak power undefined .*it needs a crank speed", text)
+    assert "balance: it needs a crank speed; got none; add for example [mechanism] speed =" in done.stderr
+    assert "speed 0" not in done.stdout + done.stderr
+    row = json.loads(command("analyse", job, *FEEDER, "--json").stdout)
+    assert row["peak_slider_speed_m_s"] is None
 
 
 def test_a_speed_gives_slider_speed_and_acceleration(command: Command) -> None:

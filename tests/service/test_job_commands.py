@@ -111,6 +111,26 @@ def test_speeds_of_plates_are_checked_in_rpm_and_one_that_nothing_follows_may_be
     assert "it belongs in [constraints] or [objectives]; move it there" in done.stderr
 
 
+def test_what_varies_is_checked_as_a_range_and_speeds_in_rpm(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    text = job.read_text() + '[[load]]\nforce = "350 N"\nopposes = "outward stroke"\n'
+
+    def checked(*variables: str) -> list[str]:
+        job.write_text(text.replace("[variables]\n", "\n".join(["[variables]", *variables, ""])))
+        return [line.strip() for line in command("check", job).stdout.splitlines()]
+
+    lines = checked('"load.1.force" = ["200 N", "400 N"]')
+    assert "load: 200 to 400 N inward, resists the outward stroke, throughout" in lines
+    lines = checked('"mechanism.speed" = { min = "1 Hz", max = "2 Hz", step = "0.5 Hz" }')
+    assert "mechanism.speed multiples of 0.5 Hz: 3 values, 60, 90, 120 rpm" in lines
+    assert any(line.endswith("crank speed 60 to 120 rpm (counter-clockwise)") for line in lines)
+    assert "cycle time 0.5 to 1 s, 60 to 120 strokes per minute" in lines
+    lines = checked('"mechanism.speed" = { min = "1 Hz", max = "2 Hz", step = "0.05 Hz" }')
+    assert "mechanism.speed multiples of 0.05 Hz: 21 values, 60, 63, ..., 120 rpm" in lines
+    lines = checked('"mechanism.speed" = { choices = ["1 rev/s", "120 rpm"] }')
+    assert "speed: 1 rev/s (60 rpm), 120 rpm" in lines
+
+
 def test_a_number_of_another_unit_is_said_before_a_search(tmp_path: Path, runs: Path, command: Command) -> None:
     job = fronts.job_file(tmp_path)
     job.write_text(job.read_text().replace('"300 rpm"', "30"))

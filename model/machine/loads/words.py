@@ -3,11 +3,26 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 
 Ways = tuple[str, str]
 SLIDES: Ways = ("outward", "inward")
 TURNS: Ways = ("counter-clockwise", "clockwise")
+
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
+_APART = re.compile(r"([ ,;()]+)")
+
+
+def between(low: str, high: str) -> str:
+    """Return one text for two ends of a range: numbers that differ as "200 to 400", other differences side by side."""
+    words = [_APART.split(text) for text in (low, high)]
+    pairs = list(zip(*words, strict=False))
+    alike = len(words[0]) == len(words[1])
+    if alike and all(one == other or (_NUMBER.fullmatch(one) and _NUMBER.fullmatch(other)) for one, other in pairs):
+        return "".join(one if one == other else " to ".join(sorted((one, other), key=float)) for one, other in pairs)
+    return f"{low}; at the other end of the range {high}"
 
 
 def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:

@@ -11,11 +11,13 @@ from rich.console import Console
 
 from ....model.cycle.several import WholeCurves, whole_curves
 from ....model.cycle.shaking import ShakingCurves, shaking_curves
+from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Counterweight
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average
 from ....model.signals.signals import Signal
+from ....objectives.needs import MOTION
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...text import tables as text
 from ..peaks import peak, row_of
@@ -34,8 +36,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
 
     Root mean squares are over time. Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The
-    values without counterweight are None if the machine has none.
+    values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
     """
+    if not MOTION.met(mechanism):
+        raise InputError(MOTION.missing)
     design, weight, bare = row_of(linkage), mechanism.counterweight, _bare(mechanism)
     values: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
     for name, unit, signal in _CURVES:

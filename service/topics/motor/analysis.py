@@ -24,6 +24,7 @@ from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
 from ....model.signals.of_shaft import time_share
 from ....model.signals.signals import Signal
+from ....objectives.needs import SPEED
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...text import tables as text
 from ...text.tables import plain
@@ -37,12 +38,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
-    None if friction locks the linkage. For several cylinders they are those of all together.
+    None if friction locks the linkage, power without a speed too. For several cylinders they are those of all together.
     """
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
-    averages = average_torque(mechanism, design)
+    averages, moves = average_torque(mechanism, design), SPEED.met(mechanism)
 
     least, least_angle = _least_inertia(mechanism, linkage)
     return {
@@ -50,9 +51,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "peak_torque_angle_deg": plain(torque.degrees),
         "rms_torque_Nm": plain(averages.rms[0]),
         "mean_torque_Nm": plain(averages.mean[0]),
-        "peak_power_W": plain(power.value),
-        "peak_power_angle_deg": plain(power.degrees),
-        "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]),
+        "peak_power_W": plain(power.value) if moves else None,
+        "peak_power_angle_deg": plain(power.degrees) if moves else None,
+        "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]) if moves else None,
         "greatest_reflected_inertia_kg_m2": greatest.value,
         "greatest_reflected_inertia_angle_deg": greatest.degrees,
         "least_reflected_inertia_kg_m2": least,
@@ -95,6 +96,8 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
         "mean_power_W": "over time",
         "mean_reflected_inertia_kg_m2": "over the crank angle",
     }
+    if numbers["peak_power_W"] is None and numbers["peak_torque_Nm"] is not None:
+        remarks |= dict.fromkeys(("peak_power_W", "mean_power_W"), SPEED.rule)
     lines = [text.told(numbers, key, remarks.get(key, "")) for key in numbers if not key.endswith("_angle_deg")]
     known = numbers["peak_torque_Nm"] is not None
     locks = "Motor: friction locks or jams the linkage, no torque is determined"

@@ -104,8 +104,7 @@ def test_what_toml_has_no_word_for_is_refused(value: object) -> None:
 
 def test_a_file_that_is_no_toml_is_said_with_its_line(shared: httpx.Client) -> None:
     sentence = refused(shared.post("/parse", content=b"name = \n", headers=TOML), 422)
-    assert "no valid TOML" in sentence
-    assert "line 1" in sentence
+    assert sentence.startswith('name: must be a line like name = "Vibrating sieve"; got name = in line 1')
 
 
 def test_every_quantity_is_explained(shared: httpx.Client, pytestconfig: pytest.Config) -> None:

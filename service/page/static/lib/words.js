@@ -32,6 +32,9 @@ const OWN = {
 
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
+  [/\bunknown key\b/g, "unknown entry"],
+  [/must be a list of tables, in double brackets; got a single one; write [^;]+/g, "must be a list; got a single entry; put it in a list"],
+  [/must be a single table, in single brackets; got (a list of \d+); write [^;]+/g, "must be a single entry; got $1; keep one of them"],
   [/ unless cycle_time or strokes_per_minute is given/g, ""],
   [/\bcycle_time\b/g, "cycle time"],
   [/\bstrokes_per_minute\b/g, "strokes per minute"],

@@ -1,0 +1,158 @@
+"""Where things stand in a table of a text file: separators, comments, title lines, names and units of columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from ...objectives.units import is_value
+
+SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
+"""In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
+MISSING = ("", "nan", "na", "n/a", "#n/a", "#nv", "null", "-")
+"""Cells without a number, in small letters."""
+EXPONENT = r"(?:[eE][+-]?\d{1,3})?"
+_COMMENT = re.compile(r"\s*(?:#|%|//)+\s*")
+_SAID = re.compile(r'\s*"?sep=(\\t|.)"?\s*', re.IGNORECASE)
+SAMPLE = 200
+"""Lines by which separators and title lines are told apart."""
+_LIKE_A_NUMBER = re.compile(rf"[+-]?[.,]?\d[\d.,]*{EXPONENT}", re.ASCII)
+_BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))")
+"""Signs that part thousands and mean nothing else."""
+
+
+def with_plain_signs(text: str) -> str:
+    """Return cells without blanks that part thousands, and with plain minus signs."""
+    return _BLANKS.sub("", text).replace("\u2212", "-")
+
+
+def content_lines(text: str) -> Iterator[str]:
+    """Yield the lines of a text, empty ones in place of comments and of a first one that says the separator."""
+    begun = False
+    for line in io.StringIO(text):
+        empty = _COMMENT.match(line) or not line.strip()
+        yield "\n" if empty or (not begun and _SAID.fullmatch(line)) else line
+        begun = begun or not empty
+
+
+def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the cells of each line with content."""
+    if separator == " ":
+        lines = (line.replace("\t", " ") for line in lines)
+    reader = csv.reader(lines, delimiter=separator, strict=True)
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                yield reader.line_num, [cell for cell in cells if cell] if separator == " " else cells
+    except csv.Error as error:
+        why = str(error).encode("unicode_escape").decode()  # it names the sign between the values, perhaps a tab
+        raise csv.Error(f"{why} in row {reader.line_num}") from None
+
+
+def separator_of(text: str) -> str:
+    """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
+    if said := stated_separator(text):
+        return said
+    sample = [line for line in itertools.islice(content_lines(text), 10 * SAMPLE) if line.strip()][:SAMPLE]
+    best, separator = 0.0, ","
+    for sign in SEPARATORS:
+        try:
+            every = [cells for _, cells in split(sample, sign)]
+        except csv.Error:
+            continue
+        rows = every[title_lines(every) :]
+        widths = [len(row) for row in rows]
+        width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
+        if sign != " ":
+            width = widths[0] if widths else 1
+        elif not all(of_numbers(row) for row in rows[1 + (len(rows) > 1 and of_units(rows[1])) :]):
+            continue
+        alike = widths.count(width) / len(every) if width > 1 else 0.0
+        if alike and of_numbers(rows[0]) and commented(text, sign, width):
+            alike += 1.0  # as many names as numbers
+        if alike > best:
+            best, separator = alike, sign
+    return separator
+
+
+def title_lines(rows: Sequence[Sequence[str]]) -> int:
+    """Return the number of rows above the names of the columns, such as title and date of a measurement.
+
+    0 where this is not certain. Names are the last row of texts above rows of numbers alone, one for each number. In
+    other tables they are the first row that has as many cells as all below it, none of them a number, if no row above
+    has so many.
+    """
+    first = next((n for n, row in enumerate(rows) if all(map(_is_number, row))), len(rows))
+    if first < len(rows):
+        names = max(first - 1 - (first > 0 and of_units(rows[first - 1])), 0)
+        certain = len(rows[names]) == len(rows[first]) and all(_is_number(cell) for row in rows[first:] for cell in row)
+    else:
+        widths = [len(row) for row in rows]
+        names = next((n for n in range(len(rows)) if widths[n] > 1 and set(widths[n:]) == {widths[n]}), 0)
+        first = names + 1
+        certain = first < len(rows) and widths[names] not in widths[:names]
+    named = (
+        names > 0
+        and certain
+        and not any(_is_number(name) for name, cell in zip(rows[names], rows[first], strict=True) if cell)
+    )
+    return names if named else 0
+
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell is a number or says that there is none."""
+    return cell.strip().casefold() in MISSING or of_numbers([cell])
+
+
+def stated_separator(text: str) -> str:
+    """Return the sign between cells that the first line with content says; empty if it says none."""
+    first = next((line for line in io.StringIO(text) if line.strip() and not _COMMENT.match(line)), "")
+    said = _SAID.fullmatch(first)
+    return "" if said is None else said[1].replace("\\t", "\t")
+
+
+def of_units(cells: Sequence[str]) -> bool:
+    """Whether a line has units alone, two at least, as loggers write them below the names."""
+    units = [_unit(cell) for cell in cells if _unit(cell)]
+    return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
+
+
+def _unit(cell: str) -> str:
+    return cell.strip().strip("[]()-")
+
+
+def with_units(heads: list[str], units: Sequence[str]) -> list[str]:
+    """Return names of columns with the units of a line below them, if it has as many cells."""
+    if len(units) != len(heads):
+        return heads
+    return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
+
+
+def of_numbers(cells: Sequence[str]) -> bool:
+    """Whether all of some cells are numbers, with any signs."""
+    return any(cells) and all(_LIKE_A_NUMBER.fullmatch(with_plain_signs(cell.strip())) for cell in cells if cell)
+
+
+def commented(text: str, separator: str, width: int) -> list[str] | None:
+    """Return the names of columns in the last comment before the numbers that has as many; None without one."""
+    found = None
+    for line in io.StringIO(text):
+        comment = _COMMENT.match(line)
+        if comment:
+            named = named_in(line[comment.end() :], separator, width)
+            found = with_units(found, named) if found and named and of_units(named) else named or found
+        elif line.strip() and not _SAID.fullmatch(line):
+            break
+    return found
+
+
+def named_in(line: str, separator: str, width: int) -> list[str] | None:
+    """Return the names of so many columns in a line, also of more words than one between blanks; None without them."""
+    ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
+    if separator == " ":
+        ways += [re.split(apart, line.strip()) for apart in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
+    return next((heads for heads in ways if len(heads) == width and not of_numbers(heads)), None)
