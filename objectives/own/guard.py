@@ -1,8 +1,7 @@
 """Guard of a custom function process: its parent, which ends all that the function starts and bounds what it prints.
 
-The guard ends everything when the function's process ends, on SIGTERM, and when the process that asks is gone, by
-whatever: that one alone holds the other end of a pipe, the lifeline. The guard forks the function's process before
-anything large is imported, so it adds no start of another program.
+The guard ends everything when the function's process ends, on SIGTERM, and when the process that asks has ended, by
+whatever. It forks the function's process before anything large is imported, so it adds no start of another program.
 
 On Linux, a process whose parent has ended becomes a child of the guard, so neither `setsid` nor a double fork escapes.
 On other systems with forks, the group of the function's process is ended. On Windows there is no guard.
@@ -24,24 +23,25 @@ PRINTED = 1_000_000
 _LEFT_OUT = f"\nA function of your own printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
 _DEATH_SIGNAL, _SUBREAPER = 1, 36  # PR_SET_PDEATHSIG and PR_SET_CHILD_SUBREAPER of <linux/prctl.h>
 _PAUSE, _LONGEST_PAUSE = 0.001, 0.1  # s between two searches for processes that are left: first, and at most
+_LOOK = 0.1  # s between two looks at the process that asks; the end of a pipe would wait for its forks, too
 _FLUSH = 1.0  # s for the last output, if nobody reads standard error
 
 
 def main() -> None:
     """Run the process of a function, behind a guard where processes can fork."""
-    lifeline, log = sys.argv[1:]
+    asking, log = sys.argv[1:]
     del sys.argv[1:]  # modules of the user may read it
     if hasattr(os, "fork"):
-        _fork(int(lifeline), log)
+        _fork(int(asking), log)
     from .child import main as answer
 
     answer()
 
 
-def _fork(lifeline: int, log: str) -> None:
+def _fork(asking: int, log: str) -> None:
     """Fork the function's process and return in it alone; the other one is the guard, and ends with it.
 
-    lifeline: descriptor. log: file about crashes, which nobody reads once the process that asks is gone.
+    asking: number of the process that asks. log: file about crashes, which nobody reads once that has ended.
     """
     signals = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
@@ -53,7 +53,7 @@ def _fork(lifeline: int, log: str) -> None:
     if not function:
         _set(_DEATH_SIGNAL, signal.SIGKILL)
         os.dup2(output, 2)
-        for pipe in (lifeline, printed, output):
+        for pipe in {printed, output} - {2}:  # nobody may have had a standard error
             os.close(pipe)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
@@ -61,7 +61,7 @@ def _fork(lifeline: int, log: str) -> None:
     os.setpgid(function, function)  # a function that kills its own group leaves the guard alive
     for pipe in (0, 1, output):  # requests and answers are the function's
         os.close(pipe)
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
     relay = threading.Thread(target=_relay, args=(printed,), daemon=True)
     relay.start()
     family = _Family(function)
@@ -120,8 +120,9 @@ def _descendants(process: int) -> Iterator[int]:
             yield parent
 
 
-def _end_with(lifeline: int) -> None:
-    os.read(lifeline, 1)
+def _end_with(asking: int) -> None:
+    while os.getppid() == asking:
+        time.sleep(_LOOK)
     os.kill(os.getpid(), signal.SIGTERM)
 
 

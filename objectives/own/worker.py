@@ -111,20 +111,17 @@ class Worker:
         # Only a name: the child opens it, and what it says of a crash is read here.
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
-        watched, held = os.pipe()
-        options: dict[str, Any] = {"pass_fds": (watched,), "process_group": 0} if os.name == "posix" else {}
+        group: dict[str, Any] = {"process_group": 0} if os.name == "posix" else {}
         # Without buffers: a fork would copy what they hold, and locks of them that a thread has at that moment.
         self._process = process = subprocess.Popen(
-            (sys.executable, "-P", "-c", _PROGRAM, str(watched), self._log),
+            (sys.executable, "-P", "-c", _PROGRAM, str(os.getpid()), self._log),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,
-            **options,
+            **group,
         )
-        os.close(watched)
-        self._lifeline = os.fdopen(held, "wb", buffering=0)
         self._late = False
-        self._end = weakref.finalize(self, _end, process, self._lifeline, self._log)
+        self._end = weakref.finalize(self, _end, process, self._log)
         _running.add(self)
         self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
         threading.Thread(
@@ -137,9 +134,9 @@ class Worker:
         """Leave the process to the one that started it, of which this one is a fork."""
         self._end.detach()  # at the end of this process, too
         if self._process is not None:
-            for pipe in (self._lifeline, self._process.stdin, self._process.stdout):
+            for pipe in (self._process.stdin, self._process.stdout):
                 if pipe is not None:
-                    pipe.close()  # a copy of the lifeline would keep the guard from its work
+                    pipe.close()
             self._process.returncode = 0  # not a child of this process: nothing to wait for
         self._process = self._mechanism = None
         self._lock = threading.Lock()  # a thread that is not here may have held the other one
@@ -243,12 +240,11 @@ def _read(stream: IO[bytes], length: int) -> bytes:
     return bytes(content)
 
 
-def _end(process: Process, lifeline: IO[bytes], log: str) -> None:
+def _end(process: Process, log: str) -> None:
     """End a process by its guard, which may be suspended. It alone stays with what it may not kill."""
     process.terminate()
     if os.name == "posix":
         process.send_signal(signal.SIGCONT)
-    lifeline.close()
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(_ENDING)
     assert process.stdin is not None

@@ -258,6 +258,16 @@ def test_a_function_ends_with_its_guard_and_a_suspended_guard_ends_with_its_job(
         asked.close()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("closed", ["<&-", "2>&-", "<&- >&- 2>&-"])
+def test_a_process_without_standard_files_may_ask(closed: str, tmp_path: Path, worker: Callable[..., Worker]) -> None:
+    worker("number")
+    script = ASKING.replace("detached:stays", "detached:speaks") + "sys.exit(5)\n"
+    command = ["sh", "-c", f'exec "$0" "$@" {closed}', sys.executable, "-c", script, str(tmp_path), ""]
+    assert subprocess.run(command, timeout=60.0).returncode == 5
+    assert none_left(tmp_path)
+
+
 def test_what_a_function_prints_is_passed_on_up_to_a_bound(
     worker: Callable[..., Worker], capfd: pytest.CaptureFixture[str]
 ) -> None:
