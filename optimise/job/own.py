@@ -131,7 +131,9 @@ def named(parts: Parts) -> Parts:
     """Refuse names that are taken, or that a table could not have as a column."""
     for name, part in parts.items():
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
-            raise InputError(f"a quantity called {name} exists already; got it again; choose another name")
+            raise InputError(
+                f"the name of a quantity must be new; got {shown(name)}, which exists already; choose another name"
+            )
         require_name(name)
         if isinstance(part, FunctionPart):
             part.build(name, ())

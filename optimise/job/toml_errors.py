@@ -99,16 +99,15 @@ def in_words(text: str, error: str) -> str:
         rules, edited = ["values must be separated by commas"], f"{lines[number - 1].rstrip()},"
     else:
         rules, edited = _edited(before + lines[number - 1], path)
+    line, edited = lines[number - 1], edited.removeprefix(before)
     if rules:
-        line, edited = _differing(lines[number - 1], edited.removeprefix(before))
-        return f"{_named(path)}{'; '.join(rules)}; got {_shown(line)} in line {number}; write {_shown(edited)}"
+        got, write = (_shown(_around(one, _same(line, edited))) for one in (line, edited))
+        return f"{_named(path)}{'; '.join(rules)}; got {got} in line {number}; write {write}"
     like = example_of(schema_of(Job), path) or "key = value, [table], or # and a comment"
-    line = lines[number - 1]
-    if place and len(line) > _MOST_SHOWN:
-        line = line[max(int(place[2]) - _MOST_SHOWN // 2, 0) :]
+    got = _shown(_around(line, int(place[2]) if place else 0))
     return (
-        f"{_named(path)}must be a line like {like}; got {_shown(line)} in line {number}; write keys in plain letters, "
-        "and texts and values with units in quotes"
+        f"{_named(path)}must be a line like {like}; got {got} in line {number}; write keys in plain letters, and texts "
+        "and values with units in quotes"
     )
 
 
@@ -274,20 +273,14 @@ def _named(path: Path) -> str:
     return f"{key_of(path)}: " if path else ""
 
 
-def _differing(line: str, edited: str) -> tuple[str, str]:
-    """Return both lines, or of long ones the part that differs, up to the next signs between values."""
-    if max(len(line), len(edited)) <= _MOST_SHOWN:
-        return line, edited
-    same = _same(line, edited)
-    begin = max(line.rfind(sign, 0, same) + 1 for sign in "=,[{")
-    rest = _same(line[same:][::-1], edited[same:][::-1])
-    rest = next((n for n in range(rest, 0, -1) if line[len(line) - n] in ",]}"), 0)
-    return line[begin : len(line) - rest], edited[begin : len(edited) - rest]
-
-
 def _same(one: str, other: str) -> int:
     """Return how many characters of two texts are the same from their beginnings on."""
     return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+
+
+def _around(line: str, place: int) -> str:
+    """Return a line, or of a long one what stands around a place in it."""
+    return line if len(line) <= _MOST_SHOWN else line[max(place - _MOST_SHOWN // 2, 0) :]
 
 
 def _shown(line: str) -> str:

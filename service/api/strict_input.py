@@ -116,7 +116,7 @@ def read_json(body: bytes, most_depth: int) -> Any:
     except InputError:
         raise
     except ValueError as error:
-        raise InputError(f"the body is no valid JSON: {error}; correct it") from None
+        raise InputError(f"the body is not valid JSON: {error}; correct it") from None
     require_moderate(value, most_depth)
     return value
 

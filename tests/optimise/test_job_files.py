@@ -60,7 +60,7 @@ CONTENTS = [
     (b'crank = [ 0,02 , 0,2 ]  # "1,5"', ['write crank = [ 0.02 , 0.2 ]  # "1,5"']),
     (b'x = "5 mm', ['write x = "5 mm"']),
     (b"[mechanism", ["write [mechanism]"]),
-    (b"x = [" + b"1, " * 200 + b"2 mm]", ["got 2 mm in line 1", 'write "2 mm"']),
+    (b"x = [" + b"1, " * 200 + b"2 mm]", ["1, 2 mm] in line 1", '1, "2 mm"]']),
     (b"\xff\xd8\xff\xe0" + bytes(range(1, 200)), ["UTF-8 text; got byte 0xff in line 1"]),
 ]
 

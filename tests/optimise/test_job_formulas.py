@@ -173,7 +173,7 @@ def test_the_schema_says_of_formulas_what_their_keys_are_like() -> None:
             {"objectives": {"offset - crank": "minimse"}},
             'objectives."offset - crank": must be "minimise".*did you mean',
         ),
-        ({"quantity": {"crank": {"formula": "rod"}}}, "a quantity called crank exists already"),
+        ({"quantity": {"crank": {"formula": "rod"}}}, "must be new; got .crank., which exists"),
         (
             {"quantity": {"x": {"formula": "rod", "unit": "N"}}},
             'quantity.x.unit: .*got "N" for a length; write it like "mm"',

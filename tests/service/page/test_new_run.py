@@ -301,7 +301,7 @@ def test_the_text_and_the_form_are_in_step_and_no_part_is_lost(form: Open, store
     ready(page)
     assert text_of(page) == {**job, "mechanism": {**job["mechanism"], "speed": "-80 rpm"}}
     page.locator("#job-text").fill("{")
-    expect(page.locator("#job-text-error")).to_contain_text("no valid JSON yet")
+    expect(page.locator("#job-text-error")).to_contain_text("not valid JSON yet")
     expect(page.get_by_label("crank speed", exact=True)).to_have_value("80")
 
 

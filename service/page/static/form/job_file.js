@@ -28,7 +28,7 @@ export function jobFile(form, taken) {
       job = JSON.parse(text.value);
       if (job === null || typeof job !== "object" || Array.isArray(job)) problem = "A job is a JSON object; put it in braces.";
     } catch (error) {
-      problem = `This is no valid JSON yet: ${sentenceOf(error)}`;
+      problem = `This is not valid JSON yet: ${sentenceOf(error)}`;
     }
     wrong.textContent = problem;
     wrong.hidden = !problem;
@@ -90,7 +90,7 @@ async function jobOf(file) {
   try {
     job = JSON.parse(content);
   } catch (error) {
-    throw new Problem(0, `${file.name} is no valid JSON: ${sentenceOf(error)}`);
+    throw new Problem(0, `${file.name} is not valid JSON: ${sentenceOf(error)}`);
   }
   if (job === null || typeof job !== "object" || Array.isArray(job)) throw new Problem(0, "A job is a JSON object; put it in braces.");
   return job;
