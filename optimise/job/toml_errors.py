@@ -65,8 +65,9 @@ _EDITS: tuple[Edit, ...] = (
     _edit(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", "there must be = between a key and its value"),
     lambda line: _with_decimal_points(line),
     _COMMAS,
-    _edit(r"(?<=[\"'\]}\d])\s+(?=[\"'\[{\d])", ", ", "values must be separated by commas"),
-    _edit(r"\s*[;,]\s*(?=#|$)", "", "a line must end after its value"),
+    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", "values must be separated by commas"),
+    _edit(r"\s*[;,](?=\s*(?:#|$))", "", "a line must end after its value"),
+    _edit(r"\s*[;,]?\s+(?=[\w.-]+\s*=)", "\n", "each key must have a line of its own"),
     _edit(r",\s*(?=})", " ", "there must be no comma before a closing brace"),
     _edit(r"(?<=[^\s{])\s*$", " }", "a table in braces must be on one line"),
     _edit(r"\(([^()]*)\)", r"[\2]", "a list must be in square brackets"),
@@ -285,5 +286,6 @@ def _around(line: str, place: int) -> str:
 
 def _shown(line: str) -> str:
     """Return a line for a message: printable, of moderate length."""
-    text = "".join(sign if sign.isprintable() else "?" for sign in line.strip())
+    text = line.strip().replace("\n", " and below it ")
+    text = "".join(sign if sign.isprintable() else "?" for sign in text)
     return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."

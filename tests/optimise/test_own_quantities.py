@@ -167,7 +167,7 @@ def test_names_are_those_that_are_declared_and_no_others() -> None:
     with pytest.raises(JobError, match=r"objectives.mein: unknown key.* did you mean mine\?"):
         parse_job(job({"function": "a:b"}, objectives={"mein": "minimise"}))
     taken = {"stroke": {"function": "a:b"}}
-    with pytest.raises(JobError, match="must be new; got .stroke., which exists already"):
+    with pytest.raises(JobError, match=r"must be new; got .stroke., which exists already"):
         parse_job(job(objectives={"stroke": "minimise"}, constraints={}) | {"quantity": taken})
     with pytest.raises(JobError, match="small letters, digits and underscores"):
         parse_job(job(objectives={"stroke": "minimise"}, constraints={}) | {"quantity": {"My": {"function": "a:b"}}})

@@ -58,6 +58,18 @@ REFUSED = {
     '[mechanism]\nspeed = "60 rpm";\n': (
         'mechanism.speed: a line must end after its value; got speed = "60 rpm"; in line 2; write speed = "60 rpm"'
     ),
+    '[mechanism]\nspeed = "60 rpm" ;  # fast\n': (
+        'mechanism.speed: a line must end after its value; got speed = "60 rpm" ;  # fast in line 2; '
+        'write speed = "60 rpm"  # fast'
+    ),
+    '[mechanism]\nspeed = "60 rpm", gravity = 9.81 m/s^2\n': (
+        "mechanism.speed: each key must have a line of its own; a value with a unit must be in quotes; got "
+        'speed = "60 rpm", gravity = 9.81 m/s^2 in line 2; write speed = "60 rpm" and below it gravity = "9.81 m/s^2"'
+    ),
+    '[mechanism]\nrod = { mass = "1 kg" inertia = "2 kg m^2" }\n': (
+        "mechanism.rod: values must be separated by commas; got "
+        'rod = { mass = "1 kg" inertia = "2 kg m^2" } in line 2; write rod = { mass = "1 kg", inertia = "2 kg m^2" }'
+    ),
     "[variables]\ncrank = [20 mm; 80 mm]\n": (
         "variables.crank: a value with a unit must be in quotes; values must be separated by commas; got "
         'crank = [20 mm; 80 mm] in line 2; write crank = ["20 mm", "80 mm"]'
