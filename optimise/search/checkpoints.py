@@ -153,8 +153,9 @@ class Checkpoints:
     def turn(self) -> bool:
         """Keep the steps of a round that has ended; return whether the earlier run had not told it."""
         self.told += 1
-        self._flush()
-        return self.told > self.before
+        unreported = self.told > self.before
+        self._flush(ends=unreported)
+        return unreported
 
     def _gone_through(self, past: Sequence[Record]) -> Iterator[Record]:
         """Yield records, and count those whose steps have all been taken."""
@@ -162,9 +163,10 @@ class Checkpoints:
             yield record
             self.repeated += 1
 
-    def _flush(self) -> None:
-        if self._keep is not None and self._pending and self._identity is not None:
-            words, self._pending = np.concatenate(self._pending), []
+    def _flush(self, *, ends: bool = False) -> None:
+        """Keep the steps that are not kept yet; none are left at the end of a round whose last step took long."""
+        if self._keep is not None and (self._pending or ends) and self._identity is not None:
+            words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1
             self._keep(Record(self._identity, self._number - 1, self.told, self.seconds, words))
         self._when = time.perf_counter()

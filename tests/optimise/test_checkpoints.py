@@ -274,6 +274,19 @@ def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
         assert (here.dtype, here.shape, here.tobytes()) == (there.dtype, there.shape, there.tobytes())
 
 
+def test_a_round_whose_last_step_was_kept_before_it_ended_is_not_reported_again() -> None:
+    kept: list[Record] = []
+    one = Checkpoints(keep=kept.append, identity=lambda: Identity("a", "b"))
+    for number in range(2):
+        one.step("x", (np.array([float(number)]),), lambda: (np.ones(1),), Counter())  # longer than the pause
+        assert one.turn()
+    two = Checkpoints(past=kept, keep=kept.append, identity=lambda: Identity("a", "b"))
+    for number in range(2):
+        two.step("x", (np.array([float(number)]),), lambda: (np.zeros(1),), Counter())
+        assert not two.turn()
+    assert [record.told for record in kept] == [0, 1, 1, 2]
+
+
 def test_closed_checkpoints_neither_ask_nor_keep() -> None:
     kept: list[Record] = []
     one = Checkpoints(cancelled=lambda: True, keep=kept.append, identity=lambda: Identity("a", "b"))
