@@ -65,8 +65,9 @@ class Database:
         if self._file is not None:
             is_there(self._file)
             with contextlib.suppress(OSError):  # where it cannot be made, opening it says why
-                # The files beside it, of the write-ahead log, get its permissions.
-                os.close(os.open(self._file, os.O_CREAT | os.O_RDWR, 0o600))
+                # The files beside it, of the write-ahead log, get its permissions. One that is there is left alone: to
+                # close it would end the locks that SQLite has on it for other connections of this process.
+                os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
             self._known, self._open = _identity(self._file), may_use(self._file)
             # Where nobody writes either: SQLite would look for a log that it cannot make, or leave one behind.
             alone = not self._open and not Path(f"{self._file}-wal").exists()

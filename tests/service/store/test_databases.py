@@ -6,6 +6,7 @@ import contextlib
 import os
 import random
 import string
+import subprocess
 import sys
 import tempfile
 import time
@@ -230,6 +231,17 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
         claim.lease = 60.0
         claim.put(large)
         assert store.artefact(job.id, "large") == large
+
+
+def test_a_file_that_is_opened_twice_keeps_its_log_when_another_process_ends(tmp_path: Path) -> None:
+    file = tmp_path / "store.db"
+    other = "import sqlite3, sys; there = sqlite3.connect(sys.argv[1]); there.execute('UPDATE jobs SET reason = 1')"
+    with Store(file) as store:
+        add(store)
+        Database(file).close()
+        subprocess.run([sys.executable, "-c", f"{other}; there.commit(); there.close()", str(file)], check=True)
+        assert Path(f"{file}-wal").exists(), "the locks of this process are gone"
+        assert add(store).id == 2
 
 
 def room(store: Store, pages: int) -> None:
