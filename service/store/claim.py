@@ -179,6 +179,11 @@ class Claim:
         due = {"due": later(min(delay, MOST_DELAY))} if delay else {}
         self._end("queued", reason, {"finished": None, "attempts": fewer, **due})
 
+    def let_go(self) -> None:
+        """End the lease of a job that is left as it is, if no other worker has it: at once, whatever the clock says."""
+        with self._database.writing() as connection:
+            connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
+
     def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
         reason = plain(reason)
         ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}

@@ -24,17 +24,14 @@ MOST_DELAY = 60.0
 _FROM_LATER = exists(select(workers.c.id).where(workers.c.id == jobs.c.worker, workers.c.seen > now() + JUMP))
 ENDED_LEASE = or_(jobs.c.lease_until < now(), _FROM_LATER)
 """Whether the lease of a running job has ended."""
+LEFT = and_(jobs.c.state == "running", ENDED_LEASE)
+"""Whether a job was left by its worker."""
 _DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
 
 # Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
     select(*SHOWN)
-    .where(
-        or_(
-            and_(jobs.c.state == "queued", _DUE),
-            and_(jobs.c.state == "running", ENDED_LEASE),
-        )
-    )
+    .where(or_(and_(jobs.c.state == "queued", _DUE), LEFT))
     .order_by(jobs.c.priority.desc(), jobs.c.id)
     .limit(1)
 )

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from sqlalchemy import delete, exists, func, insert, not_, select, update
+from sqlalchemy import delete, exists, func, insert, not_, or_, select, update
 
 from .clock import now
 from .database import Database
-from .queue import ENDED_LEASE
+from .queue import ENDED_LEASE, LEFT
 from .records import Worker
 from .schema import jobs, workers
 
@@ -28,6 +28,12 @@ class Workers(Database):
         """Note that a worker has left."""
         with self.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
+
+    def has_waiting(self) -> bool:
+        """Whether a job waits for a worker, also if none may be claimed now: not due, or soon after a clock was set."""
+        query = select(jobs.c.id).where(or_(jobs.c.state == "queued", LEFT)).limit(1)
+        with self.reading() as connection:
+            return connection.execute(query).first() is not None
 
     def workers_at_work(self) -> int:
         """Return how many workers were heard of lately, busy or not."""

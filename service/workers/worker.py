@@ -119,7 +119,7 @@ def work(
                     raise Stale
                 solve_claimed(store, claim, stop, terms, engine, memory)
                 taken += 1
-            elif drain:
+            elif drain and not store.has_waiting():
                 break
             else:
                 time.sleep(PULSE)
@@ -161,6 +161,8 @@ def solve_claimed(
                 _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
+            with contextlib.suppress(StoreError):  # else its lease ends
+                claim.let_go()
 
 
 def _end(claim: Claim, solve: Callable[[], None]) -> None:

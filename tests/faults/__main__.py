@@ -14,6 +14,7 @@ from typing import Annotated, Literal, Protocol
 
 import typer
 
+from .clocks import clocks
 from .commits import commits
 from .disk import disk
 from .flood import flood
@@ -45,6 +46,8 @@ def _all(context: typer.Context) -> None:
         lambda: _restarts(300.0),
         _full,
         lambda: _disk(5),
+        lambda: _clocks("sqlite"),
+        lambda: _clocks("postgresql"),
         lambda: _runaway(1),
         lambda: _starts(24),
         lambda: _suspends(6),
@@ -90,6 +93,12 @@ def _full(count: Count = 50, seed: Seed = 1) -> None:
 def _disk(count: Annotated[int, typer.Option(help="How often each disk is filled.")] = 5, seed: Seed = 1) -> None:
     """Let the disks of `optimise` and of `serve` be full: store, runs, figures, kernels, temporary files (as root)."""
     _report(f"each disk full {count} times", lambda: disk(count, seed))
+
+
+@app.command("clocks")
+def _clocks(where: Where = "sqlite", count: Count = 50, seed: Seed = 1) -> None:
+    """Set the database's clock by an hour or a day while workers drain its queue."""
+    _report(f"{count} steps of the clock on {where}", lambda: clocks(where, count, seed))
 
 
 @app.command("runaway")

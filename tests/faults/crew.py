@@ -18,12 +18,14 @@ from .worker_process import main
 class Crew:
     """Workers of one store. deaths: when each one that was killed died, s since 1970."""
 
-    def __init__(self, address: str, journal: Path, *, size: int, lease: float, pause: float) -> None:
-        """Start `size` workers; lease and pause, in s, as for `worker_process.main`."""
+    def __init__(
+        self, address: str, journal: Path, *, size: int, lease: float, pause: float, clock: Path | None = None
+    ) -> None:
+        """Start `size` workers; lease and pause, in s, and clock as for `worker_process.main`."""
         self.size = size
         self.lease = lease
         self.deaths: dict[str, float] = {}
-        self._options = (address, lease, journal, pause)
+        self._options = (address, lease, journal, pause, clock)
         self._context = get_context("forkserver")
         self._context.set_forkserver_preload(["tests.faults.warm", main.__module__])
         self._names = (f"w{number}" for number in count(1))
@@ -32,10 +34,10 @@ class Crew:
 
     def fill(self) -> None:
         """Start workers in the place of those that are gone."""
-        address, lease, journal, pause = self._options
+        address, *options = self._options
         while len(self._workers) < self.size:
             name = next(self._names)
-            worker = self._context.Process(target=main, args=(address, name, lease, journal, pause), daemon=True)
+            worker = self._context.Process(target=main, args=(address, name, *options), daemon=True)
             worker.start()
             self._workers[name] = worker
 
@@ -68,6 +70,10 @@ class Crew:
         """Return the workers that ended without having been killed."""
         return [name for name, worker in self._workers.items() if not worker.is_alive()]
 
+    def drained(self) -> bool:
+        """Whether all workers have ended by themselves, as they do with a clock once no job waits."""
+        return len(self.fallen()) == self.size
+
     def end(self) -> None:
         """Kill all workers."""
         for worker in self._workers.values():
@@ -83,9 +89,17 @@ class Crew:
 
 
 @contextmanager
-def crew(address: str, journal: Path, *, size: int = 3, lease: float = 1.0, pause: float = 0.08) -> Iterator[Crew]:
+def crew(
+    address: str,
+    journal: Path,
+    *,
+    size: int = 3,
+    lease: float = 1.0,
+    pause: float = 0.08,
+    clock: Path | None = None,
+) -> Iterator[Crew]:
     """Give a crew while it is needed."""
-    started = Crew(address, journal, size=size, lease=lease, pause=pause)
+    started = Crew(address, journal, size=size, lease=lease, pause=pause, clock=clock)
     try:
         yield started
     finally:

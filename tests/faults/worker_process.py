@@ -15,19 +15,23 @@ from slidercrank.model.errors import LeaseLost
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.workers.worker import work
+from tests.service.store.clocks import Clock
 
 from .journal import Journal
 from .lifeline import die_with_parent
 
 
-def main(address: str, name: str, lease: float, journal: Path, pause: float) -> None:
-    """Solve jobs for ever. pause: how long, in s, a round takes longer at most."""
+def main(address: str, name: str, lease: float, journal: Path, pause: float, clock: Path | None) -> None:
+    """Solve jobs for ever. pause: how long, in s, a round takes longer at most.
+
+    clock: file of the one that the store is to have; then only until no job waits.
+    """
     die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the harness, which ends its workers
     logging.disable()  # it is expected to warn
     _note(Journal(journal), pause)
-    with Store(address) as store:
-        work(store, name=name, lease=lease)
+    with contextlib.nullcontext() if clock is None else Clock(clock).shown(), Store(address) as store:
+        work(store, name=name, lease=lease, drain=clock is not None)
 
 
 def _note(journal: Journal, pause: float) -> None:

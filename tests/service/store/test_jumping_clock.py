@@ -2,45 +2,32 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import Engine, event
 
 from slidercrank.model.errors import LeaseLost
-from slidercrank.service.store import Store
+from slidercrank.service.store import Claim, Store
 from slidercrank.service.store.clock import JUMP, SETTLING, Jumps
 from slidercrank.service.workers.heartbeat import Heartbeat
+from slidercrank.service.workers.worker import solve_claimed, work
+from tests.service.store.clocks import Clock
 from tests.service.store.contents import add, progress, result, search_record, taken
 
 HOURS = [7200.0, -7200.0, 1200.0, -1200.0]
 steps = pytest.mark.parametrize("step", HOURS, ids=[f"{step / 60:+.0f} min" for step in HOURS])
 
 
-class Clock:
-    """The clock of all databases of this process. ahead: of the true time, s."""
-
-    ahead = 0.0
-
-    def told(self, _connection: Any, _cursor: Any, statement: str, parameters: Any, *_: Any) -> tuple[str, Any]:
-        """Return a statement that sees the time of this clock."""
-        for text in ("((julianday('now') - 2440587.5) * 86400.0)", "CAST(extract(epoch FROM clock_timestamp()) AS"):
-            if text.startswith("CAST"):
-                statement = statement.replace(text, text.replace(" AS", f" + {self.ahead!r} AS"))
-            else:
-                statement = statement.replace(text, f"({text} + {self.ahead!r})")
-        return statement, parameters
-
-
 @pytest.fixture
-def clock() -> Iterator[Clock]:
+def clock(tmp_path: Path) -> Iterator[Clock]:
     """Return a clock that can be set."""
-    made = Clock()
-    event.listen(Engine, "before_cursor_execute", made.told, retval=True)
-    yield made
-    event.remove(Engine, "before_cursor_execute", made.told)
+    with Clock(tmp_path / "clock").shown() as made:
+        yield made
 
 
 @pytest.fixture
@@ -110,6 +97,69 @@ def test_a_job_that_was_submitted_under_a_clock_set_back_since_is_claimed_at_onc
         claim = other.claim("first")
     assert claim is not None
     assert claim.job.id == job.id
+
+
+def test_a_job_that_its_worker_leaves_is_free_at_once_whatever_the_clock_says(
+    store: Store, address: str, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lose(claim: Claim, _: Any) -> None:
+        raise LeaseLost(f"job {claim.job.id}")
+
+    monkeypatch.setattr("slidercrank.service.workers.worker._end", lose)
+    store.greet("first")
+    job = add(store)
+    solve_claimed(store, taken(store, "first", lease=30.0), lambda: False)
+    clock.ahead = -86_400.0
+    store.greet("first")  # it lives, so that nothing else tells that it has left the job
+    assert store.has_waiting()
+    with Store(address) as other:
+        again = taken(other, "second")
+        assert (again.job.id, again.job.fence) == (job.id, 2)
+        solve_claimed(store, Claim(store, replace(again.job, fence=1), 30.0), lambda: False)
+    left = store.job(job.id).lease_until
+    assert left is not None
+    assert left > 0.0, "only the latest claim lets its lease end"
+
+
+@pytest.fixture
+def solving(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return a function that puts another one in the place of a worker's search; nobody waits long for a clock."""
+    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.05)
+    monkeypatch.setattr("slidercrank.service.workers.worker.PULSE", 0.005)
+    return lambda solve: monkeypatch.setattr("slidercrank.service.workers.worker.solve_claimed", solve)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_worker_that_drains_solves_all_that_waits_though_the_clock_is_set(
+    store: Store, clock: Clock, solving: Any, seed: int
+) -> None:
+    chance = random.Random(seed)
+    jobs = [add(store).id for _ in range(6)]
+
+    def solve(_store: Store, claim: Claim, *_: Any) -> None:
+        clock.ahead += chance.choice([3600.0, 86_400.0]) * chance.choice([1.0, -1.0])
+        claim.finish(result())
+
+    solving(solve)
+    assert work(store, drain=True) == len(jobs)
+    assert store.counts() == {"done": len(jobs)}
+    assert {store.job(job).fence for job in jobs} == {1}
+
+
+def test_a_worker_that_drains_waits_for_a_job_that_is_not_due_yet(store: Store, solving: Any) -> None:
+    job = add(store)
+    attempts: list[int] = []
+
+    def solve(_store: Store, claim: Claim, *_: Any) -> None:
+        attempts.append(claim.job.attempts)
+        if len(attempts) == 1:
+            claim.fail("an error", again=True, delay=0.2)
+        else:
+            claim.finish(result())
+
+    solving(solve)
+    assert work(store, drain=True) == 2
+    assert (store.job(job.id).state, attempts) == ("done", [1, 2])
 
 
 def test_a_job_that_is_tried_again_is_due_within_a_minute(store: Store) -> None:
