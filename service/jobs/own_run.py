@@ -23,6 +23,10 @@ _WORKER = "command line"
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
+def _is_patient(waited: float) -> bool:
+    return waited < _PATIENCE
+
+
 def files_of(job: Path, beside: Sequence[Path]) -> list[Artefact]:
     """Return a job file and the files beside it that it names, as they are kept in the store."""
     kept = {
@@ -39,7 +43,7 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
     """Put the job of a new folder into the store, rename the folder as there, and return the claim."""
     worker = _worker()
     claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
-    claim.most_full = _PATIENCE
+    claim.patient = _is_patient
     folder.rename(claim.job.run)
     folder.keep_files({file.name: file.content for file in files})
     return claim
@@ -85,7 +89,7 @@ def take_up(store: Store, job: Job) -> Claim:
         claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=_is_left(job))
     except InputError:
         raise _refused(store.job(job.id)) from None
-    claim.most_full = _PATIENCE
+    claim.patient = _is_patient
     return claim
 
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import logging
-import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, select, update
@@ -31,6 +29,12 @@ _log = logging.getLogger(__name__)
 _TOLD = 1.0  # s after which it is told that a write has to wait
 _PAUSE = 0.25  # s between two tries of a write that the database refused
 Rest = Callable[[Connection], None]
+Patience = Callable[[float], bool]
+"""Whether a write that found no room on the disk waits for some; asked with the time that it has waited, s."""
+
+
+def _never(_: float) -> bool:
+    return False
 
 
 class Claim:
@@ -42,9 +46,12 @@ class Claim:
     database refuses, or whose answer is lost, is tried again for as long as the lease lasts, and takes effect once.
     Threads may share a claim.
 
+    A write that finds no room on the disk waits for some, while other threads renew the lease: that takes less room.
+    Where not even that is written, nobody else can claim the job either, and it stays this worker's until one does.
+
     begun: whether its search has evaluated anything yet. astray: whether the lease ends at another time than it should,
-    by the clock of the database, which has jumped; it is to be renewed. most_full: for how long, in s, a write is tried
-    again while the disk of the database is full; for as long as the lease lasts, if that ends earlier.
+    by the clock of the database, which has jumped; it is to be renewed. patient: whether a write waits for room.
+    waits: why a write waits, in words; empty if none does. waited: for how long writes have waited for room, s.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
@@ -54,14 +61,16 @@ class Claim:
         self.cancel_asked = job.cancel_asked
         self.begun = False
         self._database = database
-        self._lock = threading.RLock()
+        self._lock = threading.Condition()
         self._writes = 0
         self._attempts = job.attempts
         self._records = job.records
         self._kept: list[Record] = []
         self._renewed = time.monotonic()
         self.astray = False
-        self.most_full = math.inf
+        self.patient: Patience = lambda _: True
+        self.waits = ""
+        self.waited = 0.0
 
     @property
     def age(self) -> float:
@@ -91,8 +100,9 @@ class Claim:
         self._write({"progress": text_of(standing)}, [("progress", data)])
 
     def renew(self) -> None:
-        """Renew the lease and look whether the job is to be cancelled; writes nothing else."""
-        self._write({}, [], keep=False)
+        """Renew the lease and look whether the job is to be cancelled; writes nothing else but why a write waits."""
+        with self._lock:  # else the write may end its wait meanwhile
+            self._write({"reason": plain(self.waits)} if self.waits else {}, [], keep=False, patient=_never)
 
     def look(self) -> None:
         """Look whether the job is to be cancelled, without writing. Raises `LeaseLost` if another worker has it."""
@@ -133,7 +143,6 @@ class Claim:
         rows = [
             {"job": self.job.id, "number": number, "cells": cells_of(row)} for number, row in enumerate(result.designs)
         ]
-
         content = None if result.exact is None else packed_exact(result.exact)
 
         def rest(connection: Connection) -> None:
@@ -162,13 +171,13 @@ class Claim:
         attempts = 0 if self._kept else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
         if again and attempts < self.job.most_attempts:
-            self._end("queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None})
+            self._leave("queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None})
         else:
-            self._end("failed", f"{reason}{tries}", {})
+            self._leave("failed", f"{reason}{tries}", {})
 
     def give_up(self, reason: str = NOT_DONE) -> None:
         """End the job, cancelled, with what it had found before this claim."""
-        self._end("cancelled", reason, {})
+        self._leave("cancelled", reason, {})
 
     def hand_back(self, reason: str, *, delay: float = 0.0) -> None:
         """Queue the job again as it is, without counting the attempt: what stops it is no fault of its own.
@@ -177,87 +186,97 @@ class Claim:
         """
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
         due = {"due": later(min(delay, MOST_DELAY))} if delay else {}
-        self._end("queued", reason, {"finished": None, "attempts": fewer, **due})
+        self._leave("queued", reason, {"finished": None, "attempts": fewer, **due})
 
     def let_go(self) -> None:
         """End the lease of a job that is left as it is, if no other worker has it: at once, whatever the clock says."""
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
 
-    def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None) -> None:
+    def _leave(self, state: str, reason: str, changes: dict[str, Any]) -> None:
+        """End the claim without a result. Records for which there is no room are left out: they are computed again."""
+        try:
+            self._end(state, reason, changes, patient=_never)
+        except Full:
+            self._end(state, reason, changes, keep=False, patient=lambda _: self.age <= self.lease)
+
+    def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None, **options: Any) -> None:
         reason = plain(reason)
         ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}
-        self._write({**ended, **changes}, [state_event(state, reason)], rest)
+        self._write({**ended, **changes}, [state_event(state, reason)], rest, **options)
 
     def _write(
-        self, changes: dict[str, Any], told: Sequence[Told], rest: Rest | None = None, *, keep: bool = True
-    ) -> None:
-        with self._lock:
-            kept = self._kept if keep else []
-            rows = [
-                {"job": self.job.id, "number": number, "content": packed(record)}
-                for number, record in enumerate(kept, self._records)
-            ]
-            values: dict[str, Any] = {
-                "writes": self._writes + 1,
-                "events": jobs.c.events + len(told),
-                "lease_until": later(self.lease),
-                "records": self._records + len(rows),
-            }
-            if rows:
-                values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
-            self._commit(partial(self._change, {**values, **changes}, told, rows, rest))
-            self._writes += 1
-            self._records += len(rows)
-            self._kept = self._kept[len(kept) :]
-            self._attempts = 0 if rows else self._attempts
-
-    def _commit(self, change: Callable[[Connection, bool], None]) -> None:
-        tried, told_why, began = False, False, time.monotonic()
-        while True:
-            started = time.monotonic()
-            try:
-                with self._database.writing() as connection:
-                    change(connection, tried)
-                self._renewed, self.astray = started, False
-                return
-            except Unavailable as error:
-                waited = time.monotonic() - began
-                if self.age > self.lease or (isinstance(error, Full) and waited > self.most_full):
-                    raise
-                if waited > _TOLD and not told_why:
-                    _log.warning("waits to write: %s", error)
-                tried, told_why = True, told_why or waited > _TOLD
-                time.sleep(_PAUSE)
-
-    def _change(
         self,
-        values: dict[str, Any],
+        changes: dict[str, Any],
         told: Sequence[Told],
-        rows: list[dict[str, Any]],
-        rest: Rest | None,
-        connection: Connection,
-        tried: bool,
+        rest: Rest | None = None,
+        *,
+        keep: bool = True,
+        patient: Patience | None = None,
     ) -> None:
-        """Write it all. tried: whether an earlier try may have taken effect already."""
-        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
-        if self.age > self.lease:
-            held = and_(held, jobs.c.lease_until > now())
-        row = connection.execute(
-            update(jobs).where(held).values(values).returning(jobs.c.events, jobs.c.cancel_asked)
-        ).first()
-        if row is None:
-            # Where only the answer to an earlier try was lost, the write is there already.
-            if tried and connection.scalar(select(jobs.c.writes).where(self._mine)) == self._writes + 1:
-                return
-            raise self._lost()
-        self.cancel_asked = self.cancel_asked or row.cancel_asked
-        add_events(connection, self.job.id, row.events, told)
+        tried, full, reported, began = False, False, False, time.monotonic()
+        with self._lock:
+            try:
+                while True:
+                    try:
+                        self._try({"reason": "", **changes} if full else changes, told, rest, keep=keep, tried=tried)
+                        return
+                    except Unavailable as error:
+                        waited, no_room = time.monotonic() - began, isinstance(error, Full)
+                        if not ((patient or self.patient)(waited) if no_room else self.age <= self.lease):
+                            raise
+                        if waited > _TOLD and not reported:
+                            _log.warning("waits to write: %s", error)
+                            reported = True
+                        if no_room:
+                            full, self.waits = True, f"waits: {error}"
+                            self._lock.wait(_PAUSE)  # other threads write meanwhile
+                        else:
+                            tried = True
+                            time.sleep(_PAUSE)  # they may not: this write may have taken effect
+            finally:
+                if full:
+                    self.waits = ""
+                    self.waited += time.monotonic() - began
+
+    def _try(
+        self, changes: dict[str, Any], told: Sequence[Told], rest: Rest | None, *, keep: bool, tried: bool
+    ) -> None:
+        """Write it all in one transaction. tried: whether an earlier try may have taken effect already."""
+        kept, started = self._kept if keep else [], time.monotonic()
+        rows = [
+            {"job": self.job.id, "number": number, "content": packed(record)}
+            for number, record in enumerate(kept, self._records)
+        ]
+        values: dict[str, Any] = {
+            "writes": self._writes + 1,
+            "events": jobs.c.events + len(told),
+            "lease_until": later(self.lease),
+            "records": self._records + len(rows),
+        }
         if rows:
-            connection.execute(insert(records), rows)
-        connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
-        if rest is not None:
-            rest(connection)
+            values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
+        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
+        if self.age > self.lease and not self.waits:
+            held = and_(held, jobs.c.lease_until > now())
+        change = update(jobs).where(held).values({**values, **changes}).returning(jobs.c.events, jobs.c.cancel_asked)
+        with self._database.writing() as connection:
+            row = connection.execute(change).first()
+            if row is not None:
+                self.cancel_asked = self.cancel_asked or row.cancel_asked
+                add_events(connection, self.job.id, row.events, told)
+                if rows:
+                    connection.execute(insert(records), rows)
+                connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
+                if rest is not None:
+                    rest(connection)
+            elif not tried or connection.scalar(select(jobs.c.writes).where(self._mine)) != self._writes + 1:
+                raise self._lost()  # else it is there already: only the answer to an earlier try was lost
+        self._renewed, self.astray = started, False
+        self._writes += 1
+        self._records += len(rows)
+        self._kept = self._kept[len(kept) :]
+        self._attempts = 0 if rows else self._attempts
 
     @property
     def _mine(self) -> ColumnElement[bool]:

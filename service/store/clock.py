@@ -2,12 +2,14 @@
 
 That clock may be set, by hours and in either direction, and nothing may hang on it. Whoever holds a job measures its
 lease on its own monotonic clock, and renews it when it sees that the database's clock has jumped. Whoever looks for
-jobs takes none for a moment after a jump, so that holders come first. What cannot be, a sign of life or a due time too
-far in the future, is of a clock that was set back, and holds nothing up. Results hang on fences alone.
+jobs takes none for a moment after a jump, so that holders come first; nor after the disk of the database was full, so
+that leases could not be renewed. What cannot be, a sign of life or a due time too far in the future, is of a clock that
+was set back, and holds nothing up. Results hang on fences alone.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Any
@@ -20,7 +22,8 @@ from sqlalchemy.sql.functions import FunctionElement
 JUMP = 1.0
 """s between this clock and a monotonic one, from one look to the next, that are no delay but a jump."""
 SETTLING = 2.0
-"""s after a jump in which no job is claimed: eight times as long as holders take to see it and to renew their lease."""
+"""s after a jump or a full disk in which no job is claimed: eight times as long as holders take to see it and to renew
+their lease."""
 
 
 class Jumps:
@@ -29,15 +32,18 @@ class Jumps:
     def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:
         self._monotonic = monotonic
         self._ahead: float | None = None
-        self._until = -float("inf")
+        self._until = -math.inf
 
-    def settled(self, there: float) -> bool:
-        """Return whether the last jump that was seen is some time ago. there: time of the database, s."""
+    def settled(self, there: float, last_full: float = -math.inf) -> bool:
+        """Return whether the last jump that was seen is some time ago, and the last time without room on the disk.
+
+        there: time of the database, s. last_full: of the monotonic clock, s.
+        """
         here = self._monotonic()
         if self._ahead is not None and abs(there - here - self._ahead) > JUMP:
             self._until = here + SETTLING
         self._ahead = there - here
-        return here >= self._until
+        return here >= max(self._until, last_full + SETTLING)
 
 
 class now(FunctionElement[float]):

@@ -49,7 +49,10 @@ class Full(Unavailable):
 
 
 class Database:
-    """An open database. Both kinds of transaction raise `StoreError` when the database refuses or cannot be reached."""
+    """An open database. Both kinds of transaction raise `StoreError` when the database refuses or cannot be reached.
+
+    last_full: when its disk was last seen without room, s of the monotonic clock.
+    """
 
     def __init__(self, address: str | PathLike[str]) -> None:
         """Open what is at an address: postgresql://..., sqlite:///file, or the path of a file.
@@ -59,6 +62,7 @@ class Database:
         url = url_of(address)
         self.name = shown_url(url)
         self._secrets = secrets_of(url)
+        self.last_full = -math.inf
         self.sqlite = url.get_backend_name() == "sqlite"
         self._file = file_of(address)
         alone = False
@@ -100,6 +104,7 @@ class Database:
                 )
 
     def _full(self, reason: str) -> Full:
+        self.last_full = time.monotonic()
         there = "" if self._folder is None else f"; {room(self._folder)}"
         return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; make room")
 

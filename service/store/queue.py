@@ -111,12 +111,12 @@ def in_hand(worker: str, lease: float) -> dict[str, Any]:
     }
 
 
-def any_claimable(connection: Connection, jumps: Jumps) -> bool:
-    """Whether some job waits for a worker; asked before claiming, so that idle workers do not write.
+def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> bool:
+    """Whether some job may be claimed; asked before claiming, so that idle workers do not write.
 
-    jumps: of the database's clock; none is to be claimed soon after one.
+    jumps: of the database's clock. last_full: when its disk had no room, s. None is claimed soon after either.
     """
-    settled = jumps.settled(connection.execute(select(now())).scalar_one())
+    settled = jumps.settled(connection.execute(select(now())).scalar_one(), last_full)
     return settled and connection.execute(_CLAIMABLE).first() is not None
 
 

@@ -286,15 +286,17 @@ class Store(Workers):
             connection.execute(delete(jobs).where(jobs.c.id == number))
 
     def claim(self, worker: str, *, lease: float = LEASE, most_running: int | None = None) -> Claim | None:
-        """Give the foremost waiting job to a worker for `lease` s; None if no job waits. See `queue.claim_next`.
+        """Give the foremost waiting job to a worker for `lease` s; None if there is none now. See `queue.claim_next`.
 
         most_running: how many jobs may be in the hands of workers at a time; None is as many as there are workers.
+        Raises `Full` if one waits and the disk has no room: its claim may fit into the files, its records do not.
         """
         if not 0.0 < lease <= 3600.0:
             raise InputError(f"a lease lasts more than 0 s and at most an hour; got {lease} s")
         with self.reading() as connection:
-            if not queue.any_claimable(connection, self._jumps):
+            if not queue.any_claimable(connection, self._jumps, self.last_full):
                 return None
+        self.require_room()
         with self.writing() as connection:
             if most_running is not None:
                 queue.take_turns(connection)

@@ -34,10 +34,11 @@ Stop = Callable[[], bool]
 class Budget:
     """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either.
 
-    limits: the one of memory is not looked at here.
+    limits: the one of memory is not looked at here. waited: time, s, that the search has waited for room on a disk.
     """
 
     limits: Limits
+    waited: Callable[[], float] = lambda: 0.0
     _began: float = field(default_factory=time.monotonic, init=False)
     _evaluations: int = field(default=0, init=False)
 
@@ -57,7 +58,7 @@ class Budget:
     def reason(self) -> str:
         """Return which limit is reached, in words; nothing if none is."""
         seconds, evaluations = self.limits.seconds, self.limits.evaluations
-        if seconds is not None and time.monotonic() - self._began >= seconds:
+        if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
             return f"its search took longer than its limit of {seconds:g} s"
         if evaluations is not None and self._evaluations >= evaluations:
             return f"its search reached its limit of {counted(evaluations, 'evaluation')}"
@@ -150,6 +151,9 @@ class Heartbeat:
 
     def _look_at_deaf(self) -> None:
         reason = NOT_DONE if self.claim.cancel_asked else self.budget.reason()
+        if self.claim.waits:  # for room: then it cannot end
+            self._since.pop("told to end", None)
+            return
         if self.grace is None or not reason:
             return
         if self._waited("told to end") < _HEARS or self._end.is_set():

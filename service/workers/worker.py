@@ -20,6 +20,7 @@ from ..resources.disk import full_places, is_full
 from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of, unsearched_result
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
+from ..store.database import Full
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Budget, Heartbeat, Stop
 from .logs import about
@@ -87,7 +88,8 @@ def work(
     stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
     the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
 
-    While the database cannot be reached, it is tried again every second. Raises `Stale`, only where there is a grace.
+    While the database cannot be reached, it is tried again every second; to drain it raises `StoreError`, unless the
+    disk is full. Raises `Stale`, only where there is a grace.
     """
     memory = Memory()
     name = name or worker_name()
@@ -101,7 +103,7 @@ def work(
                     greeted = time.monotonic()
                 claim = store.claim(name, lease=lease, most_running=most_running)
             except StoreError as error:
-                if drain:
+                if drain and not isinstance(error, Full):
                     raise
                 if not away:
                     _log.warning("%s; trying again until it is there", error)
@@ -151,7 +153,8 @@ def solve_claimed(
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
     """
-    budget = Budget(claim.job.limits.within(terms.limits))
+    budget = Budget(claim.job.limits.within(terms.limits), waited=lambda: claim.waited)
+    claim.patient = lambda _: not (claim.cancel_asked or stop())
     with about(job=claim.job.id):
         _log.info("claimed")
         taken = memory or Memory()
@@ -178,6 +181,12 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
     except InputError as error:
         claim.fail(str(error), again=False)
         _log.warning("failed: %s", error)
+    except Full as error:  # the job or its worker is to end while a write waits for room
+        if claim.cancel_asked:
+            claim.give_up()
+        else:
+            claim.hand_back(f"waits: {error}")
+        _log.warning("given back: %s", error)
     except (LeaseLost, StoreError):
         raise
     except OSError as error:

@@ -22,6 +22,7 @@ from .full import full
 from .kills import kills
 from .pauses import pauses
 from .restarts import restarts
+from .room import room
 from .runaway import runaway
 from .starts import starts
 from .suspends import suspends
@@ -46,6 +47,7 @@ def _all(context: typer.Context) -> None:
         lambda: _restarts(300.0),
         _full,
         lambda: _disk(5),
+        lambda: _room(10),
         lambda: _clocks("sqlite"),
         lambda: _clocks("postgresql"),
         lambda: _runaway(1),
@@ -93,6 +95,12 @@ def _full(count: Count = 50, seed: Seed = 1) -> None:
 def _disk(count: Annotated[int, typer.Option(help="How often each disk is filled.")] = 5, seed: Seed = 1) -> None:
     """Let the disks of `optimise` and of `serve` be full: store, runs, figures, kernels, temporary files (as root)."""
     _report(f"each disk full {count} times", lambda: disk(count, seed))
+
+
+@app.command("room")
+def _room(count: Annotated[int, typer.Option(help="How often the disk is filled.")] = 10, seed: Seed = 1) -> None:
+    """Leave a small disk room for leases but not for rounds, at random moments (SQLite, as root)."""
+    _report(f"no room for a round {count} times on sqlite", lambda: room(count, seed))
 
 
 @app.command("clocks")

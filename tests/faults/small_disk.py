@@ -19,14 +19,14 @@ class Disk:
         self.folder = folder
         self._filler = folder / "filler"
 
-    def fill(self) -> None:
-        """Let nothing be free."""
+    def fill(self, left: int = 0) -> None:
+        """Let nothing be free but some bytes."""
         with self._filler.open("ab", buffering=0) as file:
             try:
                 while file.write(_BLOCK):
                     pass
             except OSError:  # that was the last byte
-                pass
+                file.truncate(max(0, file.tell() - left))
 
     def empty(self) -> None:
         """Give the room back."""

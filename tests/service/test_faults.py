@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from tests.faults.clocks import clocks
 from tests.faults.commits import commits
 from tests.faults.dask_faults import strike
 from tests.faults.disk import disk
@@ -15,6 +16,7 @@ from tests.faults.kills import kills
 from tests.faults.pauses import pauses
 from tests.faults.places import Kind
 from tests.faults.restarts import restarts
+from tests.faults.room import room
 from tests.faults.runaway import runaway
 from tests.faults.small_disk import small_disk
 from tests.faults.starts import starts
@@ -24,8 +26,19 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(sys.platform != "linux", reason="the harness uses signals and limits of Linux"),
 ]
+needs_disk = pytest.mark.usefixtures("mountable")
 needs_server = pytest.mark.skipif(postgresql.why_not() is not None, reason=str(postgresql.why_not()))
 both = pytest.mark.parametrize("kind", ["sqlite", pytest.param("postgresql", marks=needs_server)])
+
+
+@pytest.fixture
+def mountable() -> None:
+    """Skip a test where no small disk can be mounted."""
+    try:
+        with small_disk():
+            pass
+    except SystemExit as reason:
+        pytest.skip(str(reason))
 
 
 @both
@@ -85,12 +98,21 @@ def test_a_service_ends_by_a_signal_right_after_it_prints_its_address() -> None:
     assert verdict.violations == []
 
 
+def test_a_clock_that_is_set_ends_no_worker_before_its_queue_is_empty() -> None:
+    verdict = clocks("sqlite", 1, seed=1)
+    assert verdict.violations == []
+    assert verdict.jobs > 0
+
+
+@needs_disk
+def test_a_disk_without_room_for_a_round_fails_no_job() -> None:
+    verdict = room(1, seed=1)
+    assert verdict.violations == []
+    assert verdict.failed > 0
+
+
+@needs_disk
 def test_a_service_on_a_full_disk_says_so_and_goes_on_when_there_is_room() -> None:
-    try:
-        with small_disk():
-            pass
-    except SystemExit as reason:
-        pytest.skip(str(reason))
     verdict = disk(0, seed=1)
     assert verdict.violations == []
     assert verdict.jobs == 1

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +14,13 @@ from sqlalchemy import text
 
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.store import Store
+from slidercrank.service.store import Job, Store
 from slidercrank.service.store.database import Database, Full
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.conftest import Command
-from tests.service.made_up_search import search
+from tests.service.made_up_search import search, until
+from tests.service.store.small_disk import Disk, large_record
 from tests.service.test_worker import TABLES
 
 
@@ -113,3 +116,78 @@ def test_a_job_that_finds_another_disk_full_waits_for_it_and_is_not_failed(
         assert store.job(job.id).state == "done"
         reasons = [event.data.get("reason", "") for event in store.events(job.id)]
     assert any(f"waits: a job needs room on the disks it writes to; {tmp_path / 'cache'} has" in one for one in reasons)
+
+
+def solve_meanwhile(
+    store: Store, disk: Disk, monkeypatch: pytest.MonkeyPatch, job: Job, then: Callable[[Any], None]
+) -> None:
+    """Let a worker solve a job whose disk is filled before its second round, and do something while it waits."""
+
+    def fills(*given: Any, keep: Any, progress: Any, **more: Any) -> ParetoFront:
+        def report(at: Any) -> None:
+            if at.round == 2 and not store.job(job.id).reason:
+                disk.fill()
+            progress(at)
+
+        return search(*given, keep=lambda record: keep(large_record(record.number)), progress=report, **more)
+
+    monkeypatch.setattr("slidercrank.optimise.solve.solve", fills)
+    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.2)
+    stop = threading.Event()
+    worker = threading.Thread(target=work, args=(store,), kwargs={"name": "first", "lease": 0.6, "stop": stop.is_set})
+    worker.start()
+    try:
+        until(lambda: "waits: the store needs room on its disk" in store.job(job.id).reason)
+        then(stop)
+    finally:
+        stop.set()
+        worker.join()
+
+
+def test_a_full_disk_uses_up_no_attempt_however_long_it_lasts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Store(tmp_path / "store.db") as store:
+        disk = Disk(store)
+        job = submit(store, TABLES, most_attempts=1)
+        begin = time.monotonic()
+
+        def outlast(_: Any) -> None:
+            until(lambda: store.job(job.id).fence > 1 or time.monotonic() - begin > 0.9)
+            disk.empty()
+            until(lambda: store.job(job.id).state not in ("queued", "running"))
+
+        solve_meanwhile(store, disk, monkeypatch, job, outlast)
+        ended = store.job(job.id)
+        assert (ended.state, ended.fence) == ("done", 1)
+        whole = submit(store, TABLES)
+        monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
+        work(store, drain=True)
+        assert store.result(job.id).designs == store.result(whole.id).designs
+
+
+@pytest.mark.parametrize(("ends", "state"), [("cancel", "cancelled"), ("stop", "queued")])
+def test_a_job_that_waits_for_room_ends_when_it_or_its_worker_is_to_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: str, state: str
+) -> None:
+    with Store(tmp_path / "store.db") as store:
+        disk = Disk(store)
+        job = submit(store, TABLES)
+
+        def end(stop: threading.Event) -> None:
+            if ends == "cancel":
+                store.cancel(job.id)
+            else:
+                stop.set()
+            until(lambda: store.job(job.id).state == state)
+
+        solve_meanwhile(store, disk, monkeypatch, job, end)
+        ended = store.job(job.id)
+        assert (ended.records, ended.worker) == (1, None)
+        if ends == "cancel":
+            store.resume(job.id)
+        else:
+            assert ended.reason.startswith("waits: the store needs room on its disk")
+            assert ended.attempts == 0
+        disk.empty()
+        monkeypatch.setattr("slidercrank.optimise.solve.solve", search)
+        work(store, drain=True)
+        assert store.job(job.id).state == "done"
