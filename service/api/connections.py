@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections import Counter
+from collections import deque
 from http import HTTPStatus
 from typing import Any, Literal
 
@@ -16,23 +16,28 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
-from .problems import problem
+from .problems import is_news, problem
+from .security import KNOWN
 
 _log = logging.getLogger(__name__)
 MOST_CONNECTIONS = 2000
 """Connections at a time; fewer where the system allows fewer open files, see `room_for_connections`."""
 MOST_HEAD = 65_536
-"""Bytes of an address with the headers."""
-MOST_SENT = 8_388_608
-"""Bytes of a body as they are sent, with what chunks add; how large a body itself may be `StrictInput` says."""
+"""Bytes of an address with the headers, and `_HEADER` more for each; of what comes with a body between its content."""
+_HEADER = 128
+"""Bytes of memory that a header takes beside its own."""
 HEAD_SECONDS = 10.0
 """From connecting, or from the first byte of a request, until its headers are there."""
 BODY_SECONDS = 60.0
 """From the headers until the whole body is there."""
+_PIECE = 1024
+"""Bytes that are read at a time: sizes are looked at in between."""
+_END = b"\n\r\n"
+"""What every head ends with, and with it most requests."""
+_WRITE_BUFFER = 16_384
+"""Bytes of an answer that may wait to be sent; the rest of it is written once the client takes them."""
 _SHARE = 20
 """One in so many connections is closed when there are too many."""
-_QUIET = 10.0
-"""Seconds between lines of the log about what may happen thousands of times a second."""
 
 
 def room_for_connections() -> int:
@@ -45,59 +50,63 @@ def room_for_connections() -> int:
     except ImportError:  # not on Windows, which has no such limit
         return MOST_CONNECTIONS
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if hard == resource.RLIM_INFINITY or hard > 4 * MOST_CONNECTIONS:
-        hard = 4 * MOST_CONNECTIONS
-    if soft != resource.RLIM_INFINITY and soft < hard:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (hard, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
-        soft = hard
+    most = 4 * MOST_CONNECTIONS if hard == resource.RLIM_INFINITY else min(hard, 4 * MOST_CONNECTIONS)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+        soft = most
     return MOST_CONNECTIONS if soft == resource.RLIM_INFINITY else min(MOST_CONNECTIONS, soft // 2)
 
 
 class Gate:
     """Connections of one server.
 
-    most: how many there may be. A new one beyond it takes the place of those that have waited longest, the ones that
-    never asked anything first; it is refused where all are being answered.
+    most: how many there may be. A new one beyond it takes the place of those that have waited longest, the ones without
+    the token first; it is refused where all others have it and take their answers.
     """
 
     def __init__(self, most: int = MOST_CONNECTIONS) -> None:
         self.most = most
-        self._told: Counter[str] = Counter()
-        self._timer: asyncio.TimerHandle | None = None
+        self._queue: deque[Connection] = deque()
+        self._told: dict[str, float] = {}
+
+    def queue(self, one: Connection) -> None:
+        """Let a connection go on with what was sent ahead, one in each round of the loop, and others in between."""
+        self._queue.append(one)
+        if len(self._queue) == 1:
+            one.loop.call_soon(self._go_on)
+
+    def _go_on(self) -> None:
+        one = self._queue.popleft()
+        if self._queue:
+            one.loop.call_soon(self._go_on)
+        one.read()
 
     def make_room(self, new: Connection) -> bool:
         """Close the connection that is needed least if there are too many; whether the new one may stay."""
         if len(new.connections) <= self.most:
             return True
-        waiting = [one for one in new.connections if isinstance(one, Connection) and one is not new and one.waits]
+        others = [one for one in new.connections if isinstance(one, Connection) and one is not new]
+        waiting = sorted((one for one in others if one.is_dispensable), key=lambda one: (one.is_known, one.since))
         if not waiting:
             self.tell(f"refused for {self.most} connections that were being answered")
             return False
-        waiting.sort(key=lambda one: (one.asked, one.since))
         for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not looked through each time
-            self.tell(f"closed at rest, to make room: more than {self.most}")
+            self.tell(f"closed to make room: more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
 
     def tell(self, what: str) -> None:
-        """Log what happened to a connection: at once, then how often within some seconds."""
-        self._told[what] += 1
-        if self._timer is None:
-            self._log()
-
-    def _log(self) -> None:
-        self._timer = None
-        if self._told:
-            _log.warning("connections %s", "; ".join(f"{what}: {count}" for what, count in self._told.items()))
-            self._told.clear()
-            self._timer = asyncio.get_running_loop().call_later(_QUIET, self._log)
+        """Log what happened to connections, unless that was logged within the last minute."""
+        if is_news(self._told, what):
+            _log.warning("connections %s", what)
 
 
 class Connection(HttpToolsProtocol):
     """A connection, with limits on the bytes and the time that a request takes to come.
 
-    asked: whether a whole request ever came. since: when it connected or was last answered, s, on the loop's clock.
+    Requests are read one at a time: what a client sends ahead stays unread until it has taken the answers before.
+    since: when something last came, s, on the loop's clock.
     """
 
     def __init__(
@@ -109,24 +118,32 @@ class Connection(HttpToolsProtocol):
         _loop: asyncio.AbstractEventLoop | None = None,
     ) -> None:
         super().__init__(config, server_state, app_state, _loop)
-        self.asked = False
         self.since = self.loop.time()
         self._gate = gate
+        self._backlog = b""
         self._part: Literal["rest", "head", "body"] = "rest"  # what is coming
-        self._answering = 0  # requests that wait for their answers
-        self._size, self._trailing = 0, 0  # bytes that came in earlier pieces; of headers after the body
-        self._fresh = False  # whether this request began in this piece
+        self._size = 0  # bytes of it without content
         self._deadline: asyncio.TimerHandle | None = None
-        self._fault: tuple[HTTPStatus, str] | None = None
 
     @property
-    def waits(self) -> bool:
+    def is_known(self) -> bool:
+        """Whether its last request was let in with the token."""
+        return KNOWN in getattr(self.cycle, "scope", ())  # none before the first request
+
+    @property
+    def is_at_rest(self) -> bool:
         """Whether nothing is being answered on it."""
-        return self._answering == 0
+        return bool(getattr(self.cycle, "response_complete", True))
+
+    @property
+    def is_dispensable(self) -> bool:
+        """Whether it may be closed to make room: unless it is known, and takes the one answer that it waits for."""
+        return not self.is_known or self.is_at_rest or bool(self._backlog) or self.flow.write_paused
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent
         """Begin, unless there are too many."""
         super().connection_made(transport)
+        transport.set_write_buffer_limits(_WRITE_BUFFER)
         if self._gate.make_room(self):
             self._wait(HEAD_SECONDS)
         else:
@@ -135,73 +152,81 @@ class Connection(HttpToolsProtocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
+        if isinstance(exc, TimeoutError):
+            self._gate.tell("closed, answers were not taken")
         self._wait(None)
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take in what came; refuse a head that is too large before it ends."""
-        self._fresh = False
-        super().data_received(data)
-        if self._part == "rest" or self._fresh or self.transport.is_closing():
-            return
-        self._size += len(data)
-        if self._part == "head" and self._size > MOST_HEAD:
-            self._refuse(*self._too_large())
-        elif self._size > MOST_SENT:
-            text = f"a body takes at most {MOST_SENT} bytes on its way; got more; send less, or in larger chunks"
-            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, text)
+        """Take in what came, unless it has to wait for answers."""
+        self.since = self.loop.time()
+        self._backlog += data
+        if len(self._backlog) == len(data):
+            self.read()
+        else:
+            self.flow.pause_reading()
+
+    def read(self) -> None:
+        """Read what came to the end of a request; refuse what is too large before it ends."""
+        while self._backlog and not self.pipeline and (self.is_at_rest or self._part != "rest"):
+            end = self._backlog.find(_END, 0, _PIECE)
+            piece = self._backlog[: _PIECE if end < 0 else end + len(_END)]
+            self._backlog = self._backlog[len(piece) :]
+            self._size += len(piece)
+            if self._size > MOST_HEAD:
+                long = self._part == "head" and len(self.url) > MOST_HEAD // 2
+                status = HTTPStatus.REQUEST_URI_TOO_LONG if long else HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
+                what = "a body beside its content" if self._part == "body" else "an address with its headers"
+                self._refuse(status, f"{what} has at most {MOST_HEAD} bytes; got more; shorten it")
+            if self.transport.is_closing():
+                return
+            super().data_received(piece)
+        if self._backlog or self.pipeline:
+            self.flow.pause_reading()
+            self._wait(None)
+        elif self._deadline is None and (self._part != "rest" or self._size):
+            self._wait(BODY_SECONDS if self._part == "body" else HEAD_SECONDS)
 
     def on_message_begin(self) -> None:
         """Begin a request."""
         super().on_message_begin()
-        self._part, self._size, self._trailing, self._fresh = "head", 0, 0, True
-        self._wait(HEAD_SECONDS)
+        self._part = "head"
+        self._wait(None)
 
     def on_header(self, name: bytes, value: bytes) -> None:
         """Take in a header; of those that come after a body, none."""
         if self._part == "head":
             super().on_header(name, value)
-            return
-        self._trailing += len(name) + len(value) + 4
-        if self._trailing > MOST_HEAD:
-            self._fault = self._too_large()
-            raise ValueError(self._fault[1])
+            self._size += _HEADER
 
     def on_headers_complete(self) -> None:
-        """Hand the request on, unless its head is too large."""
-        size = len(self.url) + sum(len(name) + len(value) + 4 for name, value in self.headers)
-        if size > MOST_HEAD:
-            self._fault = self._too_large()
-            raise ValueError(self._fault[1])  # the parser ends the request with `send_400_response`
+        """Hand the request on."""
         self._part, self._size = "body", 0
-        self._wait(BODY_SECONDS)
-        self._answering += 1
+        self._wait(None)
         super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """Take in content of the body."""
+        self._size = 0
+        super().on_body(body)
 
     def on_message_complete(self) -> None:
         """Note that the whole request is there."""
-        self.asked = True
-        self._part = "rest"
+        self._part, self._size = "rest", 0
         self._wait(None)
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Note that it was answered."""
-        self.since = self.loop.time()
-        self._answering -= 1
+        """Go on with what was sent ahead."""
         super().on_response_complete()
+        if self._backlog:
+            self.flow.pause_reading()
+        if self._backlog or self._part != "rest":
+            self._gate.queue(self)
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse what is not HTTP, or was found too large while it was parsed."""
-        self._refuse(
-            *(self._fault or (HTTPStatus.BAD_REQUEST, "a request is HTTP/1.1; got something else; correct it"))
-        )
-
-    def _too_large(self) -> tuple[HTTPStatus, str]:
-        rule = f"an address with its headers has at most {MOST_HEAD} bytes; got more; shorten "
-        if len(self.url) > MOST_HEAD // 2:
-            return HTTPStatus.REQUEST_URI_TOO_LONG, f"{rule}the address"
-        return HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, f"{rule}the headers"
+        """Refuse what is not HTTP."""
+        self._refuse(HTTPStatus.BAD_REQUEST, "a request is HTTP/1.1; got something else; correct it")
 
     def _wait(self, seconds: float | None) -> None:
         """Expect what comes next within some seconds; None ends waiting."""
@@ -222,7 +247,7 @@ class Connection(HttpToolsProtocol):
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
         self._gate.tell(f"refused with {status}")
-        if self.waits or not self.cycle.response_started:  # another answer would break one that is under way
+        if self.is_at_rest or not (self.pipeline or self.cycle.response_started):  # it would break another answer
             response = problem(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)
             start = f"HTTP/1.1 {status} {status.phrase}\r\n".encode()

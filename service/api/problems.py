@@ -91,14 +91,14 @@ def answer_problems(app: FastAPI) -> None:
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
-    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and _is_news(request.app.state.told, str(error)):
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and is_news(request.app.state.told, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
     return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
 
 
-def _is_news(told: dict[str, float], sentence: str) -> bool:
-    """Whether a fault was not logged within the last minute: every request meets it, as long as it lasts."""
+def is_news(told: dict[str, float], sentence: str) -> bool:
+    """Whether a sentence was not logged within the last minute: what one request meets, others meet as well."""
     now = time.monotonic()
     if now - told.get(sentence, -_QUIET) < _QUIET:
         return False

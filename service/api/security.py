@@ -20,6 +20,8 @@ from .settings import Settings
 _log = logging.getLogger(__name__)
 OPEN = "/api/v1/health/live"
 """The one place that needs no token: it says only that the service answers."""
+KNOWN = "slidercrank.known"
+"""Key of a request's scope, there once the request is let in with the token, or where none is asked for."""
 _HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
@@ -95,17 +97,19 @@ class Guard:
                     f"a page of another site may not ask; got Origin {origin[:100]!r}; "
                     "open the page of the service itself",
                 )
-        if self.token is None or scope["path"] == OPEN:
-            return None
-        if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
-            return self._let_in(connection)
-        if not self._knows(connection):
-            if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
-                return locked_page(connection)
-            return _unauthorised(
-                "a request carries the token of the service; got none or a wrong one; "
-                "send it as Authorization: Bearer TOKEN, or open the address that the service printed"
-            )
+        if self.token is not None:
+            if scope["path"] == OPEN:
+                return None
+            if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
+                return self._let_in(connection)
+            if not self._knows(connection):
+                if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
+                    return locked_page(connection)
+                return _unauthorised(
+                    "a request carries the token of the service; got none or a wrong one; "
+                    "send it as Authorization: Bearer TOKEN, or open the address that the service printed"
+                )
+        scope[KNOWN] = True
         return None
 
     def _let_in(self, connection: HTTPConnection) -> Response:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 _WAITING = 2048
 """Connections that may wait to be accepted."""
+ANSWER_SECONDS = 60.0
+"""Time that a client may take nothing of its answer; then the system breaks the connection off (Linux)."""
+_BUFFER = 16_384
+"""Bytes that the system keeps for each direction of a connection, beside those on their way, instead of megabytes."""
 _KEPT = 75
 """Seconds that a connection at rest stays open: longer than clients keep theirs, so none is closed as it is used."""
 _FAREWELL = 2
@@ -51,9 +55,12 @@ def listen(host: str, port: int) -> socket.socket:
             f"the service needs an address of this machine and a free port; {host} port {port} gave: {_why(error)}; "
             "choose another one with --port (0 takes any that is free) or --host"
         ) from None
-    # Connections inherit it. Without it the second answer on one waits 40 ms for a delayed acknowledgement; asyncio
-    # sets it by itself only where the listening socket was made with the protocol named.
-    listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    # Connections inherit these. Without TCP_NODELAY the second answer on one waits 40 ms for a delayed acknowledgement;
+    # asyncio sets it by itself only where the listening socket was made with the protocol named.
+    options = {"TCP_NODELAY": 1, "TCP_USER_TIMEOUT": round(1e3 * ANSWER_SECONDS), "TCP_NOTSENT_LOWAT": _BUFFER}
+    for name in filter(partial(hasattr, socket), options):
+        listening.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), options[name])
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
     return listening
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Literal, Protocol
 
 import typer
@@ -24,6 +25,7 @@ from .pauses import pauses
 from .restarts import restarts
 from .room import room
 from .runaway import runaway
+from .stalls import ATTACKS, Attack, stall
 from .starts import starts
 from .suspends import suspends
 from .usage import Usage
@@ -57,6 +59,7 @@ def _all(context: typer.Context) -> None:
         lambda: _commits("postgresql"),
         _dask,
         _flood,
+        *(partial(_stall, attack) for attack in ATTACKS),
     ]
     failed = False
     for run in everything:
@@ -150,6 +153,15 @@ def _dask(
 def _flood(count: Annotated[int, typer.Option(help="How many of each kind.")] = 5, seed: Seed = 1) -> None:
     """Send an API endless bodies, addresses and headers, and hold half-open connections."""
     _report("flood", lambda: flood(count, seed))
+
+
+@app.command("stall")
+def _stall(
+    attack: Annotated[Attack, typer.Argument(help="What is sent.")],
+    seconds: Annotated[float, typer.Option(help="How long, s.")] = 30.0,
+) -> None:
+    """Send an API requests without the token and take no answers."""
+    _report(f"stall, {attack}", lambda: stall(attack, seconds))
 
 
 class Outcome(Protocol):

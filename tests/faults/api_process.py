@@ -6,10 +6,12 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import httpx
+import psutil
 
 from .lifeline import die_with_parent
 
@@ -36,6 +38,19 @@ class Api:
             return httpx.get(f"{self.url}api/v1/health/live", trust_env=False, verify=False, timeout=0.2).is_success
         except httpx.TransportError:
             return False
+
+    def until_it_answers(self) -> None:
+        """Wait until it answers. Raises `TimeoutError` where it does not start within a minute."""
+        end = time.monotonic() + 60.0
+        while not self.answers():
+            if time.monotonic() > end:
+                raise TimeoutError("the API did not start within a minute")
+            time.sleep(0.1)
+
+    @property
+    def process(self) -> psutil.Process:
+        """Its process."""
+        return psutil.Process(self._process.pid)
 
     def kill(self) -> None:
         """Kill it by SIGKILL and start it again."""

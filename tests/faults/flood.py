@@ -5,44 +5,21 @@ from __future__ import annotations
 import contextlib
 import random
 import socket
-import threading
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from functools import partial
 
 import httpx
 
 from .api_process import TOKEN, Api, api
 from .places import place
+from .watched import FILES, PATIENCE, Flooded, many_files, watched
 
-FILES = 1024
-"""Files that the API may open, as by `ulimit -n 1024`."""
-PATIENCE = 1.0
-"""s until a sign of life."""
 _JOB = (
     b"Host: localhost\r\nAuthorization: Bearer "
     + TOKEN.encode()
     + b"\r\nContent-Type: %s\r\nContent-Length: %d\r\n\r\n"
 )
-
-
-@dataclass
-class Flooded:
-    """Results of floods. slowest: of all signs of life, s. violations: what must not be, in words."""
-
-    requests: int = 0
-    signs: int = 0
-    slowest: float = 0.0
-    violations: list[str] = field(default_factory=list)
-
-    def line(self) -> str:
-        """Return the figures."""
-        return (
-            f"{self.requests} requests, {len(self.violations)} violations; "
-            f"{self.signs} signs of life, the slowest after {self.slowest:.2f} s"
-        )
 
 
 def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
@@ -51,61 +28,16 @@ def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
     patience: until a sign of life, s; more on a machine that is busy with something else.
     """
     flooded, random_ = Flooded(), random.Random(seed)
-    with place("sqlite") as where, _many_files(), api(where.address, FILES) as served:
-        _wait_for(served)
-        over = threading.Event()
-        watch = threading.Thread(target=_watch, args=(served, over, flooded, patience))
-        watch.start()
+    with place("sqlite") as where, many_files(), api(where.address, FILES) as served:
+        served.until_it_answers()
         kinds = [kind for kind in (_bodies, _large_jobs, _addresses, _headers, _slow_bodies) for _ in range(count)]
         random_.shuffle(kinds)
-        try:
+        with watched(served, flooded, patience):
             _half_open(served, flooded, 1100)
             for kind in kinds:
                 kind(served, flooded)
             _half_open(served, flooded, 1100)
-        finally:
-            over.set()
-            watch.join()
-        if not served.answers():
-            flooded.violations.append("the API does not answer after the flood")
     return flooded
-
-
-@contextlib.contextmanager
-def _many_files() -> Iterator[None]:
-    """Let this process open as many files as it may."""
-    import resource  # not on Windows
-
-    before = resource.getrlimit(resource.RLIMIT_NOFILE)
-    resource.setrlimit(resource.RLIMIT_NOFILE, (before[1], before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_NOFILE, before)
-
-
-def _wait_for(served: Api) -> None:
-    end = time.monotonic() + 60.0
-    while not served.answers():
-        if time.monotonic() > end:
-            raise TimeoutError("the API did not start within a minute")
-        time.sleep(0.1)
-
-
-def _watch(served: Api, over: threading.Event, flooded: Flooded, patience: float) -> None:
-    """Ask for a sign of life all the time, each on a connection of its own."""
-    while not over.wait(0.05):
-        begin = time.monotonic()
-        try:
-            fine = httpx.get(f"{served.url}api/v1/health/live", trust_env=False, verify=False, timeout=10.0).is_success
-        except httpx.TransportError as error:
-            fine = False
-            flooded.violations.append(f"no sign of life: {type(error).__name__}")
-        took = time.monotonic() - begin
-        flooded.signs += 1
-        flooded.slowest = max(flooded.slowest, took)
-        if fine and took > patience:
-            flooded.violations.append(f"a sign of life took {took:.2f} s")
 
 
 def _asked(served: Api, *parts: bytes) -> int:

@@ -19,6 +19,7 @@ from tests.faults.restarts import restarts
 from tests.faults.room import room
 from tests.faults.runaway import runaway
 from tests.faults.small_disk import small_disk
+from tests.faults.stalls import stall
 from tests.faults.starts import starts
 from tests.service.store import postgresql
 
@@ -83,6 +84,12 @@ def test_killed_dask_workers_and_schedulers_lose_no_evaluation() -> None:
 
 def test_no_flood_of_requests_keeps_others_out() -> None:
     flooded = flood(1, seed=1, patience=5.0)  # other tests run beside it
+    assert flooded.violations == []
+    assert flooded.signs > 10
+
+
+def test_answers_that_nobody_takes_cost_neither_room_nor_memory() -> None:
+    flooded = stall("many", 3.0, patience=5.0)  # other tests run beside it
     assert flooded.violations == []
     assert flooded.signs > 10
 
