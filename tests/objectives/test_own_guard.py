@@ -23,8 +23,7 @@ from slidercrank.objectives.own.worker import Worker
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere, only a group is ended")
 DESIGNS = np.array([[0.03, 0.1, 0.01]])
-SOON = 2.0
-"""s, within which nothing of a function is left."""
+SOON = 2.0  # s, within which nothing of a function is left
 MODULE = """
 import os, pathlib, random, signal, subprocess, sys, time
 
@@ -281,14 +280,8 @@ def test_what_a_function_prints_is_passed_on_up_to_a_bound(
 
 def test_a_printed_line_comes_at_once(worker: Callable[..., Worker], capfd: pytest.CaptureFixture[str]) -> None:
     worker("speaks")(Mechanism(), DESIGNS, None)
-    seen = ""
-
-    def has_come() -> bool:
-        nonlocal seen
-        seen += capfd.readouterr().err
-        return seen == "here 1.5\n"
-
-    until(has_come)
+    others = iter(lambda: capfd.readouterr().err, "here 1.5\n")
+    until(lambda: next(others, None) is None)
 
 
 def test_what_is_below_the_bound_is_passed_on_as_it_is(
