@@ -45,8 +45,8 @@ for _kind in {type(of) for of in FACTS.values()}:
 
 
 def listed(names: Collection[str]) -> str:
-    """Return the first of many names for a message, and where all are."""
-    few = ", ".join(list(names)[:_MOST_NAMES])
+    """Return the first of many names for a message, a job's own before all others, and where all are."""
+    few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
     more = len(names) - _MOST_NAMES
     return f"{few} and {more} more, all in `slidercrank schema` and slidercrank.quantities()" if more > 0 else few
 

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from ...objectives.registry import FACTS
 from ...objectives.units import closest, shown, spread
 
 _MOST_KEYS = 20  # that are told where none is near
@@ -46,6 +47,8 @@ _LIMITS = {
     "less_than": ("must be below {}", "lt"),
     "string_pattern_mismatch": ("must match the pattern {}", "pattern"),
     "string_too_long": ("must have at most {} characters", "max_length"),
+    "too_short": ("must have {} or more entries", "min_length"),
+    "too_long": ("must have at most {} entries", "max_length"),
     "literal_error": ("must be {}", "expected"),
     "enum": ("must be {}", "expected"),
 }
@@ -111,7 +114,7 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
     """
     table, key = loc[:-1], loc[-1]
     path = keys_of(table)
-    allowed = list(_properties(schema, table))
+    allowed = sorted(_properties(schema, table), key=FACTS.__contains__)  # a job's own quantities first
     more = f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
     possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
     place = key_of([*path, key])
@@ -172,9 +175,7 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
     if kind == "string_too_long":
         return f"{rule_of(details)}; {got}; shorten it"
     if kind in ("too_short", "too_long"):
-        most = kind == "too_long"
-        count = context["max_length" if most else "min_length"]
-        return f"must have at {'most' if most else 'least'} {count} entries; got {len(value)}{write}"
+        return f"{rule_of(details)}; got {len(value)}{write}"
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
         first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)

@@ -123,6 +123,22 @@ def test_what_is_wrong_with_an_amount_that_is_asked_for_is_told(more: dict[str, 
         parse_job(pusher(constraints=more))
 
 
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"objectives": {"price": "minimise"}}, 'objectives.price: unknown key "price"; possible here: mass, life, '),
+        ({"constraints": {"price": {"max": "3 EUR"}}}, 'unknown key "price"; possible here: mass, life, '),
+        ({"objectives": {"2 * price": "minimise"}}, 'is called "price"; the names are mass, life, '),
+    ],
+)
+def test_the_refusal_of_a_price_that_a_catalogue_lacks_begins_with_the_columns_that_it_has(
+    more: dict[str, Any], words: str
+) -> None:
+    table = "name,peak_torque max (N m),mass (kg),life (h),maker\nA,30,3.1,9000,Acme\nB,45,4.2,7000,Bolt\n"
+    with pytest.raises(JobError, match=re.escape(words)):
+        parse_job(pusher(table, **more))
+
+
 def test_notes_say_which_rows_lose_in_what_and_what_limits_nothing() -> None:
     text = "\n".join(notes_of(pusher()))
     assert "gearmotor: of 6 rows 1 is searched; the others lose in peak_torque max: GM 30 to GM 150, GM 45 to" in text
