@@ -12,6 +12,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ..model.input_warning import LONGEST
+
 System = Literal["metric", "inch"]
 """Systems of units that values are shown in. Inch: US customary units of machine design, lengths in inches."""
 
@@ -94,7 +96,7 @@ def _kind(
 
 
 _MM = face("in", _PER_INCH), face("mm", 1e3)
-LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, 10.0))
+LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, LONGEST))
 AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1.0 / _INCH**2))
 _DEG = face("deg", 57.29577951308232)
 ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
@@ -145,6 +147,8 @@ TIME = _kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
 """The kinds above, in their order: those of numbers of a job and of quantities."""
+SMALL_LENGTH = replace(LENGTH, example="0.1 mm")
+"""Steps and misses, which are shorter than links."""
 STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
 _PER_ANGLE = Kind("a length per angle", "m/rad", "", 0.0, per("mm/rad", 1e3), per("in/rad", _PER_INCH))
 _PER_SQUARED_ANGLE = Kind(

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
+from ..input_warning import warn_user
 from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
 from ..kinematics.position import Motion, motion
@@ -19,7 +20,17 @@ from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
 from .from_slider import CrankSolution, crank_solutions
 from .picture import Pose, figure, svg
-from .values import DIMENSIONS, Kinematics, PointMotion, dimensions, direction, in_a_turn, in_mm, numbers
+from .values import (
+    DIMENSIONS,
+    Kinematics,
+    PointMotion,
+    dimensions,
+    direction,
+    in_a_turn,
+    in_both_units,
+    in_mm,
+    numbers,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,8 +64,13 @@ class Linkage:
     branch: Branch
 
     def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
-        """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible."""
+        """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
+
+        Warns of lengths that were probably meant in mm.
+        """
         values = dimensions(crank, rod, offset)
+        if (doubt := in_both_units(value.real for value in values)) is not None:
+            warn_user(f"lengths of a linkage are in m: {doubt}")
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
         for name, value in zip(DIMENSIONS, values, strict=True):

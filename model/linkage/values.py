@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
+from ..input_warning import LONGEST, both_readings
 from ..kinematics.in_line import in_line
 
 DIMENSIONS = ("crank", "rod", "offset")
@@ -81,6 +83,18 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
     if np.any(rounding):
         values[2] = np.where(rounding, values[2] - real[2], values[2])
     return values[0], values[1], values[2]
+
+
+def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,) * 3) -> str | None:
+    """Return the first of crank, rod and offset, m, beyond any machine, as it is read and as it was probably meant.
+
+    None where there is no such length. longest: of each, m, that is believed.
+    """
+    for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
+        beyond = np.isfinite(size) & (np.abs(size) > limit)
+        if np.any(beyond):
+            return both_readings(name, first(size, beyond), "m", "mm", 1e3)
+    return None
 
 
 def direction(y: Array, x: Array) -> Array:

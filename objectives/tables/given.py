@@ -10,9 +10,9 @@ import numpy as np
 
 from ...model.arrays import Mask
 from ...model.errors import InputError, InputWarning
-from ...model.linkage.values import DIMENSIONS
+from ...model.input_warning import LONGEST
+from ...model.linkage.values import DIMENSIONS, in_both_units
 from ...model.machine.mechanism import Mechanism
-from ..kinds import LENGTH
 from ..quantity import Array
 
 _LEAST, _MOST = 1e-50, 1e50
@@ -71,18 +71,10 @@ def warn_of_lengths(of: object, designs: Array, greatest: Sequence[float] = (0.0
     """
     if _WARNED in vars(of):
         return
-    sizes = designs[..., :3]
-    limits = np.maximum(greatest, LENGTH.believed[1] if LENGTH.believed else np.inf)
-    found = np.argwhere(np.isfinite(sizes) & (abs(sizes) > limits))
-    if found.size:
+    doubt = in_both_units((designs[..., place] for place in range(3)), (max(LONGEST, size) for size in greatest))
+    if doubt is not None:
         vars(of)[_WARNED] = True
-        size = sizes[tuple(found[0])]
-        warnings.warn(
-            f"lengths of designs are in m: {DIMENSIONS[found[0][-1]]} {size:g} is {size:g} m = {1e3 * size:.6g} mm; "
-            f"write {1e-3 * size:g} for {size:g} mm",
-            InputWarning,
-            stacklevel=3,
-        )
+        warnings.warn(f"lengths of designs are in m: {doubt}", InputWarning, stacklevel=3)
 
 
 def countable(designs: Array) -> Mask:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from numbers import Real
 from typing import Literal
 
 from ...model.errors import InputError
+from ...model.input_warning import both_readings, warn_user
+from ...objectives.kinds import ANGLE
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.registry import QUANTITIES, listed
+from ...objectives.registry import FACTS, QUANTITIES, listed
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {
@@ -26,6 +28,7 @@ Word = Literal["min", "max", "equals"]
 """Words of a constraint's bounds."""
 RELATIONS: dict[Word, str] = {"min": "at least", "max": "at most", "equals": "exactly"}
 """The words as relations, in messages."""
+_TURN = 2.0 * math.pi
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")  # a `Problem` wants it as `expression.text_of` writes it
 
@@ -51,7 +54,10 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds ask a value."""
+    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds ask a value.
+
+    Warns of a bound that was probably meant in another unit.
+    """
 
     quantity: str
     lower: float | None = None
@@ -68,6 +74,7 @@ class Constraint:
             raise InputError(
                 f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
             )
+        _warn_of_units(self.quantity, {"lower": self.lower, "upper": self.upper})
 
     @property
     def equality(self) -> bool:
@@ -87,8 +94,10 @@ class Constraint:
 class Objective:
     """A quantity to minimise, to maximise, or to bring to a target (in its SI unit).
 
-    sense: "minimize" and "maximize" become "minimise" and "maximise". Raises `InputError` for any other word, and for a
-    name that no quantity can have; whether there is a quantity of the name the `Problem` knows, which may have its own.
+    sense: "minimize" and "maximize" become "minimise" and "maximise". Warns as `Constraint` does.
+
+    Raises `InputError` for any other word, and for a name that no quantity can have; whether there is a quantity of the
+    name the `Problem` knows, which may have its own.
     """
 
     quantity: str
@@ -102,6 +111,7 @@ class Objective:
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not _finite(self.target):
             raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_shown(self.target)}")
+        _warn_of_units(self.quantity, {"target": self.target})
 
 
 def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
@@ -133,6 +143,20 @@ def _sense(name: str, sense: object) -> Sense:
             "choose one of these"
         )
     return SENSES[sense]
+
+
+def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
+    """Warn of the first number, SI, of a size that the quantity has in its usual unit alone."""
+    kind = FACTS[quantity].kind if quantity in FACTS else None
+    if kind is None or kind.believed is None:
+        return
+    most = min(kind.believed[1], _TURN) if kind is ANGLE else kind.believed[1]
+    for name, number in numbers.items():
+        if number is not None and abs(number) > most > 0.0:
+            usual = kind.metric
+            doubt = both_readings(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
+            warn_user(f"requirements are in SI: {quantity}, {doubt}")
+            break
 
 
 def _finite(value: object) -> bool:

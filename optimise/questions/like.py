@@ -18,7 +18,8 @@ import numpy as np
 
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
-from ...model.linkage.values import DIMENSIONS
+from ...model.input_warning import warn_user
+from ...model.linkage.values import DIMENSIONS, in_both_units
 from ..front.dominance import beating
 from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling
@@ -95,7 +96,8 @@ def like(
 
     It is Pareto-optimal for the problem with them, and of those designs the nearest; empty, with the reason
     in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
-    `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`
+    `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`.
+    Warns of ends that were probably meant in mm.
     """
     require_front(front, "like")
     for item in constraints:
@@ -106,6 +108,9 @@ def like(
             )
     ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # refuses what is no row
+    ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
+    if (doubt := in_both_units(ends)) is not None:
+        warn_user(f"ranges of lengths are in m: {doubt}")
     table = {name: values[row] for name, values in front.columns.items()}
     return nearest(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
 
