@@ -84,6 +84,7 @@ class Commands(TyperGroup):
             raise
         except Exception as error:
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
+                _say_in_own_words(error)
                 raise
             if _short_of_memory(error):
                 say(_MORE_MEMORY)
@@ -113,6 +114,18 @@ def _input_warnings_said() -> Iterator[None]:
         warnings.showwarning = show
         warnings.simplefilter("always", InputWarning)
         yield
+
+
+def _say_in_own_words(error: Exception) -> None:
+    """Give a value of an option that its type refuses the sentence that a job would have."""
+    refused = error.__cause__
+    if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
+        return
+    from ..objectives.units import shown
+    from ..optimise.job.messages import rule_of
+
+    details = refused.errors(include_url=False)[0]
+    error.message = f"{rule_of(details)}; got {shown(details['input'])}"
 
 
 def _short_of_memory(error: BaseException | None) -> bool:

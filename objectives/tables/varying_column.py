@@ -22,6 +22,12 @@ def varying_column(varying: Varying) -> tuple[str, Face]:
     return name + unit.suffix, unit
 
 
+def number_in_words(name: str) -> str:
+    """Return a number of a job in words by its name or key, without a unit: "slider mass", "crank pin diameter"."""
+    words = re.sub("[._]", " ", name.removeprefix("mechanism."))
+    return re.sub("^sections pins (.+)", r"\1 diameter", words)
+
+
 def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, Face]]:
     """Return key and unit of every number of a design by name: crank, rod, offset, and those that vary besides."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask
 from ...model.errors import InputError
+from ...model.input_warning import warn_user
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
@@ -32,7 +33,7 @@ from .picking import Normalisation, Priority, by_range, knee, lexicographic, top
 from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
-from .rounding import ranges_or_sizes, rounding
+from .rounding import doubtful_misses, ranges_or_sizes, rounding
 from .rounding_search import Stage
 from .stationarity import STATIONARY, multipliers
 
@@ -268,7 +269,10 @@ class ParetoFront:
         allow: how far requirements may be missed, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. Where no rounded
         design within 32 steps meets all within that, the nearest are given, `met` is False; `misses` has the amounts.
         progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounding`.
+        Warns of an allowed miss without a unit that is more than a tenth of what is required.
         """
+        for doubt in doubtful_misses(self.part(row), allow or {}):
+            warn_user(f"allowed misses are in SI: {doubt}")
         for found in self.rounding(row, to, count=count, allow=allow):
             if isinstance(found, Rounded):
                 return found

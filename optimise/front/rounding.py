@@ -8,23 +8,30 @@ objective, in units of its range over the front; those that another one dominate
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from numbers import Integral, Real
 
 import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ...model.input_warning import both_readings
 from ...model.linkage.values import DIMENSIONS
+from ...objectives.kinds import LENGTH, SMALL_LENGTH
+from ...objectives.quantity import Quantity
 from ...objectives.units import shown, to_si
 from ..problem.problem import Problem
-from ..problem.requirements import Range
+from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE, constraints_of
 from .constant import spread
 from .rounded import Rounded
-from .rounding_search import RoundingSearch, Steps
+from .rounding_search import RoundingSearch, Steps, shown_number
 
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
+_LARGE = 0.1  # of a bound: a miss without a unit that was probably meant in another one
+_PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 
 
 def rounding(
@@ -59,7 +66,7 @@ def rounding(
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
     allowed = _allowed(part, allow or {})
     ranges = part.ranges
-    steps = _steps(to, ranges)
+    steps = _steps(to, part)
     moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
     told = [*notes, *_stays(given, ranges, steps)]
     own = {item.name: item.rule for item in part.discrete if item.name in moved}
@@ -100,12 +107,24 @@ def ranges_or_sizes(values: Array, of: Array, sizes: Sequence[float]) -> Array:
     return np.where(span > 0.0, span, np.where(own > 0.0, own, 1.0))
 
 
+def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
+    """Return both readings of allowed misses without a unit that are a great part of what is required."""
+    given, found = {name: value for name, value in allow.items() if not isinstance(value, str)}, []
+    bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
+    for name, value in _allowed(part, given).items():
+        of = part.quantity(name)
+        if of.unit.symbol != of.kind.unit and value > _LARGE * bounds[name]:
+            found.append(both_readings(name, value, of.kind.unit, of.unit.symbol, of.unit.factor))
+    return found
+
+
 def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float]:
-    """Return how far requirements may be missed, SI, by quantity."""
+    """Return how far requirements may be missed, SI, by quantity. A slow stroke that is required is not one of them."""
     if not isinstance(given, Mapping):
         raise InputError(f'what may be missed comes by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}')
-    constraints = {item.quantity: part.quantity(item.quantity) for item in constraints_of(part)}
-    names = {alias: name for name, of in constraints.items() for alias in (of.field, of.stem, name)}
+    constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
+    known = {name: part.quantity(name) for name in constraints}
+    names = {alias: name for name, of in known.items() for alias in (of.field, of.stem, name)}
     found: dict[str, float] = {}
     for name, value in given.items():
         if name not in names:
@@ -116,16 +135,26 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
         if names[name] in found:
             raise InputError(f"each requirement is allowed one miss; got two for {names[name]}; leave out one")
         try:
-            found[names[name]] = to_si(
-                value, constraints[names[name]].kind, sign="positive", plain=not isinstance(value, str)
-            )
+            found[names[name]] = _miss(value, known[names[name]], constraints[names[name]])
         except InputError as error:
             raise InputError(f"the allowed miss of {name} {error}") from None
     return found
 
 
-def _steps(to: float | Mapping[str, float], ranges: Mapping[str, Range]) -> dict[str, float]:
+def _miss(value: float | str, of: Quantity, constraint: Constraint) -> float:
+    """Return how far a requirement may be missed, SI. Raises `InputError`, with the amount that a percentage is."""
+    percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
+    if percent is not None and of.kind.unit:
+        bound = max(abs(bound) for _, bound in constraint.sides) * of.unit.factor
+        amount = f"{0.01 * float(percent[1]) * bound:.4g} {of.unit.symbol}"
+        raise InputError(f"must be {of.kind.name}, not a percentage; got {shown(value)}; write {shown(amount)}")
+    kind = SMALL_LENGTH if of.kind is LENGTH else of.kind
+    return to_si(value, kind, sign="positive", plain=not isinstance(value, str))
+
+
+def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
     """Return the step of each number that is to be rounded."""
+    ranges = part.ranges
     steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(DIMENSIONS, to)
     if not steps:
         raise InputError("say what to round: a step for all lengths, or one by name")
@@ -136,9 +165,10 @@ def _steps(to: float | Mapping[str, float], ranges: Mapping[str, Range]) -> dict
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
         if step < _SMALLEST * size:
+            given, least, most = (shown_number(part, name, value) for value in (step, _SMALLEST * size, size))
             raise InputError(
-                f"the step of {name} must be {_SMALLEST:g} of its range's greatest number or more; got {step:g} of "
-                f"{size:g} (SI); give a greater one"
+                f"the step of {name} must be at least {least}, {_SMALLEST:g} of {most}, the greatest in its range; got "
+                f"{given}; give a greater one"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 

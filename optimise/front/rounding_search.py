@@ -53,6 +53,12 @@ Steps = Generator[Stage, None, T]
 """A search that yields where it is and returns what it finds; closing it ends it."""
 
 
+def shown_number(part: Problem, name: str, value: float) -> str:
+    """Return a value, SI, of a number of a problem's designs in the unit that is shown for it."""
+    unit = columns_of_numbers(part.mechanism.varying)[name][1]
+    return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
+
+
 class RoundingSearch:
     """Search among the combinations of round numbers around a design."""
 
@@ -159,16 +165,12 @@ class RoundingSearch:
         found = [x for x in every if lower - room <= x <= upper + room and (side is None or side * x > 0.0)]
         if not found and reach == 1:
             raise InputError(
-                f"the step of {name} must have a multiple within its range, {self._told(name, lower)} to "
-                f"{self._told(name, upper)}{'' if side is None else ', on the side that slow_stroke asks for'}; got "
-                f"{self._told(name, step)}; give a smaller one, or none, so that it stays"
+                f"the step of {name} must have a multiple within its range, {shown_number(self.part, name, lower)} to "
+                f"{shown_number(self.part, name, upper)}"
+                f"{'' if side is None else ', on the side that slow_stroke asks for'}; got "
+                f"{shown_number(self.part, name, step)}; give a smaller one, or none, so that it stays"
             )
         return found
-
-    def _told(self, name: str, value: float) -> str:
-        """Return a number of a design in its shown unit."""
-        unit = columns_of_numbers(self.part.mechanism.varying)[name][1]
-        return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
 
     def _reaches(self) -> list[int]:
         """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""

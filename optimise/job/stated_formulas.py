@@ -16,6 +16,7 @@ from ...objectives.formula.formulas import Units, is_formula, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
+from ...objectives.tables.varying_column import number_in_words
 from ...objectives.units import is_value, kind_for
 from .amounts import amounts_in, kinds_of_amounts
 from .catalogue import with_options
@@ -53,7 +54,7 @@ def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
     kinds = _Kinds(tables)
     own = [OwnName(name, _title(name, part), kinds.own(name)) for name, part in kinds.stated.items()]
     own += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
-    return [*own, *(OwnName(path, _words(path), kind) for path, kind in kinds.varying)]
+    return [*own, *(OwnName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
 
 
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
@@ -87,10 +88,6 @@ def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, s
                 bound = bounds.get(word)
                 if isinstance(bound, str) and is_formula(bound, kinds.names):
                     yield key_of([table, name, word]), bound
-
-
-def _words(path: str) -> str:
-    return path.removeprefix("mechanism.").replace("_", " ").replace(".", " ")
 
 
 def _title(name: str, part: Mapping[str, Any]) -> str:

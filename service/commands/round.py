@@ -91,10 +91,10 @@ def _rounded_up(amount: float) -> float:
 def _show(title: str, record: dict[str, Any], found: Rounded, units: System) -> None:
     """Write the designs as the columns of a table, and what the first costs. record: in the units."""
     screen = console()
-    steps = ", ".join(_told(key, value) for key, value in record["steps"].items())
-    screen.print(f"{title}, rounded: {steps}", style="bold", soft_wrap=True)
-    screen.print()
     given, designs = record["given"], record["designs"]
+    steps = (f"{find_column(key, given).title} {_told(key, value)}" for key, value in record["steps"].items())
+    screen.print(f"{title}, rounded: {', '.join(steps)}", style="bold", soft_wrap=True)
+    screen.print()
     heads = [f">{number}" for number in range(1, len(designs) + 1)]
     rows = table("quantity", "unit", ">given", *heads, ruled=True, padding=(0, 2, 0, 0), pad_edge=True)
     wanted = [found.problem.quantity(item.quantity) for item in found.problem.objectives]
@@ -138,7 +138,7 @@ def _requirements(row: dict[str, Any], found: Rounded, units: System) -> str:
     if any(item.equality for item in found.constraints if item.quantity == row["tightest"]):
         return f"tightest is {of.title}, which is required exactly"
     key = key_in(f"slack_{of.field}", units)[0]
-    return f"tightest is {of.title}, slack {_told(key, row[key], bare=True)}"
+    return f"tightest is {of.title}, slack {_told(key, row[key])}"
 
 
 def _missed(miss: dict[str, Any]) -> str:
@@ -147,8 +147,6 @@ def _missed(miss: dict[str, Any]) -> str:
     return f"{miss['title']} by {amount} ({miss['side']}{allowed})"
 
 
-def _told(key: str, value: float, *, bare: bool = False) -> str:
-    """Return a value with the unit of its key, after its name unless bare."""
-    plain, unit, _ = split_unit(key)
-    number = f"{value:.4g} {unit}".strip()
-    return number if bare else f"{plain.replace('_', ' ')} {number}"
+def _told(key: str, value: float) -> str:
+    """Return a value with the unit of its key."""
+    return f"{value:.4g} {split_unit(key)[1]}".strip()

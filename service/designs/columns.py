@@ -59,10 +59,11 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     key = _meant(name, keys) if same is None else same
     plain, unit, factor = split_unit(key)
     from ...objectives.quantity import Group
+    from ...objectives.tables.varying_column import number_in_words
 
     slack = key.startswith("slack_")
     title = _titles().get(
-        metric_key(key).removeprefix("slack_"), plain.removeprefix("slack_").removeprefix("choice_").replace("_", " ")
+        metric_key(key).removeprefix("slack_"), number_in_words(plain.removeprefix("slack_").removeprefix("choice_"))
     )
     return Column(
         key,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.kinds import LENGTH, Kind, System, shown_in
+from ...objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
 from ...objectives.units import shown
 from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
@@ -40,6 +39,8 @@ def steps_of(to: Sequence[str], part: Problem, *, key: str) -> dict[str, float]:
     for text in to:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
         name = metric_key(name)
+        if not value:
+            raise InputError(f"{key} is a step, or a name, = and a step; got {shown(text)}; write it like {_EXAMPLE}")
         if equals and name not in names:
             raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_EXAMPLE}")
         one = names[name] if equals else ""
@@ -74,7 +75,7 @@ def _step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, read as in a job."""
     from ...optimise.job.grids import step_of
 
-    small = replace(kind, example="0.1 mm") if kind is LENGTH else kind  # not as long as a link
+    small = SMALL_LENGTH if kind is LENGTH else kind
     return step_of(text, lambda given: value_of(key, str(given), small, sign="positive"))
 
 

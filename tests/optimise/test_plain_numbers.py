@@ -7,6 +7,7 @@ import random
 import warnings
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -259,3 +260,66 @@ def test_a_job_of_values_with_units_is_read_once(monkeypatch: pytest.MonkeyPatch
     read.clear()
     parse_job(put("mechanism.speed", 12.0))
     assert read.count(["20 mm", "200 mm"]) == 2  # the numbers without a unit are named by a refusal
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            {"quantity": "transmission_angle", "lower": 90},
+            "requirements are in SI: transmission_angle, lower = 90 is 90 rad = 5156.62 deg; write 1.5708 for 90 deg",
+        ),
+        (
+            {"quantity": "stroke", "lower": 0.1, "upper": 150.0},
+            "requirements are in SI: stroke, upper = 150 is 150 m = 150000 mm; write 0.15 for 150 mm",
+        ),
+        (
+            {"quantity": "displacement_volume", "upper": 500},
+            "requirements are in SI: displacement_volume, upper = 500 is 500 m^3 = 5e+08 cm^3; write 0.0005 for 500 "
+            "cm^3",
+        ),
+    ],
+)
+def test_a_bound_in_python_that_was_meant_in_another_unit_is_warned_of_once(given: dict[str, Any], said: str) -> None:
+    with pytest.warns(InputWarning) as found:
+        sc.Constraint(**given)
+    assert [str(warning.message) for warning in found] == [said]
+    assert found[0].filename == __file__
+
+
+def test_targets_and_changed_bounds_are_warned_of_too() -> None:
+    with pytest.warns(InputWarning, match="stroke, target = 150 is 150 m = 150000 mm"):
+        sc.Objective(quantity="stroke", sense="target", target=150)
+    fine = sc.Constraint(quantity="stroke", upper=0.15)
+    with pytest.warns(InputWarning, match="stroke, upper = 150 is 150 m"):
+        long = replace(fine, upper=150.0)
+    replace(sc.problem(PRESS), constraints=(long,))  # the warning is that of the line that stated the number
+
+
+def test_bounds_in_si_of_machines_and_bounds_with_units_never_warn() -> None:
+    draw = random.Random(351)
+    for _ in range(60):
+        sc.Constraint(quantity="stroke", upper=10.0 ** draw.uniform(-4.0, 1.0))
+        sc.Constraint(quantity="transmission_angle", lower=draw.uniform(0.0, math.pi / 2.0))
+        sc.Constraint(quantity="peak_torque", upper=10.0 ** draw.uniform(-3.0, 6.0))
+        sc.Constraint(quantity="position_error", upper=10.0 ** draw.uniform(-7.0, -3.0))
+    digger = put("constraints.stroke", {"min": "11 m", "max": "30 m"})
+    problem = sc.problem(digger, require_feasible=False)
+    assert [(of.lower, of.upper) for of in problem.constraints] == [(11.0, 30.0)]
+
+
+def test_allowed_misses_and_ranges_in_python_that_were_meant_in_mm_are_warned_of() -> None:
+    tables = put("constraints.stroke", {"equals": "150 mm"}) | {"optimiser": {"designs": 3, "samples": 64}}
+    front = sc.solve(sc.problem(tables))
+    with pytest.warns(InputWarning) as found:
+        front.rounded(0, 0.001, allow={"stroke": 0.2}, count=1)
+    assert [(str(warning.message), warning.filename) for warning in found] == [
+        ("allowed misses are in SI: stroke 0.2 is 0.2 m = 200 mm; write 0.0002 for 0.2 mm", __file__)
+    ]
+    for allowed in (0.0002, "0.2 mm", "20 mm", 0.015):
+        front.rounded(0, 0.001, allow={"stroke": allowed}, count=1)
+    with (
+        pytest.warns(InputWarning, match="ranges of lengths are in m: rod 400 is 400 m = 400000 mm; write 0.4"),
+        pytest.raises(sc.InputError),
+    ):
+        sc.like(front, 0, ranges={"rod": (None, 400.0), "crank": (0.1, 0.02)})

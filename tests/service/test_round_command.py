@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import tomllib
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.runs.stored_runs import problem_of, read_run
 from tests.service import fronts
 from tests.service.conftest import Command
+from tests.service.weak_pins import TABLES
 
 BAND = 'stroke = { min = "280 mm", max = "282 mm" }'
 RATIO = "friction.guide = [0.05, 0.15]"
@@ -176,7 +179,8 @@ def test_a_search_that_is_interrupted_ends_with_exit_code_130(
         (1, ["0.5"], "--to must be a length with its unit"),
         (1, ["1/0 in"], '--to must be a length; got "1/0 in"'),
         (1, ["1/32 kg"], '--to must be a length; got "1/32 kg"'),
-        (1, ["crank="], "--to must be a length"),
+        (1, ["crank="], '--to is a step, or a name, = and a step; got "crank="; write it like "0.5 mm" or "rod=1 mm"'),
+        (1, [""], '--to is a step, or a name, = and a step; got ""; write it like'),
         (1, ["crank=1 kg"], "--to must be a length"),
         (1, ["mechanism.slider.mass=1 mm"], "--to must be a mass"),
         (1, ["rood=1 mm"], "--to is for crank, rod, offset, mechanism.slider.mass; got 'rood'"),
@@ -184,7 +188,16 @@ def test_a_search_that_is_interrupted_ends_with_exit_code_130(
         (1, ["1 mm", "2 mm"], "got that of all lengths twice"),
         (1, ["rod=1 mm", "rod_in=2 mm"], "got rod twice"),
         (1, ["rod=700 mm"], "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
-        (1, ["1e-12 mm"], "the step of crank must be 1e-09 of"),
+        (
+            1,
+            ["1e-9 mm"],
+            "the step of crank must be at least 2e-07 mm, 1e-09 of 200 mm, the greatest in its range; got 1e-09 mm",
+        ),
+        (
+            1,
+            ["mechanism.slider.mass=1e-13 kg"],
+            "slider.mass must be at least 2.05e-09 kg, 1e-09 of 2.05 kg, the greatest in its range; got 1e-13 kg",
+        ),
         (1, ["1 kg"], 'got "1 kg", which is a mass; write it like "0.1 mm"'),
     ],
 )
@@ -206,7 +219,12 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
             'only requirements of this job may be missed: transmission_angle, stroke; got "strok"; name one of them',
         ),
         (["stroke=0.1"], "the allowed miss of stroke must be a length with its unit"),
-        (["stroke=1 deg"], "the allowed miss of stroke must be a length"),
+        (["stroke=1 deg"], 'stroke must be a length; got "1 deg", which is an angle; write it like "0.1 mm"'),
+        (
+            ["stroke=1 %"],
+            'the allowed miss of stroke must be a length, not a percentage; got "1 %"; write "2.82 mm"',
+        ),
+        (["transmission_angle=.5%"], 'must be an angle, not a percentage; got ".5%"; write "0.2 deg"'),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
         (["0.1 mm"], '--allow is a requirement, =, and by how much it may be missed; got "0.1 mm"'),
         (["stroke=1 mm", "stroke=2 mm"], "--allow gives each requirement once; got stroke twice"),
@@ -220,6 +238,41 @@ def test_a_wrong_allowance_is_one_sentence_and_exit_code_2(
     assert (done.exit_code, done.stdout) == (2, "")
     assert words in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_a_count_of_none_is_refused_in_the_words_of_a_job(banded: Path, command: Command) -> None:
+    done = command("round", "latest", 1, "--runs", banded, "--to", "1 mm", "--count", "0")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.endswith("Error: Invalid value for '--count': must be at least 1; got \"0\"\n")
+
+
+def test_a_slow_stroke_is_no_requirement_that_may_be_missed_and_a_time_ratio_beside_it_is(
+    tmp_path: Path, command: Command
+) -> None:
+    text = fronts.job_file(tmp_path).read_text().replace("[constraints]", '[constraints]\nslow_stroke = "inward"')
+    for name, asked in (("slow", ""), ("ratio", "\ntime_ratio = { min = 1.1 }")):
+        job = tmp_path / f"{name}.toml"
+        job.write_text(text.replace("[constraints]", f"[constraints]{asked}"))
+        assert command("optimise", job, "--runs", tmp_path / name, "--no-figures").exit_code == 0
+    options = ("--to", "1 mm", "--count", "1", "--allow", "time_ratio=0.01", "--allow", "stroke=1 mm")
+    done = command("round", "latest", 1, "--runs", tmp_path / "slow", *options)
+    assert done.exit_code == 2
+    assert 'may be missed: transmission_angle, stroke; got "time_ratio"' in done.stderr
+    assert command("round", "latest", 1, "--runs", tmp_path / "ratio", *options).exit_code == 0
+
+
+def test_a_pin_is_called_by_what_it_is(tmp_path: Path, command: Command) -> None:
+    tables: dict[str, Any] = deepcopy(TABLES)
+    tables["variables"]["sections"] = {"pins": {"crank_pin": ["5 mm", "15 mm"]}}
+    (tmp_path / "job.json").write_text(json.dumps(tables))
+    done = command("optimise", tmp_path / "job.json", "--runs", tmp_path / "runs", "--no-figures")
+    assert done.exit_code == 0, done.output
+    steps = ("--to", "1 mm", "--to", "sections.pins.crank_pin=0.5 mm")
+    done = command("round", "latest", 1, "--runs", tmp_path / "runs", *steps, "--count", "1")
+    assert done.exit_code == 0, done.output
+    assert "rod 1 mm, offset 1 mm, crank pin diameter 0.5 mm" in done.stdout
+    assert re.search("^ *crank pin diameter +mm", done.stdout, re.MULTILINE)
+    assert "sections pins" not in done.stdout + command("front", "latest", "--runs", tmp_path / "runs").stdout
 
 
 def test_a_formula_is_named_as_it_is_written(tmp_path: Path, command: Command) -> None:

@@ -88,9 +88,9 @@ function nameOf(path) {
   return path.map((key) => (typeof key === "number" ? key + 1 : key)).join(".");
 }
 
-/** Return a name in words: "mechanism.slider.mass" is "slider mass". @param {string} name */
+/** Return a name in words: "mechanism.slider.mass" is "slider mass", "sections.pins.crank_pin" is "crank pin diameter". @param {string} name */
 export function titleOf(name) {
-  return words(name.replace(/^mechanism\./, "").replaceAll(".", " "));
+  return words(name.replace(/^mechanism\./, "").replace(/^sections\.pins\.(.+)/, "$1 diameter").replaceAll(".", " "));
 }
 
 /** @param {Form.Whole} form @param {string} name */
