@@ -131,8 +131,8 @@ def wanted_of(problem: Problem) -> list[Wanted]:
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
     from ...optimise.problem.zero_objectives import idle_rules
-    from ...optimise.questions.loaded_stroke import front_warnings
     from ...optimise.search.driving_loads import front_driven_by_loads
+    from ...optimise.search.loaded_stroke import front_warnings
 
     found = len(front) > 0
     several = found and len(front.objectives) > 1

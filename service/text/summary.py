@@ -27,9 +27,9 @@ from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
-from ...optimise.questions.loaded_stroke import expected_warnings
 from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import Sheet, sheets
+from ...optimise.search.loaded_stroke import expected_warnings
 
 _MOST_VALUES = 6  # of a variable that are all told
 

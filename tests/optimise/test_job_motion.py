@@ -14,7 +14,7 @@ from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.notes import notes_of
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.questions.loaded_stroke import expected_warnings
+from slidercrank.optimise.search.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {

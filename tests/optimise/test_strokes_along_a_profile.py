@@ -13,8 +13,8 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.questions.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.solve import solve
 from tests.optimise.test_slow_stroke import job as steady_job
 
@@ -212,9 +212,11 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_by_the_times() -> None:
     problem = parse_job(job(**small, mechanism={"speed_profile": {"sines": [-0.8]}}))
     (before,), (after,) = expected_warnings(problem), front_warnings(solve(problem))
     assert before.startswith(
-        "in every sampled design the stroke that the load acts against, the outward one, is the fast one"
+        "in every sampled design the working stroke (the outward one, against the load) is the faster one"
     )
-    assert after.startswith("in 8 of 8 designs the stroke that the load acts against, the outward one, is the fast one")
+    assert after.startswith(
+        "in 8 of 8 designs the working stroke (the outward one, against the load) is the faster one"
+    )
 
 
 def solved(**changes: Any) -> tuple[Problem, ParetoFront]:

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job, with_files
-from slidercrank.optimise.questions.loaded_stroke import expected_warnings
+from slidercrank.optimise.search.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.preview import AllowedModel, PreviewModel
 from slidercrank.service.cli import app

@@ -13,8 +13,8 @@ from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
-from ..search.elimination import signs
-from ..search.samples import samples
+from .elimination import signs
+from .samples import samples
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
@@ -27,9 +27,11 @@ def expected_warnings(problem: Problem) -> list[str]:
     """
     if problem.motion is not None:  # forth and back are told apart by their drive alone
         return []
+    if not problem.mechanism.loads or problem.slow_stroke is not None:  # it spares most problems the samples
+        return _left_out(problem)
     fast, turning, sides = 0, 0, []
     for part, designs in samples(problem):
-        if part.slow_stroke is not None or not part.mechanism.loads or not len(designs):
+        if part.slow_stroke is not None or not len(designs):
             continue
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
         slow = np.atleast_1d(slow_stroke(part.mechanism, linkage))
@@ -92,7 +94,7 @@ def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
     turn = "" if has else ", with an offset of the other sign or the crank turning the other way"
     other = "inward" if stroke == "outward" else "outward"
     return (
-        f"{where} the stroke that the load acts against, the {stroke} one, is the fast one; if it is to be slow, "
-        f'require slow_stroke = "{stroke}" among the constraints{turn}; if it is meant so, require '
+        f"{where} the working stroke (the {stroke} one, against the load) is the faster one; for a slow working stroke "
+        f'require slow_stroke = "{stroke}" among the constraints{turn}; if it should be fast, require '
         f'slow_stroke = "{other}"'
     )
