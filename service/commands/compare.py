@@ -118,11 +118,11 @@ def _method(folder: Path) -> str:
         record = json_format.loads((folder / "front.json").read_text(encoding="utf-8"))
     if isinstance(record.get("method"), str):
         return str(record["method"])
-    from ...optimise.job import load_job
+    from ...optimise.job import parse_job, read_job
 
     job = job_file(folder)
     with contextlib.suppress(SlidercrankError):  # written for another version: the fronts compare all the same
-        return "unknown" if job is None else load_job(job).settings.method
+        return "unknown" if job is None else parse_job(read_job(job), folder=folder).settings.method
     return "unknown"
 
 

@@ -77,15 +77,16 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
 def problem_of(folder: Path, result: Result) -> Problem:
     """Return the problem that a run solved: its job, with the seed of the run.
 
-    Raises `RunError` for a run without a job, or with one that is not valid any more.
+    No warnings about the job: the result of the run has those of its own designs. Raises `RunError` for a run without a
+    job, or with one that is not valid any more.
     """
-    from ...optimise.job import load_job
+    from ...optimise.job import parse_job, read_job
 
     job = job_file(folder)
     if job is None:
         raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")
     try:
-        problem = load_job(job)
+        problem = parse_job(read_job(job), folder=folder)
     except JobError as error:
         raise RunError(f"the job of the run {folder} cannot be read: {error}; run it again") from error
     return replace(problem, settings=replace(problem.settings, seed=result.seed))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,6 +39,22 @@ def test_check_says_of_a_load_what_it_does_and_questions_one_that_pushes(tmp_pat
     found = command("check", job).stdout
     assert "load: 350 N inward, resists the outward stroke, from 60 mm before" in found
     assert "do more work" not in found
+
+
+def test_a_run_has_the_same_numbers_on_the_terminal_and_in_its_report(tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    job.write_text(job.read_text().replace('{ equals = "280 mm" }', '{ min = "200 mm", max = "280 mm" }') + PUSH)
+    place, file = tmp_path / "runs", tmp_path / "report.html"
+    assert command("optimise", job, "--runs", place, "--no-figures").exit_code == 0
+    told = re.findall(
+        r"more work on the machine than they take, by .*? a cycle", command("front", "latest", "--runs", place).output
+    )
+    assert len(told) == 1
+    reported = command("report", "latest", "--runs", place, "--design", 1, "--out", file)
+    assert told[0] in file.read_text(encoding="utf-8")
+    for done in (reported, command("analyse", "latest", "--runs", place, "--design", 1)):
+        assert done.exit_code == 0, done.output
+        assert "sampled" not in done.output
 
 
 def test_a_report_of_a_design_says_both_too() -> None:
