@@ -22,13 +22,13 @@ from ..designs.requirements import names_of, ranges_of, requirements_of, speed_r
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.variation import variation_of, with_numbers
-from ..designs.violations import violated_by
+from ..designs.violations import violated_by, violations_in_words
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
 from ..topics.design_analysis import analysis_of, determined, numbers_of, numbers_of_swing
 from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .cycle import CurvesModel, CycleModel, cycle_model
-from .fronts import Cells, ColumnModel, OfDesign, Violated, column_models
+from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
 from .job_requests import given_problem
 from .models import PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
@@ -145,8 +145,8 @@ class WhatIfModel(OfDesign):
     design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
     requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
     designs of the front that are as good in every objective and better in one; dominates: of those that it beats so;
-    the greatest difference first, at most 20. violated: as of a design of the front. cycle: null if no curves were
-    asked for.
+    the greatest difference first, at most 20. violated, violations: as of a design of the front. cycle: null if no
+    curves were asked for.
     """
 
     columns: list[ColumnModel]
@@ -155,6 +155,7 @@ class WhatIfModel(OfDesign):
     broken: list[str] = Field(examples=[["stroke_mm"]])
     outside: list[str] = Field(examples=[[]])
     violated: Violated
+    violations: Violations
     dominated_by: list[int] = Field(examples=[[12, 4]])
     dominated_by_count: int = Field(examples=[2])
     dominates: list[int] = Field(examples=[[]])
@@ -249,6 +250,7 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     changed = variation_of(stored, found.result, found.minimised)
     row, undefined = determined(changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion)
     cycle = cycle_model(stored, asked.angles) if asked.angles else None
+    violated = violated_by(stored.mechanism, row)
     return WhatIfModel(
         job=found.job.id,
         number=design,
@@ -257,7 +259,8 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
         undefined=undefined,
         broken=changed.broken,
         outside=changed.outside,
-        violated=json_ready(violated_by(stored.mechanism, row)),
+        violated=json_ready(violated),
+        violations=violations_in_words(violated, row),
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
         dominated_by_count=len(changed.dominated_by),
         dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],

@@ -15,13 +15,13 @@ from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets, part_of
-from ..designs.violations import violated_by
+from ..designs.violations import front_violations_in_words, violated_by, violations_in_words
 from ..page.router import tagged
 from ..runs.result import Cell, json_ready
 from .models import PLAIN_DIGITS, JobNumber
 from .problems import problem_responses, tagged_json
 from .settings import StoreDep
-from .stored_fronts import DesignNumber, FrontDep, StoredFront
+from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
@@ -76,6 +76,15 @@ ViolatedOfAll = Annotated[
 ]
 
 
+Violations = Annotated[
+    list[str],
+    Field(
+        description="allowable values that are violated, a sentence each, in metric units",
+        examples=[["shear of the crank pin is 642 MPa, 440 MPa more than the allowed 202 MPa (shear yield strength)"]],
+    ),
+]
+
+
 class FrontModel(BaseModel):
     """The front that a job found, without its designs."""
 
@@ -101,6 +110,7 @@ class FrontModel(BaseModel):
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
     warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
     violated: ViolatedOfAll = {}
+    violations: Violations
     discrete: dict[str, Any] | None = Field(
         None,
         description="how designs of discrete values were found, and the best of each objective with continuous ones",
@@ -150,6 +160,7 @@ class DesignModel(OfDesign):
     columns: list[ColumnModel]
     design: Cells = Field(examples=[_EXAMPLE])
     violated: Violated
+    violations: Violations
 
 
 class ColumnsModel(BaseModel):
@@ -165,11 +176,12 @@ class ColumnsModel(BaseModel):
 
 
 @router.get("/jobs/{number}/front")
-def show_front(number: JobNumber, store: StoreDep) -> FrontModel:
+def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontModel:
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
     record = json_ready(store.record(number))
-    keys = record.pop("columns")
-    return FrontModel(**record, job=number, columns=column_models(all_columns(keys)))
+    columns = column_models(all_columns(record.pop("columns")))
+    said = front_violations_in_words(fronts.of(number).result) if record.get("violated") else []
+    return FrontModel(**record, job=number, columns=columns, violations=said)
 
 
 @router.get("/jobs/{number}/pick")
@@ -241,9 +253,15 @@ def list_designs(
 def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
-    columns = column_models(found.columns)
-    violated = json_ready(violated_by(found.design(design).mechanism, row))
-    return DesignModel(job=found.job.id, number=design, columns=columns, design=json_ready(row), violated=violated)
+    violated = violated_by(found.design(design).mechanism, row)
+    return DesignModel(
+        job=found.job.id,
+        number=design,
+        columns=column_models(found.columns),
+        design=json_ready(row),
+        violated=json_ready(violated),
+        violations=violations_in_words(violated, row),
+    )
 
 
 @router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))

@@ -15,7 +15,7 @@ import slidercrank as sc
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.designs.selection import part_of
 from slidercrank.service.designs.stored_designs import front_of
-from slidercrank.service.designs.violations import violations_in_words
+from slidercrank.service.designs.violations import front_violations_in_words, violations_in_words
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph
 from slidercrank.service.report.subject import Subject
@@ -126,6 +126,11 @@ def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> 
         lengths = {"crank_mm": 50.0, "rod_mm": 200.0, "offset_mm": 20.0, "angles": 0}
         changed = client.post(f"{path}/designs/2/what-if", json=lengths).json()
         assert changed["violated"] == pytest.approx(expected(changed["design"]), rel=1e-12)
+        metric, own = result(), client.get(f"{path}/designs/2").json()
+        assert front["violations"] == front_violations_in_words(metric)
+        assert own["violations"] == violations_in_words(own["violated"], own["design"])
+        assert changed["violations"] == violations_in_words(changed["violated"], changed["design"])
+        assert {len(each["violations"]) for each in (front, own, changed)} == {len(ALLOWED)}
         known = {of["name"]: of for of in client.get("/api/v1/quantities").json()["quantities"]}
     assert known[SHEAR]["allowed_by"] == "shear yield strength of the material"
     assert known["stroke"]["allowed_by"] == ""

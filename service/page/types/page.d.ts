@@ -72,8 +72,8 @@ declare namespace Page {
     name: string;
     series: number | string;
     row: Api.Row;
-    /** By how much it goes beyond allowable values, by column. */
-    violated: Api.WhatIf["violated"];
+    /** Sentences on the allowable values that it violates. */
+    violations: string[];
     curves: Api.Curves;
     curveColumns: Api.Column[];
     /** Places in the cycle of the inner and the outer dead centre, or of both ends of a swing. */

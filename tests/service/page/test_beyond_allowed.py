@@ -9,6 +9,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
+from slidercrank.service.designs.violations import front_violations_in_words
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import API, put_in
 from tests.service.page.accessibility import require_accessible
@@ -32,8 +33,12 @@ def test_a_front_says_in_how_many_designs_what_is_allowed_is_exceeded(opened: tu
     count = len(result().designs)
     worst = max(float(str(row["pin_shear_crank_pin_MPa"])) for row in result().designs)
     said = page.get_by_text("Beyond what is allowed: shear of the crank pin in")
-    expect(said).to_contain_text(f"in {count} of {count} designs, at worst {worst:.4g}\u00a0MPa")
-    expect(said).to_contain_text("more than the allowed 202.1\u00a0MPa (shear yield strength of the material)")
+    expect(said).to_contain_text(f"in {count} of {count} designs, at worst {worst:.4g} MPa")
+    expect(said).to_contain_text("more than the allowed 202.1 MPa (shear yield strength of the material)")
+    sentences = front_violations_in_words(result())
+    expect(page.get_by_text("Beyond what is allowed: ")).to_have_text(
+        [f"Beyond what is allowed: {s}." for s in sentences]
+    )
 
 
 def test_a_design_says_what_it_goes_beyond_and_so_does_what_if(opened: tuple[Page, str, str]) -> None:
@@ -44,7 +49,8 @@ def test_a_design_says_what_it_goes_beyond_and_so_does_what_if(opened: tuple[Pag
     own = httpx.get(f"{api}/designs/2").json()
     by = own["violated"]["pin_shear_crank_pin_MPa"]
     expect(said.first).to_contain_text("Design 2, beyond what is allowed: shear of the crank pin is")
-    expect(said.first).to_contain_text(f"{by:.4g}\u00a0MPa more than the allowed")
+    expect(said.first).to_contain_text(f"{by:.4g} MPa more than the allowed")
+    assert said.first.inner_text().removeprefix("Design 2, beyond what is allowed: ").rstrip(".") in own["violations"]
     expect(said.last).to_contain_text("Design 1, beyond")
     require_accessible(page)
     query = "&".join(f"{key}={value}" for key, value in LENGTHS.items())

@@ -10,8 +10,8 @@ import { withResultants } from "./panels.js";
  */
 export async function loadDesign(job, number, series, signal) {
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
-  const [{ design, columns, violated }, cycle] = await Promise.all([get(path, {}, signal), get(`${path}/curves`, {}, signal)]);
-  return { number, name: `Design ${number}`, series, row: design, columns, violated, ...cycleOf(cycle) };
+  const [{ design, columns, violations }, cycle] = await Promise.all([get(path, {}, signal), get(`${path}/curves`, {}, signal)]);
+  return { number, name: `Design ${number}`, series, row: design, columns, violations, ...cycleOf(cycle) };
 }
 
 /** Return the lengths of a design. @type {(row: Api.Row) => Page.Lengths} */

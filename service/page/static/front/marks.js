@@ -1,10 +1,9 @@
 /** Marked designs of a front: the extremes, the knee with its trade-offs, and the choice by weights. */
 
 import { get, isAbort, statusOf } from "../lib/api.js";
-import { beyond } from "../lib/beyond.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { apiSystem, withUnit } from "../lib/numbers.js";
+import { apiSystem, inShownUnits, withUnit } from "../lib/numbers.js";
 import { inWords } from "../lib/words.js";
 import { smallLinkage } from "../mechanism/small.js";
 import { namesOf } from "./marked.js";
@@ -96,23 +95,6 @@ export function marksPanel(explorer) {
         h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.focus(row), onblur: () => explorer.focus(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of)));
   }
 
-  /** Say which allowable values designs violate: in how many, and by how much at worst. */
-  async function drawBeyond() {
-    const keys = Object.keys(front.violated);
-    if (!keys.length) return;
-    await data.need(keys);
-    /** @type {Record<string, { value: Api.Row[string], by: number, verb: string }>} */
-    const worst = {};
-    for (const [key, list] of Object.entries(front.violated)) {
-      const by = list.map(Number);
-      const row = by.indexOf(Math.max(...by));
-      const verb = by.length > 1 ? `in ${by.filter((one) => one > 0).length} of ${by.length} designs, at worst` : "is";
-      worst[key] = { value: data.cell(key, row), by: by[row], verb };
-    }
-    const sentences = await beyond(worst);
-    fill(beyondAllowed, sentences.map((sentence) => h("p", { class: "error" }, `Beyond what is allowed: ${sentence}.`)));
-  }
-
   /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
   async function drawCosts() {
     if (!front.trade_offs.length || front.knee === null) return;
@@ -131,7 +113,7 @@ export function marksPanel(explorer) {
     off.hidden = !chosen.weights;
     ask();
     if (what !== "all") return;
-    drawBeyond().catch((problem) => !isAbort(problem) && sayProblem(problem));
+    fill(beyondAllowed, front.violations.map((sentence) => h("p", { class: "error" }, `Beyond what is allowed: ${inShownUnits(sentence)}.`)));
     drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));
     await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
     fill(list, [...namesOf(explorer)].map(([row, names]) => item(row, names.join(", "))));

@@ -1,7 +1,6 @@
 /** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
 
 import { analyses } from "../design/analyses.js";
-import { showBeyond } from "../design/beyond.js";
 import { endsOf } from "../design/extremes.js";
 import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
@@ -22,6 +21,7 @@ import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
+import { inShownUnits } from "../lib/numbers.js";
 
 export const title = "Design";
 
@@ -84,11 +84,11 @@ export async function show(place, { parts, query, signal }) {
     const [shown] = designs;
     const whose = shown !== main ? `What if: design ${number}, changed` : refused ? `Design ${number} itself: the change is not possible` : "";
     showObjectives(places.objectives, { objectives, front: rows, row: shown.row, changed: shown === main ? null : { broken: Boolean(changed?.broken.length) }, whose, names });
-    showBeyond(places.beyond, designs);
+    fill(places.beyond, designs.flatMap(({ name, violations }) => violations.map((sentence) => h("p", { class: "error" }, `${name}, beyond what is allowed: ${inShownUnits(sentence)}.`))));
     for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
   };
   const draw = () => {
-    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, violated: changed.violated, ...cycleOf(changed.cycle) };
+    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, violations: changed.violations, ...cycleOf(changed.cycle) };
     const moving = [asked ?? main, ...others];
     glance(moving);
     machines.show(moving);
