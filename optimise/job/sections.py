@@ -30,9 +30,9 @@ EXAMPLE = {
         "endurance": "150 MPa",
         "bearing_pressure": "20 MPa",
     },
-    "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
+    "pins": dict.fromkeys(("crank_pivot", "crank_pin", "slider_pin"), "15 mm"),
 }
-"""The least that the table holds."""
+"""The least that the table holds. Pins of half the width of their bars, which are 30 mm wide in the other examples."""
 
 
 _OF_STRENGTH = ("criterion", "eye_concentration", "wear_coefficient")
@@ -90,18 +90,18 @@ class MaterialPart(Checked[Material]):
 
 
 class PinsPart(Part):
-    """Diameters of the three pins."""
+    """Diameters of the three pins. Half the width of the bar is a usual start."""
 
     crank_pivot: PositiveLength = required("between frame and crank", "15 mm")
-    crank_pin: PositiveLength = required("between crank and connecting rod", "12 mm")
-    slider_pin: PositiveLength = required("between connecting rod and slider", "10 mm")
+    crank_pin: PositiveLength = required("between crank and connecting rod", "15 mm")
+    slider_pin: PositiveLength = required("between connecting rod and slider", "15 mm")
 
 
 class SectionsPart(Checked[tuple[Material, SectionLimits]]):
     """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
 
     material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
-    pins: PinsPart = required("diameters", EXAMPLE["pins"])
+    pins: PinsPart = required("diameters, usually about half the width of the bar", EXAMPLE["pins"])
     width: PositiveRange = optional("in the plane of motion: what can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2))
     depth: PositiveRange = optional("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
     static_safety: _Safety = optional("against yield", 2.0, default=2.0)

@@ -12,6 +12,8 @@ import slidercrank as sc
 from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.tables.violations import violations
+from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.job.sections import EXAMPLE
 from tests.model.cases import random_designs
 from tests.model.strength.sections import random_bars
 
@@ -33,6 +35,22 @@ def weak(random: np.random.Generator) -> Strength:
     )
     pivot, crank_pin, slider_pin = random.uniform(2e-3, 1e-2, 3).tolist()
     return Strength(material=material, crank_pivot=pivot, crank_pin=crank_pin, slider_pin=slider_pin)
+
+
+def test_pins_of_the_examples_bear_an_ordinary_load() -> None:
+    """5 kN on bars of the examples: their pins are half as thick as the bars are wide, and nothing is exceeded."""
+    bar = {"width": "30 mm", "depth": "20 mm", "density": EXAMPLE["material"]["density"]}
+    tables = {
+        "name": "Pusher",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "4 kg"}, "crank": bar, "rod": bar},
+        "load": [{"force": "5 kN", "opposes": "motion"}],
+        "sections": EXAMPLE,
+        "variables": {"crank": "20 mm", "rod": "150 mm", "offset": "0 mm"},
+        "objectives": {"peak_torque": "minimise"},
+    }
+    found = parse_job(tables).analyse([0.02, 0.15, 0.0])
+    assert found["pin_pressure_crank_pin"] > 5e3 / (15e-3 * 20e-3)
+    assert found.violated == {}
 
 
 def test_what_is_violated_follows_from_the_forces_and_the_material() -> None:

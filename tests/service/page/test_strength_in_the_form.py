@@ -28,6 +28,22 @@ def test_material_is_an_example_that_is_said_and_pins_are_asked_for(form: Open, 
     expect(page.locator("#f-sections-pins-crank_pin-c-error")).to_contain_text("Is missing")
 
 
+def test_pins_are_proposed_from_the_width_of_their_bars_when_that_is_asked_for(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=sieve")
+    page.locator("summary", has_text="Material and pins").click()
+    page.get_by_label("with material and pins", exact=True).select_option("yes")
+    page.locator("#f-mechanism-crank-width-c").fill("1.2")
+    page.locator("#f-mechanism-crank-width-u").select_option("in")
+    page.locator("#f-mechanism-crank-width-c").fill("1.2")
+    page.get_by_role("button", name="Make pins half as thick as their bars are wide").click()
+    job = text_of(page)
+    assert job["mechanism"]["rod"]["width"] == "30 mm"
+    assert job["sections"]["pins"] == {"crank_pivot": "0.6 in", "crank_pin": "15 mm", "slider_pin": "15 mm"}
+    ready(page)
+    page.get_by_label("diameter of the slider pin", exact=True).fill("16")
+    assert text_of(page)["sections"]["pins"]["slider_pin"] == "16 mm"
+
+
 def test_a_requirement_begins_on_the_good_side_of_its_quantity(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=sieve")
     for name, title, side in (

@@ -1,6 +1,7 @@
 /** Material, pins and sizes of crank and rod as bars, for stress and safety; what of these is held and what varies. */
 
 import { h } from "../lib/dom.js";
+import { convert, join, split } from "../lib/units.js";
 import { byschema, choice } from "./controls.js";
 import { at, isTable } from "./path.js";
 import { range } from "./range.js";
@@ -8,6 +9,8 @@ import { around, titleOf } from "./varying.js";
 
 const PATH = ["sections"];
 const RANGES = ["width", "depth"];
+/** The bars in whose eyes each pin is. @type {Record<string, string[]>} */
+const BARS = { crank_pivot: ["crank"], crank_pin: ["crank", "rod"], slider_pin: ["rod"] };
 
 /** Return the fields of material and pins. @param {Form.Whole} form */
 export function strength(form) {
@@ -25,6 +28,7 @@ export function strength(form) {
     select,
     missing.length ? h("p", { class: "quiet wide" }, `For stresses and safety, give the ${missing.join(" and the ")} a rectangular section (width and depth) in the fields above.`) : null,
     h("p", { class: "quiet wide" }, "The material begins as a common steel; give the values of yours. Pins have no size until you give one."),
+    missing.length ? null : h("p", { class: "row wide" }, h("button", { type: "button", onclick: () => propose(form) }, "Make pins half as thick as their bars are wide"), h("span", { class: "quiet" }, "a usual start; of two bars the narrower counts")),
     byschema(form, [...PATH, "material"]),
     h("fieldset", { class: "inner" }, h("legend", {}, "pins"), h("div", { class: "fields" }, keysOf(form, [...PATH, "pins"]).map((key) => held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`)))),
     h("details", { class: "more" }, h("summary", {}, "Safety, and sizes that can be made"), h("div", { class: "fields" }, rest.map((key) => byschema(form, [...PATH, key])), RANGES.map((key) => range(form, [...PATH, key], { label: `${key} that can be made`, why: form.schema.property([...PATH, key])?.description ?? "" })))),
@@ -35,6 +39,22 @@ export function strength(form) {
 function given(form, table) {
   if (table === undefined) form.put(["variables", ...PATH], undefined);
   form.put(PATH, table);
+}
+
+/** Give each pin half the width of its bar. @param {Form.Whole} form */
+function propose(form) {
+  for (const [pin, links] of Object.entries(BARS)) {
+    const widths = links.map((link) => split(form.at(["mechanism", link, "width"]), "length"));
+    const [narrowest] = widths.sort((one, other) => inMetres(one) - inMetres(other));
+    const half = 0.5 * Number(narrowest.number);
+    if (half > 0) form.put([...PATH, "pins", pin], join(String(Number(half.toPrecision(6))), narrowest.unit));
+  }
+  form.redraw();
+}
+
+/** @param {{ number: string, unit: string }} length */
+function inMetres({ number, unit }) {
+  return Number(convert(number, unit, "m", "length"));
 }
 
 /** Return what is given of material and pins, in a line. @param {Form.Whole} form */
