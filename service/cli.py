@@ -118,7 +118,7 @@ def _input_warnings_said() -> Iterator[None]:
 
 def _say_in_own_words(error: Exception) -> None:
     """Give a value of an option that its type refuses the sentence that a job would have."""
-    refused = error.__cause__
+    refused: Any = error.__cause__
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
     from ..objectives.units import shown

@@ -77,12 +77,12 @@ def load_job(
 def warn_of(problem: Problem) -> None:
     """Raise a warning of Python for each warning of a problem, in the name of whoever calls the caller.
 
-    And for loads that drive it, working strokes that are fast, and offsets that a slow stroke leaves out.
+    And for loads that drive it, loaded strokes that are fast in every design, offsets that a slow stroke leaves out.
     """
     from ..search.driving_loads import driven_by_loads
     from ..search.loaded_stroke import expected_warnings
 
-    for sentence in (*problem.warnings, *driven_by_loads(problem), *expected_warnings(problem)):
+    for sentence in (*problem.warnings, *driven_by_loads(problem), *expected_warnings(problem, certain=True)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 
 

@@ -47,7 +47,7 @@ _LIMITS = {
     "less_than": ("must be below {}", "lt"),
     "string_pattern_mismatch": ("must match the pattern {}", "pattern"),
     "string_too_long": ("must have at most {} characters", "max_length"),
-    "too_short": ("must have {} or more entries", "min_length"),
+    "too_short": ("must have at least {} entries", "min_length"),
     "too_long": ("must have at most {} entries", "max_length"),
     "literal_error": ("must be {}", "expected"),
     "enum": ("must be {}", "expected"),

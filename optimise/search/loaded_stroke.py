@@ -20,14 +20,15 @@ if TYPE_CHECKING:
     from ..front.front import ParetoFront
 
 
-def expected_warnings(problem: Problem) -> list[str]:
+def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
     """Return the warnings of a problem: loaded strokes that are fast within its ranges, and offsets that are left out.
 
     The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
+    certain: only of strokes that are fast in every sampled design.
     """
     if problem.motion is not None:  # forth and back are told apart by their drive alone
         return []
-    if not problem.mechanism.loads or problem.slow_stroke is not None:  # it spares most problems the samples
+    if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # it spares the samples
         return _left_out(problem)
     fast, turning, sides = 0, 0, []
     for part, designs in samples(problem):
@@ -39,7 +40,7 @@ def expected_warnings(problem: Problem) -> list[str]:
         found = _fast(slow, loaded)
         fast, turning = fast + int(found.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
         sides += [str(stroke) for stroke in loaded[found]]
-    if not fast:
+    if not fast or (certain and fast < turning):
         return _left_out(problem)
     where = "in every sampled design" if fast == turning else "in some sampled designs"
     return [*_left_out(problem), _sentence(problem, where, sides)]
@@ -94,7 +95,7 @@ def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
     turn = "" if has else ", with an offset of the other sign or the crank turning the other way"
     other = "inward" if stroke == "outward" else "outward"
     return (
-        f"{where} the working stroke (the {stroke} one, against the load) is the faster one; for a slow working stroke "
+        f"{where} the loaded stroke (the {stroke} one, against the load) is the faster one; for a slow loaded stroke "
         f'require slow_stroke = "{stroke}" among the constraints{turn}; if it should be fast, require '
         f'slow_stroke = "{other}"'
     )

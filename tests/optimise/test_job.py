@@ -290,7 +290,7 @@ def test_every_quantity_can_be_a_constraint_and_an_objective(name: str) -> None:
         "self_locking_margin": 1.0,
         "force_transmission": 0.5,
     }
-    within |= {"volumetric_efficiency": 0.5, "efficiency": 0.5}
+    within |= {"volumetric_efficiency": 0.5, "efficiency": 0.5, "displacement_volume": 0.5}
     value = (within | {"stroke": 0.05}).get(name, 4.0)
     job = small(
         constraints={name: {"min": value}},

@@ -216,11 +216,9 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_before_and_after_the_search()
     one_side = {"variables": {"offset": ["10 mm", "200 mm"]}}
     (before,), (after,) = expected_warnings(parse_job(job(**one_side))), front_warnings(_front(**one_side))
     assert before.startswith(
-        "in every sampled design the working stroke (the outward one, against the load) is the faster one"
+        "in every sampled design the loaded stroke (the outward one, against the load) is the faster one"
     )
-    assert after.startswith(
-        "in 8 of 8 designs the working stroke (the outward one, against the load) is the faster one"
-    )
+    assert after.startswith("in 8 of 8 designs the loaded stroke (the outward one, against the load) is the faster one")
     for sentence in (before, after):
         assert 'require slow_stroke = "outward" among the constraints, with an offset of the other sign' in sentence
     (before,) = expected_warnings(parse_job(job()))

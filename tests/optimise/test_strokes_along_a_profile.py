@@ -212,11 +212,9 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_by_the_times() -> None:
     problem = parse_job(job(**small, mechanism={"speed_profile": {"sines": [-0.8]}}))
     (before,), (after,) = expected_warnings(problem), front_warnings(solve(problem))
     assert before.startswith(
-        "in every sampled design the working stroke (the outward one, against the load) is the faster one"
+        "in every sampled design the loaded stroke (the outward one, against the load) is the faster one"
     )
-    assert after.startswith(
-        "in 8 of 8 designs the working stroke (the outward one, against the load) is the faster one"
-    )
+    assert after.startswith("in 8 of 8 designs the loaded stroke (the outward one, against the load) is the faster one")
 
 
 def solved(**changes: Any) -> tuple[Problem, ParetoFront]:

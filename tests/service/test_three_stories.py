@@ -136,8 +136,9 @@ def in_python(story: Story, place: Path, _: Command, number: int) -> tuple[list[
     if story.allow:
         found = front.rounded(number - 1, steps, allow={"stroke": 1e-3 * story.allow})
         assert found.met
+    rounded = [{key: values[row].item() for key, values in found.columns.items()} for row in range(len(found))]
     rows = [{key: values[row] for key, values in front.columns.items()} for row in range(len(front))]
-    return rows, found.designs.to_dict("records")
+    return rows, rounded
 
 
 def over_the_api(story: Story, place: Path, _: Command, number: int) -> tuple[list[Row], list[Row]]:

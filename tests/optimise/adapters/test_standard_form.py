@@ -34,7 +34,7 @@ def several() -> sc.Problem:
     return sc.problem(
         {
             "name": "Press",
-            "mechanism": {"speed": "60 rpm", "slider": {"mass": "3 kg"}},
+            "mechanism": {"speed": "-60 rpm", "slider": {"mass": "3 kg"}},
             "load": [{"force": "500 N", "opposes": "outward stroke"}],
             "variables": {"crank": ["20 mm", "80 mm"], "rod": ["60 mm", "400 mm"], "offset": ["0 mm", "80 mm"]},
             "constraints": {

@@ -59,7 +59,7 @@ def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client
         ({"to": ["0.5"]}, "to must be a length with its unit"),
         ({"to": ["rood=1 mm"]}, "to is for crank, rod, offset"),
         ({"to": ["1 mm", "2 mm"]}, "got that of all lengths twice"),
-        ({"to": []}, "body to: must have 1 or more entries; got []"),
+        ({"to": []}, "body to: must have at least 1 entries; got []"),
         ({"to": [""]}, 'to is a step, or a name, = and a step; got ""; write it like'),
         ({"to": ["1 mm"], "count": 0}, "body count: must be at least 1; got 0"),
         ({"to": ["1 mm"], "allow": ["stroke=1 %"]}, 'must be a length, not a percentage; got "1 %"; write "'),

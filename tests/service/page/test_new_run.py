@@ -571,7 +571,7 @@ def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: O
     expect(beside).not_to_contain_text("is the faster one")
     page.get_by_label("offset, from").fill("-80")
     page.get_by_label("offset, to").fill("-15")
-    expect(beside).to_contain_text("the working stroke (the outward one, against the load) is the faster one")
+    expect(beside).to_contain_text("the loaded stroke (the outward one, against the load) is the faster one")
     page.get_by_label("slow stroke", exact=True).select_option("inward")
     expect(beside).not_to_contain_text("is the faster one")
     ready(page)

@@ -330,7 +330,7 @@ def test_json_of_the_certificate_is_what_certify_writes(tmp_path: Path) -> None:
 
 def test_a_fast_stroke_that_is_loaded_is_warned_of_and_the_slow_stroke_stands_in_the_table() -> None:
     (sentence,) = subject().result.warnings
-    assert "the working stroke (the outward one, against the load) is the faster one" in sentence
+    assert "the loaded stroke (the outward one, against the load) is the faster one" in sentence
     assert sentence in text_of(html())
     marked = next(
         block
