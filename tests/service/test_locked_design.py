@@ -21,6 +21,7 @@ from tests.service import fronts as made
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
 from tests.service.conftest import Command
 
+pytestmark = pytest.mark.filterwarnings("ignore:in every sampled design the loaded stroke")
 JOB: dict[str, Any] = {
     "name": "Locked",
     "mechanism": {"speed": "60 rpm", "slider": {"mass": "2 kg"}},

@@ -12,6 +12,7 @@ from slidercrank.optimise.job import load_job, load_sections
 from slidercrank.optimise.sizing.sections import size_sections
 from tests.service.conftest import Command
 
+pytestmark = pytest.mark.filterwarnings("ignore:in every sampled design the loaded stroke")
 JOB = """
 name = "Press"
 [mechanism]
