@@ -119,7 +119,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("\n0,", "\ndeg,"), 'row 2, column "crank_angle_deg": must be a number; got "deg"'),
         (
             PLAIN.replace("300.5", "300,5"),
-            "row 3 must have 2 cells, as the first line; got 3; correct it; where numbers have a decimal comma,",
+            "row 3 must have 2 cells, as the first line; got 3; correct it, or delete lines above the names",
         ),
         (
             PLAIN.replace("300.5", '"300,5"').replace("240", "240.5"),

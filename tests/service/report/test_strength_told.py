@@ -61,7 +61,7 @@ def test_a_job_says_material_pins_and_how_stresses_are_judged() -> None:
         for name, value in material.items():
             assert f"{name.replace('_', ' ')} of the material: {value:.6g} MPa" in given
         assert "elasticity of the material: 205 GPa" in given
-        assert "pins: crank pivot 35 mm, crank pin 25 mm, slider pin 25 mm" in given
+        assert "pins: crank pivot 35 mm, crank pin 15 to 60 mm, slider pin 25 mm" in given
         assert f"stress concentration of the eyes: {concentration:.6g}" in given
         assert f"mean stresses in fatigue: by {criterion.capitalize()}" in given
     del job["sections"], job["variables"]["sections"]
