@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from statistics import quantiles
+from statistics import median, quantiles
 from typing import Any
 
 import httpx
@@ -27,7 +27,15 @@ from .service_process import headers, service
 
 CLIENTS = 100
 _EVERY = 1.0  # s between two reads of one client
+_AT_REST = 10  # clients by which the answers of a service at rest are measured
+_ASKING = 4  # clients that have something computed, one thing after the other, while the others read
 _LONG = {"method": "nsga2", "samples": 50, "evaluations": 10_000_000, "designs": 100}
+_COMPUTED = (
+    "jobs/{done}/designs/{design}/analysis",
+    "jobs/{done}/designs/{design}/topics/balance",
+    "jobs/{done}/figures/design_{design}.svg",
+    "jobs/{done}/designs/{design}/report.html",
+)
 _SMALL = {"method": "random", "samples": 50, "evaluations": 100, "designs": 8}
 
 
@@ -53,10 +61,12 @@ def _paths(done: int) -> list[str]:
     ]
 
 
-async def reads(url: str, done: int, seconds: float, clients: int = CLIENTS) -> tuple[list[float], Counter[str]]:
+async def reads(
+    url: str, done: int, seconds: float, clients: int = CLIENTS, asking: int = 0
+) -> tuple[list[float], Counter[str]]:
     """Let clients read at once, each once a second; return how long each read took, ms, and what went wrong.
 
-    done: number of a job that has ended.
+    done: number of a job that has ended. asking: clients that have analyses, figures and reports made meanwhile.
     """
     paths = _paths(done)
     times: list[float] = []
@@ -80,7 +90,17 @@ async def reads(url: str, done: int, seconds: float, clients: int = CLIENTS) -> 
                 times.append(1e3 * taken)
                 await asyncio.sleep(max(0.0, _EVERY - taken))
 
-    await asyncio.gather(*(read(number) for number in range(clients)))
+    async def ask(number: int) -> None:
+        chance = random.Random(-1 - number)
+        end = time.monotonic() + seconds
+        async with _client(url) as client:
+            while time.monotonic() < end:
+                design = chance.randint(1, 20)
+                answer = await client.get(chance.choice(_COMPUTED).format(done=done, design=design))
+                if answer.status_code != 200:
+                    errors[f"{answer.request.url.path}: {answer.status_code}"] += 1
+
+    await asyncio.gather(*(read(number) for number in range(clients)), *(ask(number) for number in range(asking)))
     return times, errors
 
 
@@ -210,13 +230,16 @@ def load(
         url = running.url
         first = submit(store, tables("nsga2 1"))
         _until(store, first.id, "done")
+        warm(url, first.id)
+        rest = median(asyncio.run(reads(url, first.id, seconds / 3.0, _AT_REST))[0])
         busy = [submit(store, {**tables("random 1"), "name": "long", "optimiser": _LONG}) for _ in range(workers)]
         for job in busy:
             _until(store, job.id, "running")
-        warm(url, first.id)
         before = running.processor_time()
         times, errors = asyncio.run(reads(url, first.id, seconds, clients))
         each = 1e3 * (running.processor_time() - before) / len(times)
+        beside, more = asyncio.run(reads(url, first.id, seconds, clients, _ASKING))
+        errors += more
         for what, count in errors.items():
             print(f"{count} times {what}")
         percentiles = quantiles(times, n=100)
@@ -228,9 +251,18 @@ def load(
         made, refused = asyncio.run(same_key(url, keyed))
         submitting, solving, states = asyncio.run(many(url, small))
     return [
-        Row(f"errors in {len(times)} reads by {clients} clients, workers busy", [sum(errors.values())], at_most=0),
+        Row(
+            f"errors in {len(times) + len(beside)} reads by {clients} clients, workers busy",
+            [sum(errors.values())],
+            at_most=0,
+        ),
         Row("a read, ms, median", [percentiles[49]]),
         Row("a read, ms, 99th percentile", [percentiles[98]], at_most=300),
+        Row(f"a read by {_AT_REST} clients, workers at rest, ms, median", [rest]),
+        Row("99th percentile as a multiple of that", [percentiles[98] / rest], at_most=50),
+        Row("slowest answer as a multiple of that", [max(times) / rest]),
+        Row(f"99th percentile, {_ASKING} more having figures made", [quantiles(beside, n=100)[98] / rest], at_most=50),
+        Row("slowest answer, likewise", [max(beside) / rest]),
         Row("of the processor, a read, ms", [each]),
         Row(f"events missed of {expected} in {clients} streams at 10 Hz, {breaks} breaks", [missed], at_most=0),
         Row(f"jobs made by {keyed} submissions with one key", [made], at_most=1),

@@ -89,7 +89,7 @@ class Processes:
             while True:
                 for index in islice(waiting, self.workers - len(running)):
                     pool = self._started()
-                    with _unheard():
+                    with deaf_to_interrupts():
                         running[pool.submit(function, items[index])] = index
                 if not running:
                     return []
@@ -129,10 +129,10 @@ class Processes:
             import multiprocessing
 
             pool = ProcessPoolExecutor(
-                self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
+                self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
             )
             try:
-                with _unheard():
+                with deaf_to_interrupts():
                     ready = pool.submit(_ready)
                 ready.result()
                 self._pool = pool
@@ -145,7 +145,7 @@ class Processes:
 
 
 @contextlib.contextmanager
-def _unheard() -> Iterator[None]:
+def deaf_to_interrupts() -> Iterator[None]:
     """Keep Ctrl-C from processes that start meanwhile: it is for this one, which hears it afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -161,7 +161,7 @@ def _ready() -> None:
     """Do nothing, when the process has started."""
 
 
-def _begin() -> None:
+def follow_parent() -> None:
     """Prepare a process: Ctrl-C is for its parent, and it ends with its parent, also when that is killed."""
     import multiprocessing
     from multiprocessing.connection import wait as wait_for

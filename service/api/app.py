@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from fastapi import APIRouter, FastAPI
+from anyio.to_thread import current_default_thread_limiter
+from fastapi import APIRouter, Depends, FastAPI, Request
 from starlette.middleware import Middleware
 from starlette.routing import BaseRoute
 
 from ..page import router as page
 from ..store import Store
+from ..workers.heartbeat import EXHAUSTED, leave
+from ..workers.logs import Format, set_up_logs
 from . import exports
+from .computing import Computing
 from .events import Feed
 from .health import Metrics, Timed
 from .job_requests import EXAMPLE, JSON, TOML, Submission
@@ -27,8 +34,10 @@ from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (
-    *("jobs", "job_files", "preview", "events", "fronts", "binding", "comparison", "analysis", "design_questions"),
+    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "binding", "comparison", "what_if"),
     *(
+        "analysis",
+        "design_questions",
         "rounding",
         "topics",
         "certificate",
@@ -42,6 +51,11 @@ _PARTS = (
     ),
 )
 """Modules of the endpoints, in the order of their description."""
+MODULES = (__name__, *(f"{__package__}.{part}" for part in _PARTS), "numba", "slidercrank.optimise.job")
+"""Modules that `computing_app` needs, and those by which most answers begin."""
+THREADS = 8
+"""Requests that are read for at a time. More threads take turns with the interpreter: of 100 requests at once the
+slowest then waits twice as long."""
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
 _SCHEMAS = "#/components/schemas/"
 _EXAMPLE_TOML = """\
@@ -63,8 +77,11 @@ _NUMBER = "/api/v1/jobs/{number}"
 _FIRST = {"design": 1, "kept": 1}
 
 
-def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
-    """Return the application of a store, which whoever serves it opens and closes."""
+def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing | None = None) -> FastAPI:
+    """Return the application of a store, which whoever serves it opens and closes.
+
+    computing: where requests that compute are answered; here if None.
+    """
     app = FastAPI(
         title="slidercrank",
         version=_version(),
@@ -72,6 +89,7 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
         docs_url=None,  # its pages come from other sites
         redoc_url=None,
         routes=_routes(),
+        lifespan=_few_threads,
         middleware=[
             Middleware(Timed),
             Middleware(Guard, settings=settings),
@@ -82,6 +100,8 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     app.state.settings = settings
     app.state.told = {}  # faults that were logged, and when
     app.state.reading = asyncio.Lock()
+    app.state.computing = computing
+    app.state.turn_here = asyncio.Lock()
     app.state.submissions = RateLimit(settings.submissions_per_minute)
     app.state.feed = Feed(store)
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
@@ -98,13 +118,36 @@ def create_app(store: Store, settings: Settings = DEFAULT) -> FastAPI:
     return app
 
 
+@asynccontextmanager
+async def _few_threads(_: FastAPI) -> AsyncIterator[None]:
+    current_default_thread_limiter().total_tokens = THREADS
+    yield
+
+
+@contextmanager
+def computing_app(address: str, settings: Settings, *, most_queued: int, log_format: Format) -> Iterator[FastAPI]:
+    """Give the application that answers in a process of `Computing`; what comes there was let in before."""
+    set_up_logs(log_format)
+    known = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
+    with Store(address, most_queued=most_queued) as store:
+        app = create_app(store, known)
+        app.add_exception_handler(MemoryError, lambda *_: leave(EXHAUSTED))
+        yield app
+
+
+async def _prepare(request: Request) -> None:
+    """Have a process ready by the time that somebody who opens the page asks for something computed."""
+    if request.app.state.computing is not None:
+        request.app.state.computing.prepare()
+
+
 @cache
 def _routes() -> list[BaseRoute]:
     """Return the endpoints for all applications of a process; FastAPI reads signatures anew where it adds them."""
     whole = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
         whole.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
-    whole.include_router(page.router)
+    whole.include_router(page.router, dependencies=[Depends(_prepare)])
     return whole.routes
 
 

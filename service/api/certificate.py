@@ -10,15 +10,14 @@ from pydantic_core import to_json
 
 from ..designs.proof import certificate_record, infeasible_record, sentences_of, sizes_of
 from ..runs.result import json_ready, rows_of
+from .computing import LongRoute
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
-from .throttle import Turns
 
-router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
 LONGEST_PROOF = 20.0
 """s, for the search of a proof."""
-_PROVING = Turns("proving")
 
 _EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
@@ -52,7 +51,7 @@ def certify_front(
     def make() -> tuple[tuple[str], bytes]:
         return (name,), to_json(_proof(found, epsilon, seconds))
 
-    return Response(found.made(name, "certificate", make, _PROVING), media_type="application/json")
+    return Response(found.made(name, "certificate", make), media_type="application/json")
 
 
 def _proof(found: StoredFront, epsilon: float, seconds: float) -> CertificateModel:

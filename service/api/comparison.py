@@ -10,12 +10,13 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ..designs.comparing import compared_in_words
 from ..jobs.differences import differences
+from .computing import LongRoute
 from .models import LARGEST, PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontsDep
 
-router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
 MOST = 6
 _Number = Annotated[int, Query(ge=1, le=LARGEST), PLAIN_DIGITS]

@@ -18,6 +18,7 @@ from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
 from ..store.kept import kept_of
+from .computing import LongRoute
 from .exports import SEALED, download, of_type
 from .figures import require_figures
 from .kept import alternatives_of
@@ -25,12 +26,13 @@ from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import ShownDep, ShownDesign
-from .throttle import DRAWING
 
 if TYPE_CHECKING:
     from ..report.document import Report
 
-router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
+router = APIRouter(
+    route_class=LongRoute, prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409)
+)
 
 _PLAYING = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; sandbox allow-scripts"
 """The motion runs its own script, but as a document of no origin."""
@@ -151,4 +153,4 @@ def _kept(shown: ShownDesign, store: Store) -> int:
 
 
 def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:
-    return shown.found.made(shown.key, kind, lambda: ([shown.key], make()), DRAWING)
+    return shown.found.made(shown.key, kind, lambda: ([shown.key], make()))

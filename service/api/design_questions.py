@@ -22,13 +22,15 @@ from ..designs.turning import require_turning
 from ..runs.result import json_ready
 from ..swing.record import swing_record
 from ..topics.measured import MEASURED
+from .computing import QuickRoute
 from .fronts import OfDesign
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
-from .throttle import SIMULATING
 
-router = APIRouter(prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409))
+router = APIRouter(
+    route_class=QuickRoute, prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409)
+)
 
 _FARTHEST = LENGTH.metric.factor * LENGTH.limit
 
@@ -152,10 +154,9 @@ def compare_measured(
     """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
     stored = found.design(design)
     require_turning(stored.part, "a comparison with measured curves")
-    with SIMULATING.turn():
-        samples = read_measured(given.csv, stored.mechanism, stored.linkage)
-        topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
-        record = json_ready(topic.numbers(lambda: False))
+    samples = read_measured(given.csv, stored.mechanism, stored.linkage)
+    topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
+    record = json_ready(topic.numbers(lambda: False))
     return MeasuredModel(job=found.job.id, number=design, measured=record_in(record, units))
 
 

@@ -13,11 +13,12 @@ from ..designs.selection import numbered
 from ..designs.shown_units import result_in, rows_in
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
+from .computing import QuickRoute
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
-router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+router = APIRouter(route_class=QuickRoute, tags=["fronts"], responses=problem_responses(409))
 
 
 SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"

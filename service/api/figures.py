@@ -12,12 +12,12 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
+from .computing import LongRoute
 from .exports import SEALED, of_type
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import SettingsDep
 from .stored_fronts import FrontDep, Numbers, NumbersDep, ShownDesign, StoredFront, shown_design
-from .throttle import DRAWING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +35,9 @@ def require_figures(settings: SettingsDep) -> None:
         raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
 
 
-router = APIRouter(tags=["figures"], dependencies=[Depends(require_figures)], responses=problem_responses(409))
+router = APIRouter(
+    route_class=LongRoute, tags=["figures"], dependencies=[Depends(require_figures)], responses=problem_responses(409)
+)
 
 Name = Annotated[
     str,
@@ -101,7 +103,7 @@ def _image(found: StoredFront, name: str, kind: Kind, numbers: Numbers | None, u
         figure = _of_front(found, name, units)
         return figure.names, image(figure.draw(), kind)
 
-    drawn = found.made(key, f"{kind} {units}", draw, DRAWING)
+    drawn = found.made(key, f"{kind} {units}", draw)
     if shown:
         file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
         headers = {"Content-Disposition": f'inline; filename="{file}"'}

@@ -1,4 +1,7 @@
-"""Fronts: what a job found, one design chosen from it, and its designs, filtered, sorted, by pages or by columns."""
+"""Fronts: what a job found, one design chosen from it, and its designs, filtered, sorted, by pages or by columns.
+
+All of it is read from what a job found; nothing is computed.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets, part_of
-from ..designs.violations import front_violations_in_words, violated_by, violations_in_words
+from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import tagged
 from ..runs.result import Cell, json_ready
 from .models import PLAIN_DIGITS, JobNumber
@@ -253,7 +256,7 @@ def list_designs(
 def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
     row = found.row(design)
-    violated = violated_by(found.design(design).mechanism, row)
+    violated = {key: by for key, [by] in part_of(found.result, [design - 1]).violated.items()}
     return DesignModel(
         job=found.job.id,
         number=design,

@@ -17,13 +17,13 @@ from ...model.linkage.linkage import Linkage
 from ...optimise.problem.problem import Problem
 from .. import presets
 from ..presets.designs import DESIGNS, Design
+from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
 from .job_requests import EXAMPLE, TOML, Asked, asked_for, given_problem
 from .problems import problem_responses
 from .settings import SettingsDep
-from .throttle import READING
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
 
 class PresetDesign(BaseModel):
@@ -162,8 +162,7 @@ def read_catalogue(given: CatalogueText) -> CatalogueModel:
     """Give the options of a catalogue that is sent as a table, without rows that no design can need."""
     from ...optimise.job.catalogue import read_catalogue
 
-    with READING:
-        found = read_catalogue(given.table, "the table", frozenset(given.own))
+    found = read_catalogue(given.table, "the table", frozenset(given.own))
     return CatalogueModel(option=found.options, rows=found.rows)
 
 
@@ -192,8 +191,7 @@ def show_schema() -> dict[str, Any]:
 @router.post("/check", responses=problem_responses(415))
 def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
     """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
-    with READING:
-        return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
+    return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
 
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:

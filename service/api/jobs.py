@@ -1,78 +1,34 @@
-"""Jobs: submitted, listed, shown, cancelled, resumed, cloned, deleted, and their files."""
+"""Jobs: listed, shown, cancelled, resumed, deleted, and their files."""
 
 from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from fastapi import Path as InPath
 from pydantic import Field
 from pydantic_core import to_json
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
-from ..jobs.submission import job_json
 from ..page.router import tag_of, tagged
 from ..store import Job, State
 from .exports import download, formats
-from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
 from .problems import problem_responses, tagged_json
-from .settings import SettingsDep, StoreDep
-from .throttle import READING, limit_submissions
+from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
-SUBMITTED: dict[str, Any] = {
-    "status_code": HTTPStatus.CREATED,
-    "response_model": JobShown,
-    "dependencies": [Depends(limit_submissions)],
-    "responses": problem_responses(415, 429),
-}
 _FILE: dict[int | str, dict[str, Any]] = {
     200: {"description": "The file", "content": {"*/*": {"schema": {"type": "string", "format": "binary"}}}}
 }
 _MOST_FRONTS = 100
 _Number = Annotated[int, Field(ge=1, le=LARGEST), PLAIN_DIGITS]
 FileName = Annotated[str, InPath(max_length=255, description="one of the files of the job", examples=["job.toml"])]
-
-
-@dataclass(frozen=True)
-class Queue:
-    """The queue of jobs as one request sees it. idempotency_key: of the submission."""
-
-    store: StoreDep
-    settings: SettingsDep
-    response: Response
-    idempotency_key: IdempotencyKey = None
-
-    def put(self, asked: Asked, *, origin: int | None = None) -> dict[str, Any]:
-        """Queue a job and return its record. origin: the job that it is a changed copy of."""
-        with READING:
-            problem = given_problem(asked.tables, self.settings.allowed_quantities)
-        files = [asked.source or job_json(asked.tables)]
-        of: dict[str, Any] = {"priority": asked.priority, "key": self.idempotency_key, "limits": asked.limits}
-        job = self.store.submit(asked.tables, name=problem.name, files=files, origin=origin, **of)
-        self.response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-        return job.record()
-
-    def put_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
-        """Queue a copy of a job with other tables, and return its record."""
-        return self.put(Asked(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
-
-
-QueueDep = Annotated[Queue, Depends()]
-
-
-@router.post("/jobs", **SUBMITTED)
-def submit_job(asked: Annotated[Asked, Depends(asked_for)], queue: QueueDep) -> dict[str, Any]:
-    """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
-    known = asked.origin is not None and queue.store.jobs(numbers={asked.origin}, limit=1)
-    return queue.put(asked, origin=asked.origin if known else None)
 
 
 @router.get("/jobs", response_model=JobPage)
@@ -129,18 +85,6 @@ def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Queue a cancelled or failed job again, to go on from where it was."""
     with _as_it_stands():
         return store.resume(number).record()
-
-
-@router.post("/jobs/{number}/clone", **SUBMITTED)
-def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any]:
-    """Queue a copy of a job, with changes."""
-    job = queue.store.job(number)
-    asked = Asked(
-        tables=merged(queue.store.tables(number), clone.changes),
-        priority=job.priority if clone.priority is None else clone.priority,
-        limits=job.limits if clone.limits is None else within(clone.limits, queue.settings.limits),
-    )
-    return queue.put(asked, origin=number)
 
 
 @router.get("/jobs/{number}/job")

@@ -18,6 +18,7 @@ from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..designs.variation import Variation, variation_of, with_numbers
 from ..runs.result import csv_text, json_ready
 from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
+from .computing import QuickRoute
 from .exports import download, of_type
 from .fronts import Cells, ColumnModel, column_models
 from .models import PLAIN_DIGITS, UnitsAsked
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from ..report.subject import Alternative
     from ..store import Store
 
-router = APIRouter(tags=["designs"], responses=problem_responses(409))
+router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
 
 _NAME = Annotated[str, Field(max_length=200)]
 _TEXT = Annotated[str, Field(max_length=4000)]

@@ -13,17 +13,17 @@ from ...model.cycle.stroke_times import slow_stroke, time_ratio
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import Kind
 from ...objectives.needs import ONE_TIMING
+from .computing import QuickRoute
 from .job_files import Understood, understood
 from .job_requests import Submission, given_problem
 from .problems import rule_and_value
 from .settings import SettingsDep
-from .throttle import READING
 
 if TYPE_CHECKING:
     from ..preview.preview import Look
     from ..preview.swinging import PossibleSwing
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
 _ANGLES = 72
 Ends = tuple[float, float]
@@ -180,24 +180,22 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
     from ..preview.preview import look_at
 
-    with READING:
-        look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
-        return PreviewModel(
-            wrong=[
-                WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000], infeasible=wrong.infeasible)
-                for wrong in look.wrong
-            ]
-            + _wrong_submission(draft.submission),
-            understood=None if look.problem is None else understood(look.problem, draft.job),
-            allowed=_allowed(look),
-            example=_example(look),
-            swing=_swing(look.swing),
-            formulas=[
-                FormulaModel(path=of.key[:500], kind=of.kind and of.kind.plain, unit=_unit(of.kind))
-                for of in look.formulas
-            ],
-            names=[NameModel(name=of.name[:500], title=of.title[:200], unit=_unit(of.kind)) for of in look.names],
-        )
+    look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
+    return PreviewModel(
+        wrong=[
+            WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000], infeasible=wrong.infeasible)
+            for wrong in look.wrong
+        ]
+        + _wrong_submission(draft.submission),
+        understood=None if look.problem is None else understood(look.problem, draft.job),
+        allowed=_allowed(look),
+        example=_example(look),
+        swing=_swing(look.swing),
+        formulas=[
+            FormulaModel(path=of.key[:500], kind=of.kind and of.kind.plain, unit=_unit(of.kind)) for of in look.formulas
+        ],
+        names=[NameModel(name=of.name[:500], title=of.title[:200], unit=_unit(of.kind)) for of in look.names],
+    )
 
 
 def _wrong_submission(given: dict[str, Any]) -> list[WrongModel]:

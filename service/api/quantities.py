@@ -1,4 +1,4 @@
-"""Meanings of the dimensions and of the quantities, and the units in which they are shown."""
+"""Meanings of the dimensions and of the quantities, the units in which they are shown, and the topics of designs."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, LENGTH, SHOWN, shown_in
 from ...objectives.quantity import MECHANICS, Group, Quantity
+from ..topics.discovery import TOPICS
 
 router = APIRouter(tags=["designs"])
 
@@ -97,6 +98,20 @@ class UnitTable(BaseModel):
     titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque over time"}])
 
 
+class TopicModel(BaseModel):
+    """A topic of a design. name: in its path. title: for a heading. shows: what it is about, in words."""
+
+    name: str = Field(examples=["balance"])
+    title: str = Field(examples=["Balance"])
+    shows: str = Field(examples=["shaking force and moment"])
+
+
+class TopicList(BaseModel):
+    """The topics that a design may have, in their order."""
+
+    topics: list[TopicModel]
+
+
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
@@ -133,6 +148,13 @@ def list_quantities() -> QuantityList:
         quantities=[*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())],
         functions=[FunctionModel(name=name, least=least, most=most) for name, (least, most) in ARGUMENTS.items()],
     )
+
+
+@router.get("/topics")
+def list_topics() -> TopicList:
+    """List the topics that a design may have."""
+    named = [(topic, topic.name.replace("_", " ").capitalize()) for topic in TOPICS.values()]
+    return TopicList(topics=[TopicModel(name=of.name, title=title, shows=of.shows) for of, title in named])
 
 
 _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")

@@ -16,14 +16,14 @@ from pydantic import BaseModel, Field
 
 from ..designs.rounding import allowed_of, rounded_record, rounded_record_in, steps_of
 from ..runs.result import json_ready
+from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
-from .throttle import SIMULATING
 
-router = APIRouter(tags=["designs"], responses=problem_responses(409))
+router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
 _MOST_STEPS, _MOST_TOLD = 50, 100
 _ROUNDED_EXAMPLE = {
@@ -115,12 +115,11 @@ def round_design(
         """Yield kind and data of the events."""
         from ...optimise.front.rounding_search import Stage
 
-        with SIMULATING.turn():
-            for at in found.front.rounding(design - 1, steps, count=given.count, allow=allowed):
-                if isinstance(at, Stage):
-                    yield "progress", json.dumps(vars(at))
-                else:
-                    record = json_ready(rounded_record_in(units, rounded_record(at), at))
+        for at in found.front.rounding(design - 1, steps, count=given.count, allow=allowed):
+            if isinstance(at, Stage):
+                yield "progress", json.dumps(vars(at))
+            else:
+                record = json_ready(rounded_record_in(units, rounded_record(at), at))
         yield "rounded", RoundedModel(job=found.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()

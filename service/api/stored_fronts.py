@@ -9,7 +9,6 @@ import math
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
@@ -29,7 +28,6 @@ from ..runs.result import Result, Row
 from ..store import Job, Store
 from .models import PLAIN_DIGITS, JobNumber
 from .settings import part_of_app
-from .throttle import Turns
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -82,24 +80,18 @@ class StoredFront:
         """The objectives of the designs (n, m), as they are minimised, in the units that are shown."""
         return minimised_values(self.result)
 
-    def made(
-        self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]], turns: Turns | None = None
-    ) -> bytes:
+    def made(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
         """Return a thing made of the front lately under a name, or make and keep it.
 
         make: gives all names of what it made, and the content.
         """
         content = self._kept.get((name, kind))
-        if content is not None:
-            return content
-        with turns.turn() if turns else nullcontext():
-            content = self._kept.get((name, kind))  # by whoever was first
-            if content is None:
-                names, content = make()
-                with self._keeping:
-                    self._kept.update({(one, kind): content for one in names})
-                    while len(self._kept) > 1 and sum(map(len, self._kept.values())) > _MOST_KEPT:
-                        self._kept.popitem(last=False)
+        if content is None:
+            names, content = make()
+            with self._keeping:
+                self._kept.update({(one, kind): content for one in names})
+                while len(self._kept) > 1 and sum(map(len, self._kept.values())) > _MOST_KEPT:
+                    self._kept.popitem(last=False)
         return content
 
     def row(self, number: int) -> Row:

@@ -2,53 +2,50 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import math
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable
 from http import HTTPStatus
+from typing import Any
 
-from fastapi import Request
 from starlette.exceptions import HTTPException
 
 _PATIENCE = 30.0  # s
-_MOST = 8  # requests that wait or work; each holds a thread, of which a service has 40
+_MOST = 200  # requests that wait
 
 
 class Turns:
-    """A kind of work, and who waits to do it."""
+    """A kind of request of which some are answered at a time, while others wait. For one event loop."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self._waiting = threading.BoundedSemaphore(_MOST)
-        self._working = threading.Lock()
+    def __init__(self, name: str, most: int) -> None:
+        """Begin. name: of these requests, in the plural. most: at a time."""
+        self.name, self.most = name, most
+        self._free = asyncio.Semaphore(most)
+        self._waiting = 0
 
-    @contextlib.contextmanager
-    def turn(self) -> Iterator[None]:
+    @contextlib.asynccontextmanager
+    async def turn(self) -> AsyncIterator[None]:
         """Wait for a turn; refuse with a 503 that says so where too many wait, or none comes soon."""
-        if not self._waiting.acquire(blocking=False):
+        if self._waiting >= _MOST:
             raise self._busy(f"{_MOST} others wait")
+        self._waiting += 1
         try:
-            if not self._working.acquire(timeout=_PATIENCE):
-                raise self._busy(f"others were first for {_PATIENCE:g} s")
-            try:
-                yield
-            finally:
-                self._working.release()
+            async with asyncio.timeout(_PATIENCE):
+                await self._free.acquire()
+        except TimeoutError:
+            raise self._busy(f"others were first for {_PATIENCE:g} s") from None
         finally:
-            self._waiting.release()
+            self._waiting -= 1
+        try:
+            yield
+        finally:
+            self._free.release()
 
     def _busy(self, why: str) -> HTTPException:
-        detail = f"{self.name} is done for one request at a time; {why}; try again"
+        detail = f"{self.name} are made {self.most} at a time; {why}; try again"
         return HTTPException(503, detail, headers={"Retry-After": "5"})
-
-
-DRAWING = Turns("drawing")
-"""matplotlib is not made for threads."""
-SIMULATING = Turns("simulation")
-READING = threading.Lock()
-"""Jobs are read one at a time: several at once would not be sooner done, and keep signs of life waiting."""
 
 
 class RateLimit:
@@ -74,9 +71,9 @@ class RateLimit:
         return 0.0
 
 
-async def limit_submissions(request: Request) -> None:
-    """Refuse a submission when too many came within a minute: a dependency of the endpoints that submit."""
-    limit: RateLimit = request.app.state.submissions
+def limit_submissions(app: Any) -> None:
+    """Refuse a submission when too many came within a minute."""
+    limit: RateLimit = app.state.submissions
     wait = limit.wait()
     if wait:
         seconds = math.ceil(wait)

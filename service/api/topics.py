@@ -16,33 +16,19 @@ from ..runs.result import json_ready
 from ..topics.discovery import TOPICS
 from ..topics.topic import Topic, TopicOfDesign
 from .analysis import LONGEST_TOPICS, over
+from .computing import LongRoute
 from .exports import SEALED, of_type
 from .figures import require_figures
 from .fronts import OfDesign
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import ShownDep, ShownDesign
-from .throttle import DRAWING, SIMULATING
 
-router = APIRouter(tags=["designs"], responses=problem_responses(409))
+router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
 Name = Annotated[
     str, Path(pattern=r"^[a-z_]+$", max_length=100, description="of the list of topics", examples=["balance"])
 ]
-
-
-class TopicModel(BaseModel):
-    """A topic of a design. name: in its path. title: for a heading. shows: what it is about, in words."""
-
-    name: str = Field(examples=["balance"])
-    title: str = Field(examples=["Balance"])
-    shows: str = Field(examples=["shaking force and moment"])
-
-
-class TopicList(BaseModel):
-    """The topics that a design may have, in their order."""
-
-    topics: list[TopicModel]
 
 
 class BlockModel(BaseModel):
@@ -99,13 +85,6 @@ def _asked(
 AskedDep = Annotated[Asked, Depends(_asked)]
 
 
-@router.get("/topics")
-def list_topics() -> TopicList:
-    """List the topics that a design may have."""
-    named = [(topic, topic.name.replace("_", " ").capitalize()) for topic in TOPICS.values()]
-    return TopicList(topics=[TopicModel(name=of.name, title=title, shows=of.shows) for of, title in named])
-
-
 @router.get(
     "/jobs/{number}/designs/{design}/topics/{topic}.svg",
     dependencies=[Depends(require_figures)],
@@ -142,7 +121,7 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
         answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
         return (shown.key,), to_json(answer)
 
-    content = shown.found.made(shown.key, asked.kind(of, "told"), make, SIMULATING)
+    content = shown.found.made(shown.key, asked.kind(of, "told"), make)
     return Response(content, media_type="application/json")
 
 
@@ -154,7 +133,7 @@ def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"], asked: As
 
         return (shown.key,), image(asked.of(topic, shown).figure(over(LONGEST_TOPICS), asked.units), kind)
 
-    return shown.found.made(shown.key, asked.kind(topic, kind), make, DRAWING)
+    return shown.found.made(shown.key, asked.kind(topic, kind), make)
 
 
 def _topic(name: str) -> Topic:

@@ -10,14 +10,14 @@ from pydantic import BaseModel, Field
 from ..designs.columns import all_columns
 from ..designs.wishing import told_wishes, wished_record
 from ..store.wishes import note_wish, wishes_of
+from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontDep
-from .throttle import SIMULATING
 
-router = APIRouter(tags=["fronts"], responses=problem_responses(409))
+router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
 _NAME = Annotated[str, Field(max_length=500)]
 _TEXT = Annotated[str, Field(max_length=200)]
@@ -103,9 +103,8 @@ def make_wish(found: FrontDep, given: WishesGiven, store: StoreDep, units: Units
     """
     if given.design is not None:
         found.row(given.design)
-    with SIMULATING.turn():
-        answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
-        record: dict[str, Any] = wished_record(answer, units)
+    answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
+    record: dict[str, Any] = wished_record(answer, units)
     note_wish(store, found.job.id, told_wishes(found.front, answer.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=found.job.id, columns=columns, **record)

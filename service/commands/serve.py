@@ -6,6 +6,8 @@ import logging
 import os
 import sys
 import threading
+from contextlib import closing
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -53,7 +55,8 @@ def serve(
     Prints the address with the token once it listens. Ctrl-C and SIGTERM let every round end, or hand its job back when
     that takes longer than --grace; a service that is started again goes on with it.
     """
-    from ..api.app import create_app
+    from ..api.app import MODULES, computing_app, create_app
+    from ..api.computing import Computing
     from ..api.server import listen, names_of, run_server, url_of
     from ..api.settings import Settings
     from ..workers.supervisor import Supervisor
@@ -70,11 +73,12 @@ def serve(
     )
     with Interruption(service=True) as termination, listen(host, port) as socket, open_store(store) as opened:
         opened.require_writable()
-        opened.most_queued = most_queued
-        app = create_app(opened, settings)
+        analysing = partial(computing_app, work.address, settings, most_queued=most_queued, log_format=work.log_format)
+        computing = Computing(analysing, modules=MODULES)
+        app = create_app(opened, settings, computing)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
         set_up_logs(work.log_format)
-        with Supervisor(work, processes) as supervisor:
+        with closing(computing), Supervisor(work, processes) as supervisor:
             run_server(app, socket, asked=termination.asked, stopping=supervisor.leave)
     _leave_requests()
 

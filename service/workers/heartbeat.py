@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field, replace
+from typing import NoReturn
 
 from ...model.errors import LeaseLost, StoreError
 from ...objectives.counted import counted
@@ -180,7 +181,7 @@ class Heartbeat:
         leave(0)
 
 
-def leave(code: int) -> None:
+def leave(code: int) -> NoReturn:
     """End this process at once, whatever its other threads do, and before it its children with their groups."""
     import psutil
 

@@ -21,7 +21,6 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.service.api import exports
-from slidercrank.service.api import throttle as turns
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
@@ -144,16 +143,6 @@ def test_many_may_ask_for_figures_at_once(solved: Solved, client: httpx.Client) 
     for thread in threads:
         thread.join()
     assert found == [True] * 4
-
-
-def test_whoever_waits_too_long_for_a_drawing_is_told_so(
-    solved: Solved, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(turns, "_PATIENCE", 0.05)
-    with turns.DRAWING.turn():
-        answer = client.get(f"{solved.path}/figures/design_3.png")
-    assert (answer.status_code, answer.headers["retry-after"]) == (503, "5")
-    assert "one request at a time" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,91 @@
+"""A process that answers requests which compute, one after the other: the other end of `computing`."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections import deque
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from multiprocessing.connection import Connection
+from typing import Any
+
+from starlette.types import ASGIApp, Message
+
+from ...model.errors import SlidercrankError
+from ...optimise.engine.processes import follow_parent
+from ..store import Limits
+
+Make = Callable[[], AbstractContextManager[ASGIApp]]
+Question = tuple[dict[str, Any], bytes]
+"""Scope and body of a request."""
+NICENESS = 5
+"""Niceness of an answer: it yields to requests that only read, and is ahead of the workers."""
+OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
+"""Exit code of a process that took more time of the processor than an answer may."""
+_IDLE = 600.0  # s without a question after which it ends, and gives back its memory
+
+
+def answer_questions(connection: Connection, make: Make, most: Limits) -> None:
+    """Answer one request after the other until nobody asks any more.
+
+    Sent are the messages of an answer, the last one when all is done; an error where no application can be made.
+    """
+    follow_parent()
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    try:
+        with make() as app, asyncio.Runner() as runner:
+            _limit_memory(most.memory)
+            while connection.poll(_IDLE):
+                scope, body = connection.recv()
+                _limit_time(most.seconds)
+                last = runner.run(_answer(app, scope, body, connection.send))
+                _limit_time(None)
+                connection.send(last)
+    except SlidercrankError as error:
+        connection.send(error)
+    except (EOFError, OSError):
+        pass  # the other end is gone, or wants no answer any more
+
+
+def is_last(message: Message) -> bool:
+    """Whether a message ends an answer."""
+    return message["type"] == "http.response.body" and not message.get("more_body", False)
+
+
+async def _answer(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callable[[Message], None]) -> Message:
+    """Give the messages of an answer but the last, which is returned."""
+    parts = deque[Message]([{"type": "http.request", "body": body}])
+    last = deque[Message](maxlen=1)
+
+    async def receive() -> Message:
+        if not parts:
+            await asyncio.Event().wait()  # for a client to go: then this process is ended
+        return parts.popleft()
+
+    async def send(message: Message) -> None:
+        (last.append if is_last(message) else give)(message)
+
+    await app(scope, receive, send)
+    return last.pop()
+
+
+def _limit_memory(most: int | None) -> None:
+    """Have memory refused beyond a number of bytes, where the system can."""
+    try:
+        import resource
+    except ImportError:  # on Windows
+        return
+    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    resource.setrlimit(resource.RLIMIT_DATA, (hard if most is None else most, hard))
+
+
+def _limit_time(seconds: float | None) -> None:
+    """Have this process ended once it takes so much time of the processor from now on; None: never.
+
+    A timer, unlike a resource limit, is not inherited by processes that compile kernels or run functions of users.
+    """
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_PROF, seconds or 0.0)

@@ -1,0 +1,124 @@
+"""Submissions: a job as it is sent, or a copy of one with changes, wider limits, or ranges around a design."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Response
+from pydantic import BaseModel, Field
+from starlette.types import Receive, Scope, Send
+
+from ..designs.binding import widened
+from ..designs.nearby import SHARE, nearby
+from ..jobs.submission import job_json
+from ..store import Job
+from .binding import OF, Side
+from .computing import QuickRoute
+from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
+from .models import JobNumber, JobShown
+from .problems import problem_responses
+from .settings import SettingsDep, StoreDep
+from .stored_fronts import LONGEST, FrontDep, Length
+from .throttle import limit_submissions
+
+
+class SubmissionRoute(QuickRoute):
+    """An endpoint that submits: of these only so many are let through within a minute."""
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse it where too many came before."""
+        if scope["method"] in (self.methods or ()):
+            limit_submissions(scope["app"])
+        await super().handle(scope, receive, send)
+
+
+router = APIRouter(route_class=SubmissionRoute)
+_SUBMITTED: dict[str, Any] = {"status_code": HTTPStatus.CREATED, "response_model": JobShown}
+_SENT = {**_SUBMITTED, "tags": ["jobs"], "responses": problem_responses(415, 429)}
+_COPIED = {**_SUBMITTED, "tags": ["fronts"], "responses": problem_responses(409, 415, 429)}
+
+
+class OtherLimit(BaseModel, extra="forbid", strict=True):
+    """Another value for a limit of a job, in the unit of the limit."""
+
+    of: OF
+    side: Side = Field(examples=["upper"])
+    value: float = Field(allow_inf_nan=False, examples=[490.0])
+
+
+class Widening(BaseModel, extra="forbid", strict=True):
+    """The limits that are wider in a copy of a job."""
+
+    limits: list[OtherLimit] = Field(min_length=1, max_length=50)
+
+
+class Nearby(BaseModel, extra="forbid", strict=True):
+    """Lengths that a copy of a job varies around. share: of each length, on either side."""
+
+    crank_mm: Length = Field(examples=[40.0])
+    rod_mm: Length = Field(examples=[64.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
+    share: float = Field(SHARE, gt=0.0, le=0.9, allow_inf_nan=False, examples=[0.1])
+
+
+@dataclass(frozen=True)
+class Queue:
+    """The queue of jobs as one request sees it. idempotency_key: of the submission."""
+
+    store: StoreDep
+    settings: SettingsDep
+    response: Response
+    idempotency_key: IdempotencyKey = None
+
+    def put(self, asked: Asked, *, origin: int | None = None) -> dict[str, Any]:
+        """Queue a job and return its record. origin: the job that it is a changed copy of."""
+        problem = given_problem(asked.tables, self.settings.allowed_quantities)
+        files = [asked.source or job_json(asked.tables)]
+        of: dict[str, Any] = {"priority": asked.priority, "key": self.idempotency_key, "limits": asked.limits}
+        job = self.store.submit(asked.tables, name=problem.name, files=files, origin=origin, **of)
+        self.response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+        return job.record()
+
+    def put_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
+        """Queue a copy of a job with other tables, and return its record."""
+        return self.put(Asked(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
+
+
+QueueDep = Annotated[Queue, Depends()]
+
+
+@router.post("/jobs", **_SENT)
+def submit_job(asked: Annotated[Asked, Depends(asked_for)], queue: QueueDep) -> dict[str, Any]:
+    """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
+    known = asked.origin is not None and queue.store.jobs(numbers={asked.origin}, limit=1)
+    return queue.put(asked, origin=asked.origin if known else None)
+
+
+@router.post("/jobs/{number}/clone", **_SENT)
+def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any]:
+    """Queue a copy of a job, with changes."""
+    job = queue.store.job(number)
+    asked = Asked(
+        tables=merged(queue.store.tables(number), clone.changes),
+        priority=job.priority if clone.priority is None else clone.priority,
+        limits=job.limits if clone.limits is None else within(clone.limits, queue.settings.limits),
+    )
+    return queue.put(asked, origin=number)
+
+
+@router.post("/jobs/{number}/widened", **_COPIED)
+def run_widened(found: FrontDep, asked: Widening, queue: QueueDep) -> dict[str, Any]:
+    """Queue a copy of a job with wider limits; the copy knows the job that it came from."""
+    wider = [(one.of, one.side, one.value) for one in asked.limits]
+    return queue.put_copy(found.job, widened(found.problem, queue.store.tables(found.job.id), wider))
+
+
+@router.post("/jobs/{number}/nearby", **_COPIED)
+def run_nearby(found: FrontDep, asked: Nearby, queue: QueueDep) -> dict[str, Any]:
+    """Queue a copy of a job that searches around given lengths, also outside of its ranges."""
+    lengths = (asked.crank_mm, asked.rod_mm, asked.offset_mm)
+    tables = nearby(found.problem, queue.store.tables(found.job.id), lengths, share=asked.share)
+    return queue.put_copy(found.job, tables)

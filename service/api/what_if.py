@@ -1,0 +1,166 @@
+"""Single designs: their curves and requirements, and all of them with other lengths while somebody moves these."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from ...model.errors import InputError
+from ..designs.columns import all_columns
+from ..designs.cycle_table import LEAST, MOST
+from ..designs.holding import held
+from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
+from ..designs.variation import variation_of, with_numbers
+from ..designs.violations import violated_by, violations_in_words
+from ..runs.result import json_ready
+from ..topics.design_analysis import determined
+from .computing import QuickRoute
+from .cycle import CurvesModel, CycleModel, cycle_model
+from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
+from .models import PLAIN_DIGITS
+from .problems import problem_responses
+from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length
+
+router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
+
+_MOST_NUMBERS = 20
+
+
+class RequirementModel(BaseModel):
+    """A quantity that must lie between two values, in its unit; null leaves a side open.
+
+    column: its key in the designs. slack: the key of the distance to the nearer bound, less than 0 where it is broken.
+    """
+
+    quantity: str = Field(examples=["transmission_angle"])
+    column: str = Field(examples=["least_transmission_angle_deg"])
+    title: str = Field(examples=["least transmission angle"])
+    unit: str = Field(examples=["deg"])
+    lower: float | None = Field(examples=[40.0])
+    upper: float | None = Field(examples=[None])
+    slack: str = Field(examples=["slack_least_transmission_angle_deg"])
+
+
+class RequirementsModel(OfDesign):
+    """The requirements of a job on a design, with the choices that the design made.
+
+    ranges: least and greatest of crank, rod, offset and the numbers that vary besides, by column. speed_rpm: of its
+    crank, positive counter-clockwise.
+    names: of quantities, as in job files, by column. tolerances: whether the machine has any.
+    """
+
+    ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
+    requirements: list[RequirementModel]
+    slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
+    speed_rpm: float = Field(examples=[300.0])
+    tolerances: bool
+    names: dict[str, str] = Field(examples=[{"peak_torque_Nm": "peak_torque"}])
+
+
+class OtherLengths(BaseModel, extra="forbid", strict=True):
+    """Lengths for a design of a front. values: other numbers that vary, by column, within their ranges.
+
+    angles: of its curves, evenly spaced; 0 for none.
+
+    hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
+    to take the lengths as they are.
+    """
+
+    crank_mm: Length = Field(examples=[40.0])
+    rod_mm: Length = Field(examples=[64.0])
+    offset_mm: float = Field(ge=-LONGEST, le=LONGEST, allow_inf_nan=False, examples=[20.0])
+    values: dict[Annotated[str, Field(max_length=500)], Annotated[float, Field(allow_inf_nan=False)]] = Field(
+        {}, max_length=200, examples=[{}]
+    )
+    angles: int = Field(180, ge=0, le=MOST)
+    hold: Literal["crank", "rod", "offset"] | None = None
+
+
+class WhatIfModel(OfDesign):
+    """A design with other lengths, beside its front.
+
+    design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
+    requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
+    designs of the front that are as good in every objective and better in one; dominates: of those that it beats so;
+    the greatest difference first, at most 20. violated, violations: as of a design of the front. cycle: null if no
+    curves were asked for.
+    """
+
+    columns: list[ColumnModel]
+    design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
+    undefined: dict[str, str] = Field(examples=[{"position_error_mm": "a position error comes from tolerances"}])
+    broken: list[str] = Field(examples=[["stroke_mm"]])
+    outside: list[str] = Field(examples=[[]])
+    violated: Violated
+    violations: Violations
+    dominated_by: list[int] = Field(examples=[[12, 4]])
+    dominated_by_count: int = Field(examples=[2])
+    dominates: list[int] = Field(examples=[[]])
+    dominates_count: int = Field(examples=[0])
+    cycle: CycleModel | None
+
+
+@router.get("/jobs/{number}/designs/{design}/curves")
+def show_curves(
+    found: FrontDep,
+    design: DesignNumber,
+    angles: Annotated[
+        int,
+        Query(ge=LEAST, le=MOST, description="number of evenly spaced crank angles, or of times for a swing"),
+        PLAIN_DIGITS,
+    ] = 360,
+) -> CurvesModel:
+    """Give slider motion, drive, transmission angle and joint forces over the cycle: see the answer's description."""
+    return CurvesModel(job=found.job.id, number=design, **dict(cycle_model(found.design(design), angles)))
+
+
+@router.get("/jobs/{number}/designs/{design}/requirements")
+def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsModel:
+    """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
+    stored = found.design(design)
+    asked = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
+    return RequirementsModel(
+        job=found.job.id,
+        number=design,
+        ranges={of.column: (of.lower, of.upper) for of in ranges_of(stored.part)},
+        requirements=asked,
+        slow_stroke=stored.part.slow_stroke,
+        speed_rpm=speed_rpm(stored.mechanism),
+        names=names_of(stored.part),
+        tolerances=stored.mechanism.tolerances.given,
+    )
+
+
+@router.post("/jobs/{number}/designs/{design}/what-if")
+def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -> WhatIfModel:
+    """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
+    if 0 < asked.angles < LEAST:
+        raise InputError(
+            f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
+        )
+    lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
+    stored = found.design(design)
+    stored = with_numbers(stored, stored.values[:3], asked.values)
+    stored = with_numbers(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
+    changed = variation_of(stored, found.result, found.minimised)
+    row, undefined = determined(changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion)
+    cycle = cycle_model(stored, asked.angles) if asked.angles else None
+    violated = violated_by(stored.mechanism, row)
+    return WhatIfModel(
+        job=found.job.id,
+        number=design,
+        columns=column_models(all_columns(changed.row)),
+        design=json_ready(row),
+        undefined=undefined,
+        broken=changed.broken,
+        outside=changed.outside,
+        violated=json_ready(violated),
+        violations=violations_in_words(violated, row),
+        dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],
+        dominated_by_count=len(changed.dominated_by),
+        dominates=[row + 1 for row in changed.dominates[:_MOST_NUMBERS]],
+        dominates_count=len(changed.dominates),
+        cycle=cycle,
+    )
