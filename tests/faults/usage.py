@@ -53,24 +53,20 @@ class Usage:
             process.kill()
 
     def line(self) -> str:
-        """Return the figures: once the first processes have started, the greatest, and the last before the end."""
-        samples = self._samples or [_Sample(0.0, 0, 0, 0)]
-        first = next((one for one in samples if one.at - samples[0].at >= _STARTED), samples[-1])
-        parts = [
-            f"{name} {first_} at first, {most} at most, {last} at last"
-            for name, first_, most, last in (
-                ("processes", first.processes, max(one.processes for one in samples), samples[-1].processes),
-                (
-                    "MB",
-                    *(
-                        f"{value / 1e6:.0f}"
-                        for value in (first.memory, max(one.memory for one in samples), samples[-1].memory)
-                    ),
-                ),
-                ("open files", first.files, max(one.files for one in samples), samples[-1].files),
-            )
-        ]
-        return f"{'; '.join(parts)}; {len(self.left)} processes left"
+        """Return the figures: at first, at most, and at last while the most processes ran."""
+        if not self._samples:
+            return f"no processes; {len(self.left)} left"
+        most = max(one.processes for one in self._samples)
+        whole = [one for one in self._samples if one.processes == most]
+        first = next((one for one in whole if one.at - whole[0].at >= _STARTED), whole[-1])
+        last = whole[-2:][0]  # in the very last one some may be about to end
+        memory = [first.memory, max(one.memory for one in self._samples), last.memory]
+        files = [first.files, max(one.files for one in self._samples), last.files]
+        return (
+            f"{most} processes, {len(self.left)} left; "
+            "{:.0f} MB at first, {:.0f} at most, {:.0f} at last; ".format(*(size / 1e6 for size in memory))
+            + "{} open files at first, {} at most, {} at last".format(*files)
+        )
 
     def _watch(self) -> None:
         while not self._over.wait(_LOOK):
@@ -78,8 +74,9 @@ class Usage:
             for process in psutil.Process().children(recursive=True):
                 try:
                     if not _kept(process):
-                        used.append((process.memory_info().rss, process.num_fds()))
                         self._seen.add(process)
+                        if "python" in process.name():  # not what starts a server, or mounts a disk
+                            used.append((process.memory_info().rss, process.num_fds()))
                 except psutil.Error:  # it has just ended
                     pass
             if used:
