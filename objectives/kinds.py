@@ -67,6 +67,15 @@ class Kind:
     amount: bool = False
 
     @property
+    def si(self) -> Face:
+        """The face of the SI unit."""
+        return per(self.unit) if "_per_" in self.metric.suffix else face(self.unit)
+
+    def face(self, system: System) -> Face:
+        """Return how a system shows it."""
+        return self.metric if system == "metric" or self.inch is None else self.inch
+
+    @property
     def plain(self) -> str:
         """The name without its article: "length"."""
         return self.name.split(" ", 1)[-1]
@@ -149,13 +158,14 @@ KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind
 """The kinds above, in their order: those of numbers of a job and of quantities."""
 SMALL_LENGTH = replace(LENGTH, example="0.1 mm")
 """Steps and misses, which are shorter than links."""
+PERCENT = Kind("a percentage", "", "50 %", 1e4, face("%", 100.0))
 STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
-_PER_ANGLE = Kind("a length per angle", "m/rad", "", 0.0, per("mm/rad", 1e3), per("in/rad", _PER_INCH))
-_PER_SQUARED_ANGLE = Kind(
-    "a length per squared angle", "m/rad^2", "", 0.0, per("mm/rad^2", 1e3), per("in/rad^2", _PER_INCH)
+PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
+    Kind(f"a length per {name}", f"m/{unit}", "", 0.0, per(f"mm/{unit}", 1e3), per(f"in/{unit}", _PER_INCH))
+    for name, unit in (("angle", "rad"), ("squared angle", "rad^2"), ("cubed angle", "rad^3"))
 )
 
-SHOWN = (*(kind for kind in KINDS if kind.unit), _PER_ANGLE, _PER_SQUARED_ANGLE)
+SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
 
 

@@ -18,10 +18,10 @@ from ..kinematics import geometry
 from ..kinematics.position import Motion, motion
 from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
+from .dimensions import DIMENSIONS
 from .from_slider import CrankSolution, crank_solutions
 from .picture import Pose, figure, svg
 from .values import (
-    DIMENSIONS,
     Kinematics,
     PointMotion,
     dimensions,

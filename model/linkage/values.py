@@ -12,9 +12,7 @@ from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..input_warning import LONGEST, both_readings
 from ..kinematics.in_line import in_line
-
-DIMENSIONS = ("crank", "rod", "offset")
-"""Names of the three dimensions, in the order of a design's numbers."""
+from .dimensions import DIMENSIONS
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ...model.errors import InputError, JobError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ..kinds import LENGTH, Kind, kind_in

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Quantity
 from ..registry import QUANTITIES, quantity

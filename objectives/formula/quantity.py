@@ -10,7 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ...model.machine.varying import Varying, number_at

@@ -26,7 +26,7 @@ from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.signals.first_greatest import angle_in_cycle, first_greatest
-from ..kinds import Face
+from ..kinds import Kind
 from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
 from ..quantity import Array
@@ -71,12 +71,11 @@ class Extreme:
 
 @dataclass(frozen=True)
 class CurveExtremes:
-    """Extremes of a curve of `cycle_curves`, or of the resultant of a joint force; si, shown: its units."""
+    """Extremes of a curve of `cycle_curves`, or of the resultant of a joint force."""
 
     name: str
     title: str
-    si: Face
-    shown: Face
+    kind: Kind
     least: Extreme
     greatest: Extreme
 
@@ -106,7 +105,7 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
         for value, angle in (least[row], greatest[row]):
             at = math.nan if math.isnan(angle) else float(linkage.at(angle).slider_position)
             ends.append(Extreme(value, angle, at))
-        found.append(CurveExtremes(curve.name, curve.title, curve.si, curve.shown, *ends))
+        found.append(CurveExtremes(curve.name, curve.title, curve.kind, *ends))
     return found
 
 
@@ -131,7 +130,7 @@ def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> l
         joint = curve.name.removesuffix("_x")
         if joint != curve.name:  # the resultant comes before its components
             size = np.hypot(curve.values, every[f"{joint}_y"].values)
-            curves.append(Curve(joint, f"{joint.replace('_', ' ')} force", size, curve.si, curve.shown))
+            curves.append(Curve(joint, f"{joint.replace('_', ' ')} force", size, curve.kind))
         curves.append(curve)
     return curves
 
@@ -180,7 +179,7 @@ def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
 def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
     """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if not determined."""
     own = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
-    units = [curve.si.symbol for curve in curves]
+    units = [curve.kind.unit for curve in curves]
     shared = [np.nanmax([0.0, *(size for size, of in zip(own, units, strict=True) if of == unit)]) for unit in units]
     return np.stack([own, shared], axis=1)
 

@@ -18,17 +18,28 @@ from ...model.linkage.values import direction, numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
 from ...model.machine.two_turns import cycle_turns
-from ..kinds import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, POWER, SPEED, TORQUE, Face, face, per
+from ..kinds import (
+    ACCELERATION,
+    ANGLE,
+    FORCE,
+    JERK,
+    LENGTH,
+    PER_ANGLE,
+    PER_CUBED_ANGLE,
+    PER_SQUARED_ANGLE,
+    POWER,
+    SPEED,
+    TORQUE,
+    Kind,
+)
 from ..quantity import Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
 LEAST, MOST = 4, 100_000
-_ANGLE, _LENGTH, _FORCE, _TORQUE, _POWER, *_RATES = (
-    (face(kind.unit), kind.metric) for kind in (ANGLE, LENGTH, FORCE, TORQUE, POWER, SPEED, ACCELERATION, JERK)
-)
-_PER_ANGLE = [(per(f"m/rad{power}"), per(f"mm/rad{power}", 1e3)) for power in ("", "^2", "^3")]
+_RATES = SPEED, ACCELERATION, JERK
+_RATES_PER_ANGLE = PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE
 _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
 
 
@@ -36,19 +47,18 @@ _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "
 class Curve:
     """A curve over crank angle.
 
-    name: without a unit. values: (n,), SI; NaN where it is not defined. si: its unit. shown: its unit in metric tables.
+    name: without a unit. values: (n,), SI; NaN where it is not defined.
     """
 
     name: str
     title: str
     values: Array
-    si: Face
-    shown: Face
+    kind: Kind
 
     @property
     def field(self) -> str:
         """Key of the curve in metric tables and JSON."""
-        return self.name + self.shown.suffix
+        return self.name + self.kind.metric.suffix
 
 
 def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> list[Curve]:
@@ -67,7 +77,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     if not mechanism.tolerances.given:
         acting = replace(acting, position_error=nothing, position_error_rss=nothing)
     speed = mechanism.speed
-    rates, note = (_RATES, "") if speed else (_PER_ANGLE, " per crank speed")
+    rates, note = (_RATES, "") if speed else (_RATES_PER_ANGLE, " per crank speed")
     theta = acting.crank_angle
     torque, of = acting.torque, ""
     if cylinder_count(mechanism) > 1:
@@ -78,20 +88,20 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     jerk = _jerk(mechanism if speed else replace(mechanism, speed=1.0), m, third, theta)
     velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
     return [
-        Curve("crank_angle", "crank angle", theta, *_ANGLE),
-        Curve("slider_position", "slider position", moving.slider_position, *_LENGTH),
-        Curve("slider_velocity", f"slider velocity{note}", velocity, *rates[0]),
-        Curve("slider_acceleration", f"slider acceleration{note}", acceleration, *rates[1]),
-        Curve("slider_jerk", f"slider jerk{note}", jerk, *rates[2]),
-        Curve("rod_angle", "rod angle", direction(m.across, m.along), *_ANGLE),
-        Curve("transmission_angle", "transmission angle", moving.transmission_angle, *_ANGLE),
-        Curve("torque", f"drive torque{of}", torque, *_TORQUE),
-        Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, *_POWER),
-        Curve("load", "load on the slider", acting.load, *_FORCE),
-        *(Curve(name, _force_title(name), getattr(acting, name), *_FORCE) for name in _FORCES),
-        Curve("guide", "guide force", acting.guide, *_FORCE),
-        Curve("position_error", "position error, worst case", acting.position_error, *_LENGTH),
-        Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, *_LENGTH),
+        Curve("crank_angle", "crank angle", theta, ANGLE),
+        Curve("slider_position", "slider position", moving.slider_position, LENGTH),
+        Curve("slider_velocity", f"slider velocity{note}", velocity, rates[0]),
+        Curve("slider_acceleration", f"slider acceleration{note}", acceleration, rates[1]),
+        Curve("slider_jerk", f"slider jerk{note}", jerk, rates[2]),
+        Curve("rod_angle", "rod angle", direction(m.across, m.along), ANGLE),
+        Curve("transmission_angle", "transmission angle", moving.transmission_angle, ANGLE),
+        Curve("torque", f"drive torque{of}", torque, TORQUE),
+        Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, POWER),
+        Curve("load", "load on the slider", acting.load, FORCE),
+        *(Curve(name, _force_title(name), getattr(acting, name), FORCE) for name in _FORCES),
+        Curve("guide", "guide force", acting.guide, FORCE),
+        Curve("position_error", "position error, worst case", acting.position_error, LENGTH),
+        Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, LENGTH),
     ]
 
 
@@ -113,7 +123,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     import pandas as pd
 
     return pd.DataFrame(
-        {curve.name + curve.si.suffix: curve.values for curve in cycle_curves(mechanism, linkage, theta)}
+        {curve.name + curve.kind.si.suffix: curve.values for curve in cycle_curves(mechanism, linkage, theta)}
     )
 
 

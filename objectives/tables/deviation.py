@@ -16,7 +16,7 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import require_one_turn
-from ..kinds import Face
+from ..kinds import Kind
 from ..quantity import Array
 from .curve_extremes import defined_curves, golden
 
@@ -55,8 +55,7 @@ class Deviation:
 
     name: str
     title: str
-    si: Face
-    shown: Face
+    kind: Kind
     count: int
     rms: float
     mean: float
@@ -90,7 +89,7 @@ def deviations(
             fit = _fit(mechanism, linkage, name, angles, values, nodes, table[name])
         else:
             numbers, fit = (math.nan,) * 5, None
-        found.append(Deviation(name, curve.title, curve.si, curve.shown, len(values), *numbers, fit))
+        found.append(Deviation(name, curve.title, curve.kind, len(values), *numbers, fit))
     return found
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from ...model.arrays import Mask
 from ...model.errors import InputError, InputWarning
 from ...model.input_warning import LONGEST
-from ...model.linkage.values import DIMENSIONS, in_both_units
+from ...model.linkage.dimensions import DIMENSIONS
+from ...model.linkage.values import in_both_units
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array
 

@@ -69,7 +69,7 @@ def columns_of(
     curves = {curve.name: curve for curve in every_curve(moving, linkage, np.zeros(1))}
     spoken = {_plain(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
     spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
-    kinds = {name: _kind_of(curve.shown) for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
+    kinds = {name: curve.kind for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
     found: dict[str, Column] = {}
     for name in names:
         column = _meaning(name, spoken, kinds, units)
@@ -218,11 +218,6 @@ def _after(said: str, text: str) -> str:
 
 def _plain(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", text.strip().casefold()).strip("_")
-
-
-def _kind_of(face: Face) -> Kind:
-    """Return the kind of a curve by the unit in which it is shown."""
-    return next(kind for kind in SHOWN if kind.metric.symbol == face.symbol)
 
 
 def _curve_near(name: str, spoken: Iterable[str]) -> str | None:

@@ -12,8 +12,8 @@ import pandas as pd
 
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing, started
 from ...model.tolerance.sources import limits

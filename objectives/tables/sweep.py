@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ..formula.meant import meant
 from ..quantity import Array, Quantity

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
 from ..kinds import KINDS, LENGTH, Face

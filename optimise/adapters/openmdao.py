@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ..problem.problem import Problem, require_problem
 from .missing import require

@@ -12,7 +12,7 @@ from ...model.arrays import Array, Mask, Whole
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import is_shaft
 from ...model.machine.two_turns import cycle_turns, halves

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.errors import InfeasibleError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ..problem.problem import Problem
 from .combinations import Axes, Judged, every
 from .words import missed_in_words

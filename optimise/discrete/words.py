@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.front import ParetoFront

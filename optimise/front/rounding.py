@@ -18,7 +18,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.input_warning import both_readings
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
 from ...objectives.units import shown, to_si

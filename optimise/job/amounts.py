@@ -9,7 +9,7 @@ from pydantic import AfterValidator, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.amount import Amount, amount_of, kind_of_amount
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import RATIO, Kind

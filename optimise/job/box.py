@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity

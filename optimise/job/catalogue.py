@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from ...model.errors import InputError, JobError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import shown
 from .beside import Files, text_beside
 from .catalogue_columns import Column, columns_of

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from ...model.errors import InputError, JobError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.amount import kind_of_amount
 from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, names_in, text_of

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from ...model.errors import InputError, JobError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula import formulas
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.formula.formulas import words_of

@@ -27,8 +27,8 @@ from pydantic import (
 from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import SlowStroke
-from ...model.linkage.values import DIMENSIONS
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS

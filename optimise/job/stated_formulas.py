@@ -9,7 +9,7 @@ from itertools import islice
 from typing import Any
 
 from ...model.errors import InputError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import names_in
 from ...objectives.formula.formulas import Units, is_formula, unknown_name

@@ -16,8 +16,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InputError, JobError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import SlowStroke
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
 from ...model.machine.start import Start

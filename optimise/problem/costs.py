@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...model.errors import InputError
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing, require_swing
@@ -152,7 +152,7 @@ class Analysis(Mapping[str, float]):
         for found in deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
             fit = (found.fit.crank_angle, found.fit.value, found.fit.rms) if found.fit else (np.nan,) * 3
             numbers = (found.count, found.rms, found.mean, found.largest, found.crank_angle, *fit)
-            rows[found.name] = dict(zip(_DEVIATION, (found.title, found.si.symbol, *numbers), strict=True))
+            rows[found.name] = dict(zip(_DEVIATION, (found.title, found.kind.unit, *numbers), strict=True))
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def plot(self) -> Figure:
@@ -170,8 +170,8 @@ class Analysis(Mapping[str, float]):
         angle = curves["crank_angle"]
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
             curve = curves[name]
-            axes.plot(angle.shown.factor * angle.values, curve.shown.factor * curve.values)
-            axes.set_ylabel(f"{curve.title},\n{unit_text(curve.shown.symbol)}")
+            axes.plot(angle.kind.metric.factor * angle.values, curve.kind.metric.factor * curve.values)
+            axes.set_ylabel(f"{curve.title},\n{unit_text(curve.kind.metric.symbol)}")
             axes.set_xlabel("crank angle, deg")
             axes.set_xticks(range(0, 360 * turns + 1, 60 * turns))
             axes.label_outer()

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from ...model.checks import keep_tuples, require_kinds
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism

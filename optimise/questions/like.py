@@ -19,7 +19,8 @@ import numpy as np
 from ...model.arrays import Array, Whole
 from ...model.errors import InputError
 from ...model.input_warning import warn_user
-from ...model.linkage.values import DIMENSIONS, in_both_units
+from ...model.linkage.dimensions import DIMENSIONS
+from ...model.linkage.values import in_both_units
 from ..front.dominance import beating
 from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling

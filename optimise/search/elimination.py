@@ -19,7 +19,7 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula.linear import Linear
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO

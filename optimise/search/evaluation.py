@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Mask, Whole
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.tables.evaluate import running
 from ..engine.chunks import Chunked, Shared

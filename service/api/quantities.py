@@ -115,9 +115,9 @@ class TopicList(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
+    from ...objectives.keys import split_unit
     from ...objectives.registry import FACTS
     from ...objectives.units import per_si
-    from ..designs.columns import split_unit
 
     told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
     kinds = [

@@ -112,11 +112,11 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
     of = _topic(topic)
 
     def make() -> tuple[tuple[str], bytes]:
-        from ..topics.told import told
+        from ..render.formatting import plain_blocks
 
         found = asked.of(of, shown)
         numbers = found.numbers(over(LONGEST_TOPICS))
-        blocks = [BlockModel(**vars(block)) for block in told(found, numbers, asked.units)]
+        blocks = [BlockModel(**vars(block)) for block in plain_blocks(found.blocks(numbers), asked.units)]
         record = found.numbers_in(json_ready(numbers), asked.units)
         answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
         return (shown.key,), to_json(answer)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..text.tables import print_table, table
+from ..render.terminal import print_table, table
 from . import case_1, case_2, case_3, case_4, case_5
 from .published import CASES, Case, Row, read_case
 

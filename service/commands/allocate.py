@@ -31,6 +31,7 @@ def allocate(
     tolerance, and takes its part of the limit; so do the clearances.
     """
     from ...optimise.sizing import tolerance_allocation as convex
+    from ..render.terminal import print_blocks
     from ..topics.allocation import analysis
 
     problem = turning_problem(job, "allocate")
@@ -45,7 +46,7 @@ def allocate(
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
     numbers = analysis.numbers(found, linkage, problem.costs, mechanism)
-    answer(json, numbers, lambda screen: analysis.show(screen, numbers))
+    answer(json, numbers, lambda screen: print_blocks(screen, analysis.blocks(numbers)))
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:

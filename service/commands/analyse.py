@@ -113,7 +113,7 @@ def analyse(
     if json:
         give(json_text(found.record(units) | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
     else:
-        from ..topics.told import show_in
+        from ..render.terminal import print_blocks
 
         screen = console()
         show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
@@ -125,7 +125,7 @@ def analyse(
             screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
         for topic in found.topics:
             screen.print()
-            show_in(screen, topic, found.found[topic.name], units)
+            print_blocks(screen, topic.blocks(found.found[topic.name]), units)
     for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
     if figures is not None and not interruption.asked():

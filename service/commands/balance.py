@@ -37,6 +37,7 @@ def balance(
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
     from ...optimise.sizing import counterweight as balancing
+    from ..render.terminal import print_blocks
     from ..topics.counterweight import analysis
 
     problem = turning_problem(job, "balance")
@@ -55,7 +56,7 @@ def balance(
         rod=_space(given("--rod-radius", rod_radius, LENGTH), given("--rod-mass", rod_mass, MASS)),
     )
     numbers = analysis.numbers(found, words)
-    answer(json, numbers, lambda screen: analysis.show(screen, numbers))
+    answer(json, numbers, lambda screen: print_blocks(screen, analysis.blocks(numbers)))
     if not found.converged:
         say(f"not proven to be the best: {found.objective:.6g} N, and no less than {found.bound:.6g} N is possible")
     if figures is not None:

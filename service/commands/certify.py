@@ -76,10 +76,7 @@ def _nothing_feasible(result: Result, problem: Problem, seconds: float, *, json:
 
 
 def _show(screen: Console, found: Certificate, result: Result, folder: Path, units: System) -> None:
-    from ..topics.inches import sentence_in_inches
-
-    sentences = sentences_of(found, result)
-    first, *lines = map(sentence_in_inches, sentences) if units == "inch" else sentences
+    first, *lines = sentences_of(found, result, units)
     screen.print(first, style="bold", soft_wrap=True)
     lines.append(f"Files: {folder / 'certificate.json'}")
     if len(found.added):

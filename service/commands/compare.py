@@ -15,12 +15,12 @@ from ...model.errors import InputError, SlidercrankError
 from ..designs.picking_options import minimised_values
 from ..designs.shown_units import result_in
 from ..jobs.find_run import find_run
+from ..render.terminal import print_table, table
 from ..runs.result import Result, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import job_file, read_run
 from ..text.options import Figures, Json, Runs, Units
 from ..text.screen import answer, say
-from ..text.tables import print_table, table
 from .ending import NoDesigns
 
 if TYPE_CHECKING:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from ...objectives.kinds import ACCELERATION, LENGTH, SPEED, System
-from ..designs.columns import key_in, split_unit
+from ...objectives.keys import kind_of_key
+from ...objectives.kinds import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
 from ..designs.selection import value_of
 from ..designs.shown_units import record_in
+from ..render.blocks import Block, Table, column, joined, recorded, sentence, words
+from ..render.terminal import print_blocks
 from ..text.options import DesignOfRun, Dimensions, JobOrRun, Json, Runs, Units, given_value
 from ..text.screen import answer, say
-from ..text.tables import print_table, table
 from .job_or_run import machine_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
 
@@ -63,24 +61,32 @@ def inverse(
         given_value("--slider-acceleration", acceleration, ACCELERATION),
     )
     record = inverse_record(mechanism, linkage, None if problem is None else problem.motion, motion)
-    answer(json, record_in(record, units), lambda screen: _show(screen, record, units))
-
-
-def _show(screen: Console, record: dict[str, Any], units: System) -> None:
-    given = []
-    for key in _GIVEN:
-        name, factor = key_in(key, units)
-        title, unit, _ = split_unit(name)
-        if record[key] is not None:
-            given.append(f"{title.removeprefix('slider_')} {factor * record[key]:.6g} {unit}")
-    screen.print(f"slider: {', '.join(given)}", soft_wrap=True)
-    rates = [">crank speed, rpm"] * (record["slider_velocity_m_s"] is not None)
-    rates += [">crank acceleration, rad/s^2"] * (record["slider_acceleration_m_s2"] is not None)
-    rows = table(">crank angle, deg", "stroke, counter-clockwise", *rates, ruled=True)
-    for solution in record["solutions"]:
-        angle, stroke, *values = solution.values()
-        shown = ["undefined" if value is None else f"{value:.6g}" for value in values[: len(rates)]]
-        rows.add_row(f"{angle:.6g}", stroke or "dead centre", *shown)
-    print_table(screen, rows)
-    if record["note"]:
+    answer(json, record_in(record, units), lambda screen: print_blocks(screen, _blocks(record), units))
+    if record["note"] and not json:
         say(record["note"])
+
+
+def _blocks(record: dict[str, Any]) -> list[Block]:
+    given = [
+        words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=recorded(record, key))
+        for key in _GIVEN
+        if record[key] is not None
+    ]
+    asked = [
+        (key, column(title, kind))
+        for key, title, kind, of in (
+            ("crank_speed_rpm", "crank speed", ANGULAR_SPEED, "slider_velocity_m_s"),
+            ("crank_acceleration_rad_s2", "crank acceleration", ANGULAR_ACCELERATION, "slider_acceleration_m_s2"),
+        )
+        if record[of] is not None
+    ]
+    rows = []
+    for solution in record["solutions"]:
+        _, stroke, *_ = solution.values()
+        rates = (recorded(solution, key) for key, _ in asked)
+        rows.append((recorded(solution, "crank_angle_deg"), stroke or "dead centre", *rates))
+    heads = (column("crank angle", ANGLE), column("stroke, counter-clockwise", left=True))
+    return [
+        sentence("slider: {given}", given=joined(given)),
+        Table((*heads, *(head for _, head in asked)), tuple(rows), ruled=True),
+    ]

@@ -10,13 +10,14 @@ import typer
 
 from ...model.errors import InputError
 from ...model.file_names import path_text
-from ..designs.columns import DIMENSIONS, find_column
+from ...model.linkage.dimensions import DIMENSIONS
+from ..designs.columns import find_column
 from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
+from ..render.terminal import print_table, table
 from ..runs.result import Result, Row, json_text, rows_of
 from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import answer, give, waiting
-from ..text.tables import print_table, table
 from .ending import end_without_design
 from .run_choice import front_of_run
 

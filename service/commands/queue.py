@@ -9,13 +9,13 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.counted import counted
+from ...objectives.keys import split_unit
 from ...optimise.front.progress import standing
-from ..designs.columns import split_unit
 from ..jobs.stores import Address, Name, find_job, has_store, shown_store, store_that_is_there, tell_idle
+from ..render.terminal import table
 from ..runs.result import json_text
 from ..text.options import Json
 from ..text.screen import console, give, say
-from ..text.tables import table
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.file_names import path_text
+from ...objectives.keys import key_in, split_unit
 from ...objectives.kinds import System
-from ..designs.columns import find_column, key_in, split_unit
+from ..designs.columns import find_column
 from ..designs.rounding import allowed_of, rounded_record, rounded_record_in, steps_of
+from ..render.terminal import print_table, table
 from ..runs.result import json_text
 from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import console, give, say, waiting
-from ..text.tables import print_table, table
 from .ending import end_without_design
 from .run_choice import front_of_run
 

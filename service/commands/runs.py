@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from ...objectives.counted import counted
-from ..designs.columns import find_columns, key_in
+from ...objectives.keys import key_in
+from ..designs.columns import find_columns
 from ..designs.selection import chosen_rows, none_meets, part_of
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
+from ..render.terminal import table
 from ..text.options import Dimensions, JobFile, Json
 from ..text.screen import answer, waiting
-from ..text.tables import table
 from .job_or_run import turning_problem
 
 if TYPE_CHECKING:

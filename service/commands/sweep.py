@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import ANGULAR_SPEED, LENGTH, System, shown_in
-from ..designs.columns import key_in
+from ...objectives.keys import kind_of_key
+from ...objectives.kinds import ANGULAR_SPEED, LENGTH
 from ..designs.selection import value_of
 from ..designs.shown_units import rows_in
+from ..render.blocks import Table, Value, column, recorded
+from ..render.terminal import print_blocks
 from ..runs.result import Row, rows_of
 from ..text.options import Dimensions, Figures, JobFile, Json, Units, length_option
 from ..text.screen import answer, say, write_figure
-from ..text.tables import print_table, table
 from .job_or_run import turning_problem
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from ...objectives.quantity import Quantity
     from ...objectives.tables.sweep import Axis
 
@@ -68,8 +67,11 @@ def sweep(
     names = [name for text in of for name in _names(text)]
     quantities = [problem.quantity(name) for name in names]
     swept_table = all_rows(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
-    rows = rows_in(rows_of(swept_table.to_dict("list")), units)
-    answer(json, rows, lambda screen: _show(screen, rows, axes, quantities, units))
+    rows = rows_of(swept_table.to_dict("list"))
+    shown = [_table(rows, axes, quantities)]
+    answer(json, rows_in(rows, units), lambda screen: print_blocks(screen, shown, units))
+    if (stuck := [row["reason"] for row in rows if row["reason"]]) and not json:
+        say(f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}")
     if figures is not None:
         from ..topics.sweep.figure import sweep_figure
 
@@ -89,22 +91,25 @@ def _names(text: str) -> list[str]:
     return [part.strip() for part in parts if part.strip()]
 
 
-def _show(
-    screen: Console, rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity], units: System
-) -> None:
-    """Write one row for each point; then how many have no value, and why the first has none."""
-    units_of = ["rpm" if axis.parameter == "speed" else "mm" for axis in axes]
-    heads = [f">{axis.parameter}, {shown_in(unit, units)[0]}" for axis, unit in zip(axes, units_of, strict=True)]
-    heads += [f">{item.title}, {shown_in(item.unit.symbol, units)[0]}".rstrip(", ") for item in quantities]
-    shown = table(*heads)
-    keys = [f"{axis.parameter}_{unit}" for axis, unit in zip(axes, units_of, strict=True)]
-    for row in rows:
-        at = [row[key_in(key, units)[0]] for key in keys]
-        values = [row[key_in(item.field, units)[0]] for item in quantities]
-        shown.add_row(*(f"{cell:.6g}" for cell in at), *("-" if cell != cell else f"{cell:.6g}" for cell in values))
-    print_table(screen, shown)
-    if stuck := [row["reason"] for row in rows if row["reason"]]:
-        say(f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}")
+def _value(row: Row, quantity: Quantity) -> Value:
+    number = row[quantity.field]
+    assert isinstance(number, float)
+    return Value(number / quantity.unit.factor, quantity.kind, missing="-")
+
+
+def _table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity]) -> Table:
+    """Return a row for each point, from metric rows."""
+    keys = [f"{axis.parameter}_{'rpm' if axis.parameter == 'speed' else 'mm'}" for axis in axes]
+    heads = [column(axis.parameter, kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
+    heads += [column(item.title, item.kind) for item in quantities]
+    cells = (
+        (
+            *(recorded(row, key) for key in keys),
+            *(_value(row, item) for item in quantities),
+        )
+        for row in rows
+    )
+    return Table(tuple(heads), tuple(cells))
 
 
 def parse_axis(text: str) -> Axis:

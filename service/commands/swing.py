@@ -87,7 +87,8 @@ def swing(
     from ...model.swing.asked import AskedSwing, asked_swing
     from ...model.swing.summary import summarise
     from ..designs.swing_curves import swing_rows
-    from ..swing.record import show_swing, swing_record
+    from ..render.terminal import print_blocks
+    from ..swing.record import swing_blocks, swing_record
 
     drawable(figure)
     require_ending("--curves", curves, ".csv")
@@ -105,8 +106,10 @@ def swing(
         actuator_tolerance=given_value("--actuator-tolerance", actuator_tolerance, LENGTH, sign="zero or more"),
     )
     mechanism, asked = asked_swing(mechanism, None if problem is None else problem.motion, given, _OPTIONS)
-    record = record_in(swing_record(mechanism, summarise(mechanism, linkage, asked)), units)
-    answer(json, record, lambda screen: show_swing(screen, record))
+    record = swing_record(mechanism, summarise(mechanism, linkage, asked))
+    answer(json, record_in(record, units), lambda screen: print_blocks(screen, swing_blocks(record), units))
+    for note in () if json else record["notes"]:
+        say(note)
     if curves is not None:
         write_file(curves, csv_text(rows_in(swing_rows(mechanism, linkage, asked), units)))
         say(f"{curves}: the curves of both ways")

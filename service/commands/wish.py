@@ -17,10 +17,10 @@ from ..designs.columns import find_column
 from ..designs.shown_units import row_in
 from ..designs.wishing import told_wishes, wished_record, words_of
 from ..jobs.made_wishes import keep_wish, made_wishes
+from ..render.terminal import print_table, table
 from ..runs.result import json_text, rows_of
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give, waiting
-from ..text.tables import print_table, table
 from .ending import end_without_design
 from .run_choice import front_of_run
 

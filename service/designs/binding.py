@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem
 from ..runs.result import Result
-from .columns import DIMENSIONS, find_column
+from .columns import find_column
 from .requirements import requirements_of
 from .stored_designs import stored_design
 

@@ -42,8 +42,8 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, tu
 
     curves = cycle_curves(mechanism, linkage, turns * even_angles(angles, MOST))
     return [
-        CurveColumn(curve.field, curve.title, curve.shown.symbol, (curve.shown.factor * curve.values).tolist())
-        for curve in curves
+        CurveColumn(curve.field, curve.title, metric.symbol, (metric.factor * curve.values).tolist())
+        for curve, metric in ((curve, curve.kind.metric) for curve in curves)
         if curve.name not in _LEFT_OUT
     ]
 
@@ -59,7 +59,7 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
     turns = cycle_turns(mechanism)
     curves = cycle_curves(mechanism, linkage, turns * even_angles(turns * _ANGLES))
     columns = {
-        curve.field: (curve.shown.factor * curve.values).tolist()
+        curve.field: (curve.kind.metric.factor * curve.values).tolist()
         for curve in curves
         if machine or curve.name in _MOTION
     }

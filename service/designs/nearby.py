@@ -7,8 +7,8 @@ from copy import deepcopy
 from typing import Any
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...optimise.problem.problem import Problem
-from .columns import DIMENSIONS
 
 SHARE = 0.1
 """Of a length, on either side of it."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from .columns import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.kinds import LENGTH, System
+from ..render.blocks import Value, joined, words
+from ..render.formatting import format_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,24 +66,25 @@ def _by_size(values: NDArray[np.float64] | None) -> dict[str, Any] | None:
     return None if values is None else dict(zip(SIZES, (1e3 * values).tolist(), strict=True))
 
 
-def sentences_of(found: Certificate, result: Result) -> list[str]:
-    """Return a certificate in words, the message first."""
+def sentences_of(found: Certificate, result: Result, system: System = "metric") -> list[str]:
+    """Return a certificate in words, in a system of units, the message first."""
     lines = [f"{result.name}: {found.message}", f"Design box: {found.boxes:,} boxes in {found.seconds:.1f} s"]
     if found.open:
         lines[1] += f", {found.open:,} open ({100.0 * found.remaining:.3g} % of it)"
     if found.where is not None:
-        lines.append(f"Farthest from proven: {_ranges(found.where)}")
+        ranges = [
+            words("{name} {low} to {high}", name=name, low=Value(low, LENGTH, bare=True), high=Value(high, LENGTH))
+            for name, (low, high) in zip(DIMENSIONS, found.where.tolist(), strict=True)
+        ]
+        lines.append(f"Farthest from proven: {format_text(joined(ranges), system)}")
     if found.hole is not None:
-        sizes = (f"{name} {1e3 * size:.6g} mm" for name, size in zip(DIMENSIONS, found.hole, strict=True))
-        lines.append(f"Largest gap of the delivered front: {', '.join(sizes)}")
+        sizes = [
+            words("{name} {size}", name=name, size=Value(size, LENGTH))
+            for name, size in zip(DIMENSIONS, found.hole.tolist(), strict=True)
+        ]
+        lines.append(f"Largest gap of the delivered front: {format_text(joined(sizes), system)}")
     if math.isfinite(found.hypervolume_gap):
         lines.append(
             f"Hypervolume: {result.hypervolume:.6g}, the true front's exceeds it by at most {found.hypervolume_gap:.3g}"
         )
     return lines + [f"Note: {note}" for note in found.notes[:_SHOWN_NOTES]]
-
-
-def _ranges(where: NDArray[np.float64]) -> str:
-    return ", ".join(
-        f"{name} {1e3 * low:.6g} to {1e3 * high:.6g} mm" for name, (low, high) in zip(DIMENSIONS, where, strict=True)
-    )

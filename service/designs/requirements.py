@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import System, shown_in
 from ..runs.result import Cell, Row
-from .columns import DIMENSIONS, find_column
+from .columns import find_column
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism

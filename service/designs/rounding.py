@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.keys import key_in, metric_key, split_unit
 from ...objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
 from ...objectives.units import shown
-from .columns import DIMENSIONS, key_in, metric_key, split_unit
 from .selection import value_of
 from .shown_units import record_in
 

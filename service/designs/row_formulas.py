@@ -16,11 +16,12 @@ from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import key_of
 from ...objectives.formula.slopes import Slopes
+from ...objectives.keys import split_unit
 from ...objectives.kinds import Kind
 from ...objectives.quantity import Array, Values
 from ...objectives.units import kind_for
 from ..runs.result import Row
-from .columns import Column, find_column, split_unit
+from .columns import Column, find_column
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
+from ...objectives.keys import key_in
 from ...objectives.kinds import System, shown_in
 from ..runs.result import Result, Row, Wanted
-from .columns import key_in
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from .columns import DIMENSIONS
 
 _DIGITS = 2
 """Of a tolerance; more say nothing."""

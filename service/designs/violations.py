@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from ...objectives.keys import metric_key, split_unit
 from ..runs.result import Result, Row
-from .columns import metric_key, split_unit
 
 if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism

@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass, replace
 
 from ...model.cycle.gas_cycle import cylinders
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import DIMENSIONS
 from ...model.machine.links import Bar, Link
 from ...model.machine.mechanism import Mechanism
 from . import layers as on

@@ -17,9 +17,9 @@ from ...objectives.kinds import unit_text
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ...optimise.questions.price_of_robustness import robust_cost
+from ..render.numerals import with_unit
 from ..runs.result import Wanted, wanted_of
 from .marks import BETTER, arrowed
-from .numerals import with_unit
 from .scatter import MOST, triangle
 from .style import INK, SMALL, dress, heading, legend_at, limits, new_figure, write
 

@@ -16,10 +16,11 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import LENGTH, System
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
+from ..render.blocks import Value, joined, words
+from ..render.numerals import shown
 from .drawing import least_transmission_crank_angle
-from .numerals import shown, with_unit
 from .panels import draw_panel
 from .sheets import CRANK_ANGLE, Line, Panel, over_turn
 from .style import MUTED, SMALL
@@ -47,10 +48,8 @@ class Curves:
         return 360.0 * round(float(self.angles[-1]) / 360.0)
 
 
-def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True, system: System = "metric") -> Curves:
+def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True) -> Curves:
     """Return the curves of one fully turning linkage; all angles that are marked are among the sampled ones.
-
-    system: of the units that they are in.
 
     Without a crank speed, velocity and acceleration are given for one radian per second: per unit of crank speed.
     """
@@ -75,8 +74,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     once = [*np.mod(crowded, _TURN), *even, inner, outer]
     angles = np.unique(np.concatenate([*(np.add(once, number * _TURN) for number in range(turns)), marked]))
     degrees = np.degrees(angles)
-    _, one = shown_in("mm", system)
-    ends = " and ".join(shown(1e3 * one * x) for x in sorted(map(float, linkage.dead_centres)))
+    ends = joined([Value(x, LENGTH, 4, bare=True) for x in sorted(map(float, linkage.dead_centres))], " and ")
     computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
     dead = float(np.degrees(inner)), float(np.degrees(outer))
     slow = str(slow_stroke(mechanism, linkage))
@@ -85,25 +83,24 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True,
     panels = []
     for name, extreme in extremes.items():
         found = computed[name]
-        symbol, factor = shown_in(found.shown.symbol, system)
-        title, values = with_unit(found.title, symbol), found.shown.factor * factor * found.values
-        lines, note = [Line("", degrees, values)], f"dead centres at {ends}"
+        lines, note = [Line("", degrees, found.values)], words("dead centres at {ends}", ends=ends)
         if extreme is not None:
             word, angle = extreme
             at = int(np.searchsorted(angles, angle))
-            lines.append(Line("", degrees[at : at + 1], values[at : at + 1], points=True))
-            note = f"{word} {shown(float(values[at]))} at {shown(degrees[at])}°"
+            lines.append(Line("", degrees[at : at + 1], found.values[at : at + 1], points=True))
+            peaked = Value(float(found.values[at]), found.kind, 4, bare=True)
+            note = words(f"{word} {{value}} at {shown(degrees[at])}°", value=peaked)
         # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
         ahead = (slow == "outward") == (mechanism.direction > 0.0)
         shaded = _span(*(dead if ahead else dead[::-1])) if has_slow else ()
-        panels.append(replace(over_turn(title, *lines, note=note), across=across, shaded=shaded))
+        panels.append(replace(over_turn(found.title, *lines, kind=found.kind, note=note), across=across, shaded=shaded))
     return Curves(degrees, tuple(panels), *dead)
 
 
-def draw_curves(panels: Sequence[Axes], curves: Curves) -> None:
-    """Draw each curve into one of the panels, given from top to bottom."""
+def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric") -> None:
+    """Draw each curve into one of the panels, given from top to bottom, in a system of units."""
     for axes, panel in zip(panels, curves.panels, strict=True):
-        draw_panel(axes, panel, across=axes is panels[-1])
+        draw_panel(axes, panel, system, across=axes is panels[-1])
         ends = (curves.inner, curves.outer)
         for angle in (end + turn for turn in np.arange(0.0, curves.last, 360.0) for end in ends):
             axes.axvline(angle, color=MUTED, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)

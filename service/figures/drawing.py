@@ -14,7 +14,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ..drawings.parts import Look, look_of, moving, pins_at, scenery
 from ..drawings.shapes import Point
-from .numerals import length, shown
+from ..render.numerals import length, shown
 from .painting import paint, show_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 

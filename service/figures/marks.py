@@ -13,7 +13,7 @@ from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.requirements import Objective
-from .numerals import with_unit
+from ..render.numerals import with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
 BETTER = {"maximise": 1, "minimise": -1, "target": 0}

@@ -13,9 +13,10 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
+from ...objectives.kinds import System
+from ..render.formatting import format_text
 from . import style
-from .numerals import shown
-from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet
+from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet, panel_in
 
 Array = NDArray[np.float64]
 
@@ -41,34 +42,35 @@ _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
 _GAP, _ROOM = 0.5, 0.9  # between stacked panels, and between those with axes of their own
 
 
-def draw_sheet(sheet: Sheet, *, above: float = 0.0) -> Figure:
-    """Return the figure of a sheet. above: room, inches, that is kept free below the heading."""
+def draw_sheet(sheet: Sheet, system: System = "metric", *, above: float = 0.0) -> Figure:
+    """Return the figure of a sheet in a system of units. above: room, inches, kept free below the heading."""
     widths = [sheet.width] * sheet.columns if isinstance(sheet.width, float) else list(sheet.width)
     rows = math.ceil(len(sheet.panels) / sheet.columns)
     tall = sheet.height - (_GAP if sheet.stacked else _ROOM)
     head = _HEAD + (_GAP - 0.3 if sheet.stacked and sheet.subtitle else 0.0)
     figure = style.new_figure(sum(widths), rows * sheet.height + head + above)
-    style.heading(figure, sheet.title, sheet.subtitle)
+    style.heading(figure, *(format_text(text, system, printed=True) for text in (sheet.title, sheet.subtitle)))
     for index, panel in enumerate(sheet.panels):
         row, column = divmod(index, sheet.columns)
         left, foot = sum(widths[:column]) + _LEFT, (rows - 1 - row) * sheet.height + _FOOT
         axes = style.place(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
-        draw_panel(axes, panel, across=not sheet.stacked or row == rows - 1)
+        draw_panel(axes, panel, system, across=not sheet.stacked or row == rows - 1)
     return figure
 
 
-def figure_of(made: Sheet | Figure) -> Figure:
-    """Return the figure of a sheet; one drawn before as it is."""
-    return draw_sheet(made) if isinstance(made, Sheet) else made
+def figure_of(made: Sheet | Figure, system: System = "metric") -> Figure:
+    """Return the figure of a sheet in a system of units; one drawn before as it is."""
+    return draw_sheet(made, system) if isinstance(made, Sheet) else made
 
 
-def save_sheet(made: Sheet | Figure, path: Path) -> None:
-    """Write a sheet, or a figure drawn before, as PNG."""
-    style.save(figure_of(made), path)
+def save_sheet(made: Sheet | Figure, path: Path, system: System = "metric") -> None:
+    """Write a sheet in a system of units, or a figure drawn before, as PNG."""
+    style.save(figure_of(made, system), path)
 
 
-def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
-    """Draw a panel on axes. across: whether the axis below is told."""
+def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, across: bool = True) -> None:
+    """Draw a panel on axes in a system of units. across: whether the axis below has its title."""
+    panel = panel_in(panel, system)
     style.dress(axes, across=8)
     for start, end in panel.shaded:
         for shift in (-360.0, 0.0, 360.0) if panel.turns else (0.0,):
@@ -81,11 +83,10 @@ def draw_panel(axes: Axes, panel: Panel, *, across: bool = True) -> None:
     _scale(axes, panel)
     _name(axes, panel)
     ink = style.VERMILION if any(line.points for line in panel.lines) else style.MUTED
-    note = panel.note.format(*map(shown, panel.noted)) if panel.noted else panel.note
-    style.title_panel(axes, panel.title, note, ink)
+    style.title_panel(axes, str(panel.title), str(panel.note), ink)
     axes.tick_params(labelbottom=across)
     if across:
-        axes.set_xlabel(panel.across, fontsize=style.TEXT)
+        axes.set_xlabel(str(panel.across), fontsize=style.TEXT)
     named = [line.label for line in panel.lines if line.label]
     if len(named) + (panel.level is not None) > 1:
         axes.legend(

@@ -14,8 +14,8 @@ from matplotlib.ticker import MaxNLocator
 from ...objectives.counted import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
+from ..render.numerals import on_scale
 from .marks import Axis, dimension_axes, marks, objective_axis
-from .numerals import on_scale
 from .style import FRAME, INK, MUTED, SMALL, TEXT, colours, heading, limits, new_figure, place
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))

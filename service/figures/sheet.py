@@ -9,14 +9,15 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...objectives.keys import split_unit
 from ...objectives.kinds import System, shown_in, unit_text
 from ...objectives.registry import QUANTITIES
-from ..designs.columns import DIMENSIONS, split_unit
+from ..render.numerals import shown
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
-from .numerals import shown
 from .style import INK, MUTED, SMALL, TEXT, heading, new_figure, place, write
 
 _WIDTH, _HEIGHT = 12.4, 7.4  # inches
@@ -66,12 +67,12 @@ def design_sheet(
                 write(figure, x + 2.44, y, unit_text(unit), **style)
             y -= 0.2 * _ROWS / tall
 
-    curves = cycle_curves(mechanism, linkage, torque=torque, system=system)
+    curves = cycle_curves(mechanism, linkage, torque=torque)
     count = len(curves.panels)
     height = (_HEIGHT - _TOP - _BOTTOM + _GAP) / count - _GAP
     width = _WIDTH - _SPLIT - _RIGHT
     feet = [_HEIGHT - _TOP - height - index * (height + _GAP) for index in range(count)]
-    draw_curves([place(figure, _SPLIT, foot, width, height) for foot in feet], curves)
+    draw_curves([place(figure, _SPLIT, foot, width, height) for foot in feet], curves, system)
     return figure
 
 

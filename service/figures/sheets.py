@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ...objectives.kinds import Face, Kind, System, unit_text
+from ..render.blocks import Text
+from ..render.formatting import format_text
 
 Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
@@ -17,12 +21,12 @@ THIN, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
 
 @dataclass(frozen=True)
 class Line:
-    """A curve through (x, y), each (n,), as shown, with a gap where y is nan; single points if `points`.
+    """A curve through (x, y), each (n,), as its panel has them, with a gap where y is nan; single points if `points`.
 
     style: which of the line styles.
     """
 
-    label: str
+    label: Text
     x: Array
     y: Array
     style: int = 0
@@ -31,23 +35,25 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """Lines over a common axis. title, across: with unit. names: (text, x, y) of what is named in the drawing.
+    """Lines over a common axis.
 
-    equal: the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. level: a
-    horizontal line, with its name. shaded: parts of the axis (from, to). note: at the right of the title, with {} for
-    each of the values `noted`, in the unit of the title.
+    title, across: of the axes. kind, along: of the numbers y and x, which are then in SI; where there is none, numbers
+    are drawn as they are, and the title says their unit. names: (text, x, y) of what is named in the drawing. equal:
+    the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. level: a horizontal
+    line, with its name. shaded: parts of the axis (from, to). note: at the right of the title.
     """
 
-    title: str
-    across: str
+    title: Text
+    across: Text
     lines: tuple[Line, ...]
+    kind: Kind | None = None
+    along: Kind | None = None
     names: tuple[tuple[str, float, float], ...] = ()
     equal: bool = False
     turns: bool = False
     level: tuple[str, float] | None = None
     shaded: tuple[tuple[float, float], ...] = ()
-    note: str = ""
-    noted: tuple[float, ...] = ()
+    note: Text = ""
 
 
 @dataclass(frozen=True)
@@ -58,8 +64,8 @@ class Sheet:
     column have one axis, told at the lowest.
     """
 
-    title: str
-    subtitle: str
+    title: Text
+    subtitle: Text
     panels: tuple[Panel, ...]
     columns: int = 1
     width: float | tuple[float, ...] = 6.2
@@ -68,14 +74,33 @@ class Sheet:
 
 
 def over_turn(
-    title: str,
-    *lines: Line,
-    level: tuple[str, float] | None = None,
-    note: str = "",
-    noted: tuple[float, ...] = (),
+    title: Text, *lines: Line, kind: Kind | None = None, level: tuple[str, float] | None = None, note: Text = ""
 ) -> Panel:
-    """Return a panel of lines over the crank angle."""
-    return Panel(title, CRANK_ANGLE, lines, turns=True, level=level, note=note, noted=noted)
+    """Return a panel of lines over the crank angle, deg. kind: of the numbers y, in SI; see `Panel`."""
+    return Panel(title, CRANK_ANGLE, lines, kind, turns=True, level=level, note=note)
+
+
+def panel_in(panel: Panel, system: System) -> Panel:
+    """Return a panel as it is drawn: its numbers in the units of a system, its texts with them."""
+    x, y = (None if kind is None else kind.face(system) for kind in (panel.along, panel.kind))
+    across, up = (1.0 if face is None else face.factor for face in (x, y))
+
+    def text(of: Text, face: Face | None = None) -> str:
+        words = format_text(of, system, printed=True)
+        return f"{words}, {unit_text(face.symbol)}" if face is not None and face.symbol else words
+
+    return replace(
+        panel,
+        title=text(panel.title, y),
+        across=text(panel.across, x),
+        lines=tuple(replace(line, label=text(line.label), x=across * line.x, y=up * line.y) for line in panel.lines),
+        kind=None,
+        along=None,
+        names=tuple((name, across * at, up * height) for name, at, height in panel.names),
+        level=None if panel.level is None else (panel.level[0], up * panel.level[1]),
+        shaded=tuple((across * start, across * end) for start, end in panel.shaded),
+        note=text(panel.note),
+    )
 
 
 def turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:

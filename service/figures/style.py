@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ...model.extras import NamingExtra
 from ...optimise.front.constant import is_constant
+from ..render.numerals import on_scale
 from ..resources.garbage import uncollected
-from .numerals import on_scale
 
 with NamingExtra("figures need"), uncollected():
     import matplotlib

@@ -16,7 +16,7 @@ from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import elements, group
-from ..figures.numerals import shown as number
+from ..render.numerals import shown as number
 from .play import ANGLES, Play, play_of_turn
 from .swing_play import play_of_swing
 

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.cycle.stroke_times import massless_machine, slow_stroke
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import DIMENSIONS
 from ...model.swing.ends import start_column
 from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem

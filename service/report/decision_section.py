@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
-from ..designs.columns import DIMENSIONS, find_column
+from ..designs.columns import find_column
 from ..designs.shown_units import row_in
-from ..figures.numerals import rounded
+from ..render.numerals import rounded
 from .document import Block, Paragraph, Section, Table
 from .subject import Alternative, Subject
 

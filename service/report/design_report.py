@@ -5,14 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
+from ...objectives.keys import metric_key
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ...optimise.search.fingerprint import version_of
-from ..designs.columns import DIMENSIONS, chosen_columns, find_column, metric_key
+from ..designs.columns import chosen_columns, find_column
 from ..designs.variation import Variation
-from ..figures.numerals import measured, rounded
+from ..render.numerals import measured, rounded
 from ..text.summary import machine_in_words
 from .decision_section import decision_section
 from .design_section import design_section, numbers_section

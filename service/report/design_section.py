@@ -9,17 +9,18 @@ from typing import get_args
 from matplotlib.figure import Figure
 
 from ...model.errors import InputError
+from ...objectives.keys import key_in
 from ...objectives.kinds import unit_text
 from ...objectives.needs import Without
 from ...objectives.registry import QUANTITIES
-from ..designs.columns import Column, all_columns, key_in
+from ..designs.columns import Column, all_columns
 from ..designs.requirements import requirements_of
 from ..designs.toleranced import toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
 from ..figures.front import sheet_of
-from ..figures.numerals import as_stored, rounded
 from ..figures.painting import drawing_figure
+from ..render.numerals import as_stored, rounded
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
-from ..figures.numerals import length, rounded
+from ..render.numerals import length, rounded
 from ..topics.sensitivity.figure import tornado_figure, tornado_rows
 from ..topics.tolerances.analysis import numbers
 from ..topics.tolerances.figure import error_bands, tolerances_figure

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
-from ..designs.columns import DIMENSIONS, find_column
+from ..designs.columns import find_column
 from ..designs.violations import front_violations_in_words
-from ..figures.numerals import measured, rounded
 from ..figures.parallel import parallel_coordinates
 from ..figures.scatter import scatter_matrix
+from ..render.numerals import measured, rounded
 from ..runs.result import Wanted
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject

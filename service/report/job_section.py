@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...objectives.kinds import unit_text
-from ..figures.numerals import rounded
+from ..render.numerals import rounded
 from ..text.summary import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Section
 from .subject import Subject

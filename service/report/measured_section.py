@@ -6,13 +6,13 @@ from dataclasses import replace
 from functools import partial
 
 from ...objectives.counted import counted
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
-from ..designs.shown_units import record_in
-from ..figures.numerals import rounded
 from ..figures.panels import draw_sheet
 from ..figures.sheets import Sheet
-from ..topics.measured.analysis import figure, left_out, numbers, told
+from ..render.blocks import Unit
+from ..render.formatting import format_text
+from ..topics.measured.analysis import curve_value, figure, left_out, numbers
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -24,49 +24,39 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
     """Return the deviation of each measured curve, the shifts that fit best, and the figure."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     found = numbers(mechanism, linkage, measured=measured)
-    curves = [told(entry) for entry in record_in(found, subject.system)["curves"].values()]
-    deviations = tuple(
-        (
-            str(curve["title"]),
-            str(curve["samples"]),
-            *(rounded(curve[name]) for name in ("rms", "mean", "largest", "largest_at_crank_angle")),
-            unit_text(unit),
-        )
-        for curve, unit in curves
-    )
-    shifts = tuple(
-        (
-            str(curve["title"]),
-            *(rounded(curve[name]) for name in ("best_crank_angle_shift", "best_shift", "left_rms")),
-            unit_text(unit),
-        )
-        for curve, unit in curves
-    )
+    deviations, shifts = [], []
+    for entry in found["curves"].values():
+        names = ("rms", "mean", "largest", "largest_at_crank_angle", "best_crank_angle_shift", "best_shift", "left_rms")
+        values = [curve_value(entry, name, missing="–") for name in names]
+        title, unit = entry["title"], format_text(Unit(values[0].kind), subject.system)
+        texts = [format_text(value, subject.system, bare=True, printed=True) for value in values]
+        deviations.append((title, str(entry["samples"]), *texts[:4], unit))
+        shifts.append((title, *texts[4:], unit))
     blocks: tuple[Block, ...] = (
         Table(
             f"Measured minus computed, {counted(found['rows'], 'row')}",
             ("curve", "samples", "RMS", "mean", "largest", "at, deg", "unit"),
-            deviations,
+            tuple(deviations),
             (0.32, 0.12, 0.12, 0.12, 0.12, 0.1, 0.1),
             frozenset({1, 2, 3, 4, 5}),
         ),
         Table(
             _ADDED,
             ("curve", "crank angle, deg", "value", "RMS left", "unit"),
-            shifts,
+            tuple(shifts),
             (0.36, 0.2, 0.17, 0.17, 0.1),
             frozenset({1, 2, 3}),
         ),
         *(Paragraph(f"{line}.", "note") for line in left_out(found)),
-        *_pictures(figure(mechanism, linkage, measured=measured)),
+        *_pictures(figure(mechanism, linkage, measured=measured), subject.system),
     )
     return Section("Measured curves", blocks)
 
 
-def _pictures(sheet: Sheet) -> list[Picture]:
+def _pictures(sheet: Sheet, system: System) -> list[Picture]:
     """Return the panels, as many in a picture as a page shows well."""
     parts = [sheet.panels[start : start + _PANELS] for start in range(0, len(sheet.panels), _PANELS)]
     return [
-        Picture("Measured and computed", partial(draw_sheet, replace(sheet, panels=part)), raster=True)
+        Picture("Measured and computed", partial(draw_sheet, replace(sheet, panels=part), system), raster=True)
         for part in parts
     ]

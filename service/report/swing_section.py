@@ -8,12 +8,12 @@ from functools import cached_property
 from ...model.swing.errors import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
-from ...objectives.kinds import shown_in, unit_text
-from ..designs.shown_units import record_in
+from ...objectives.kinds import shown_in
 from ..designs.swing_curves import driven, error_kind
-from ..figures.numerals import length, rounded
-from ..swing.record import swing_lines, swing_record, swing_title
-from ..text.extremes import extremes_line
+from ..render.blocks import Table as Numbers
+from ..render.formatting import cells, heads
+from ..render.numerals import length, rounded
+from ..swing.record import swing_blocks, swing_record, swing_title
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 
@@ -32,23 +32,16 @@ class SwingOfSubject:
 
     def section(self) -> Section:
         """Return the numbers of the swing, and the extremes of its curves."""
-        record = record_in(swing_record(self._subject.design.mechanism, self.found), self._subject.system)
-        lines = tuple(
-            (name, value if isinstance(value, str) else rounded(value), unit_text(unit), place)
-            for name, value, unit, place in swing_lines(record)
-        )
+        record, system = swing_record(self._subject.design.mechanism, self.found), self._subject.system
+        tables = [block for block in swing_blocks(record) if isinstance(block, Numbers)]
+        numbers, extremes = (cells(table, system, printed=True) for table in tables)
+        named, wide = ("", "value", "unit", "where"), (0.38, 0.14, 0.08, 0.4)
         blocks: list[Block] = [
-            Table(swing_title(record), ("", "value", "unit", "where"), lines, (0.38, 0.14, 0.08, 0.4), frozenset({1})),
+            Table(swing_title(record), named, numbers, wide, frozenset({1})),
             *(Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"]),
         ]
-        unit = shown_in("mm", self._subject.system)[0]
-        heads = ("curve", "least", "at, deg", f"slider, {unit}", "greatest", "at, deg", f"slider, {unit}", "unit")
-        rows = tuple(
-            tuple(unit_text(cell).replace("-", "−") for cell in extremes_line(entry))
-            for entry in record["extremes"].values()
-        )
-        title, wide = "Extremes of the curves over both ways", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
-        blocks.append(Table(title, heads, rows, wide, frozenset(range(1, 7))))
+        title, widths = "Extremes of the curves over both ways", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
+        blocks.append(Table(title, heads(tables[1], system), extremes, widths, frozenset(range(1, 7))))
         return Section("The swing", tuple(blocks))
 
     def tolerances(self) -> Section | None:

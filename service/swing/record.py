@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.machine.mechanism import Mechanism, Window
 from ...model.swing.over import At, Over
 from ...model.swing.summary import SwingSummary
+from ...objectives.keys import kind_of_key
 from ...objectives.kinds import ANGLE, FORCE, POWER, TORQUE
-from ..designs.columns import split_unit
 from ..designs.swing_curves import (
     drive_kind,
     driven,
@@ -18,12 +18,9 @@ from ..designs.swing_curves import (
     motion_and_drive,
     sizes_of_forces,
 )
-from ..text.extremes import show_extremes
-from ..text.screen import say
-from ..text.tables import Line, plain, show_lines
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from ..render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
+from ..render.extremes import extremes_table
+from ..text.tables import plain
 
 WITHOUT_LOADS = (
     "the drive is zero: no load acts and no mass weighs or is moved; "
@@ -138,40 +135,29 @@ def swing_title(record: Mapping[str, Any]) -> str:
     return f"Swing driven at the {record['driver']}, {how}"
 
 
-def swing_lines(record: Mapping[str, Any]) -> list[Line]:
-    """Return the numbers of a record but its extremes line by line, in the units of its keys."""
-    parts = {name: (key, unit) for key in record for name, unit in [_split(key)]}
-    lines: list[Line] = []
-    for name, (key, unit) in parts.items():
-        value = record[key]
-        told = isinstance(value, str | list | dict | bool) or name == "duration"
-        if not told and "_at_crank_angle" not in name and "_at_slider_position" not in name:
-            lines.append((_TITLES.get(name, name.replace("_", " ")), value, unit, _place(record, name)))
-    lines.append(("held by friction alone, all over", "yes" if record["holds_by_friction"] else "no", "", ""))
-    return lines
+def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
+    """Return the numbers of a metric record but its extremes, each with where it is."""
+    shown: list[NamedNumber] = []
+    for key, value in record.items():
+        name, _ = kind_of_key(key)
+        other = isinstance(value, str | list | dict | bool) or key == "duration_s"
+        if not other and "_at_crank_angle" not in name and "_at_slider_position" not in name:
+            shown.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place(record, name)))
+    return [*shown, ("held by friction alone, all over", "yes" if record["holds_by_friction"] else "no", "")]
 
 
-def show_swing(screen: Console, record: Mapping[str, Any]) -> None:
-    """Write the numbers of a record, in the units of its keys."""
-    show_lines(screen, swing_title(record), swing_lines(record))
-    show_extremes(screen, "Extremes over both ways, crank angles continuous", record["extremes"])
-    for note in record["notes"]:
-        say(note)
+def swing_blocks(record: Mapping[str, Any]) -> list[Block]:
+    """Return the numbers of a metric record, and the extremes of its curves."""
+    title = heading("Extremes over both ways, crank angles continuous")
+    return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 
 
-def _split(key: str) -> tuple[str, str]:
-    """Return a key without its unit, and the unit; energies and times have no column of their own."""
-    stem, _, last = key.rpartition("_")
-    if last in ("J", "s"):
-        return stem, last
-    name, unit, _ = split_unit(key)
-    return name, unit
-
-
-def _place(record: Mapping[str, Any], name: str) -> str:
-    angle = record.get(f"{name}_at_crank_angle_deg")
-    if angle is None:
+def _place(record: Mapping[str, Any], name: str) -> Text:
+    if record.get(f"{name}_at_crank_angle_deg") is None:
         return ""
-    key = next(key for key in record if key.startswith(f"{name}_at_slider_position_"))
-    way = f"{record[f'{name}_way']}, " if f"{name}_way" in record else ""
-    return f"{way}at {angle:.2f} deg, slider at {record[key]:.6g} {split_unit(key)[1]}"
+    return words(
+        "{way}at {angle}, slider at {position}",
+        way=f"{record[f'{name}_way']}, " if f"{name}_way" in record else "",
+        angle=recorded(record, f"{name}_at_crank_angle_deg", decimals=2),
+        position=recorded(record, f"{name}_at_slider_position_mm"),
+    )

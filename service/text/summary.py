@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ...model.cycle.pace import turn_time
-from ...model.linkage.values import DIMENSIONS
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.loads.words import between

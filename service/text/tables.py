@@ -8,10 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
-from ...objectives.kinds import unit_text
-from ..designs.columns import DIMENSIONS, Column, chosen_columns, find_column, metric_key, split_unit
+from ...objectives.keys import metric_key
+from ..designs.columns import Column, chosen_columns, find_column
 from ..designs.violations import violations_in_words
+from ..render.terminal import print_table, table
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
 _DIGITS = 4
-Line = tuple[str, float | str | None, str, str]
-"""Name, value (None where undefined), unit, remark."""
 
 
 def show_front(
@@ -85,59 +85,6 @@ def show_undefined(screen: Console, reasons: Mapping[str, str], own: Sequence[Qu
         screen.print("\nNot defined here:", style="dim")
     for rule, titles in together.items():
         screen.print(f"  {', '.join(titles)}: {rule}", style="dim", soft_wrap=True, markup=False)
-
-
-def table(*columns: str, ruled: bool = False, **look: Any) -> Table:
-    """Return an empty table. columns: heads, aligned to the right where they begin with ">". ruled: the heads.
-
-    look: further options of `rich.table.Table`.
-    """
-    from rich import box
-    from rich.table import Table
-
-    usual: dict[str, Any] = {"pad_edge": False, "show_header": any(column.strip(">") for column in columns)}
-    usual |= {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False} if ruled else {"box": None}
-    found = Table(**({"padding": (0, 2, 0, 0)} | usual | look))
-    for column in columns:
-        right = column.startswith(">")
-        found.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
-    return found
-
-
-def print_table(screen: Console, table: Table) -> None:
-    """Write a table at its own width: a narrow terminal breaks its lines, but no number is cut."""
-    natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
-    before = screen.width
-    try:
-        screen.width = max(before, natural)
-        screen.print(table)
-    finally:
-        screen.width = before
-
-
-def show_lines(console: Console, title: str, lines: Sequence[Line]) -> None:
-    """Write a heading and one line for each number."""
-    console.print(title, style="bold")
-    rows = table("", ">", "", "")
-    rows.columns[2].no_wrap, rows.columns[3].style = True, "dim"
-    for name, value, unit, remark in lines:
-        text = "undefined" if value is None else value if isinstance(value, str) else f"{value:.6g}"
-        rows.add_row(f"  {name}", text, "" if value is None else unit, remark)
-    console.print(rows)
-
-
-def told(numbers: Mapping[str, Any], key: str, remark: str = "") -> Line:
-    """Return the line of a number: name and unit by its key, and the crank angle of a peak."""
-    name, unit, _ = split_unit(key)
-    at = numbers.get(f"{name}_angle_deg")
-    remarks = [*([] if at is None else [f"at {at:.2f} deg"]), *([remark] if remark else [])]
-    words = name.replace("_", " ").replace("rms ", "RMS ")
-    return words, numbers[key], unit_text(unit), ", ".join(remarks)
-
-
-def compared(numbers: Mapping[str, Any], key: str, words: str) -> str:
-    """Return a remark on a number, with the unit of its key: "12.5 N m without friction"."""
-    return f"{numbers[key]:.6g} {unit_text(split_unit(key)[1])} {words}"
 
 
 def plain(value: Any) -> float | None:

@@ -10,23 +10,23 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from rich.console import Console
 
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...objectives.kinds import System
     from ..figures.sheets import Sheet
+    from ..render.blocks import Block
 
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic, declared by its folder, whose module `analysis` has the functions `numbers`, `show` and `figure`.
+    """A topic, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
     the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. A function
     `prepare` of that module, if it has one, gives further options for numbers and figure. A function `in_units`, if it
-    has one, gives the numbers in a system of units, of which `show` then takes any.
+    has one, gives the numbers in a system of units.
     """
 
     package: str
@@ -73,21 +73,17 @@ class TopicOfDesign:
         found: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
         return found
 
-    @property
-    def shows_any_units(self) -> bool:
-        """Whether `show` takes what `numbers_in` gives, not only metric numbers."""
-        return hasattr(self._analysis, "in_units")
-
-    def show(self, screen: Console, numbers: dict[str, Any]) -> None:
-        """Write the topic's numbers for people; metric ones, unless it shows any units."""
-        self._analysis.show(screen, numbers)
+    def blocks(self, numbers: dict[str, Any]) -> list[Block]:
+        """Return the topic's numbers, metric as they are, for people."""
+        found: list[Block] = self._analysis.blocks(numbers)
+        return found
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
         """Write the topic's figure into a folder, after its numbers; return the file."""
         from ..figures.panels import save_sheet
 
         file = folder / f"{self.name}.png"
-        save_sheet(self._drawn(units), file)
+        save_sheet(self._drawn(), file, units)
         return file
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
@@ -95,20 +91,15 @@ class TopicOfDesign:
         from ..figures.panels import figure_of
 
         self._prepare(cancelled)
-        return figure_of(self._drawn(units))
+        return figure_of(self._drawn(), units)
 
     def _prepare(self, cancelled: Callable[[], bool]) -> None:
         if hasattr(self._analysis, "prepare"):
             self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
 
-    def _drawn(self, units: System) -> Sheet | Figure:
+    def _drawn(self) -> Sheet | Figure:
         options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
         found: Sheet | Figure = self._analysis.figure(self.mechanism, self.linkage, **options)
-        if units == "inch":
-            from ..figures.sheets import Sheet
-            from .inches import sheet_in_inches
-
-            return sheet_in_inches(found) if isinstance(found, Sheet) else found
         return found
 
     @property

@@ -57,7 +57,7 @@ def test_a_deviation_is_measured_minus_computed_at_every_sample() -> None:
     noise = random.normal(0.3, 2.0, 300)
     found = one(machine, LINKAGE, angles, "torque", computed(machine, LINKAGE, angles)["torque"] + noise)
     worst = int(np.argmax(np.abs(noise)))
-    assert (found.count, found.title, found.si.symbol) == (300, "drive torque", "N m")
+    assert (found.count, found.title, found.kind.unit) == (300, "drive torque", "N m")
     assert found.rms == pytest.approx(math.sqrt(np.mean(noise**2)), rel=1e-9)
     assert found.mean == pytest.approx(noise.mean(), rel=1e-9)
     assert found.largest == pytest.approx(noise[worst], rel=1e-9)

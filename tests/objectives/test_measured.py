@@ -11,7 +11,6 @@ import pandas as pd
 import pytest
 
 from slidercrank import InputError, Linkage, Mechanism, analyse
-from slidercrank.objectives.kinds import SHOWN
 from slidercrank.objectives.tables.curve_extremes import every_curve
 from slidercrank.objectives.tables.measured import columns_of, measured_from
 from tests.model.cases import SMOOTH, TABLES
@@ -26,10 +25,8 @@ def meaning(name: str) -> tuple[str, float]:
 
 
 def test_every_curve_is_read_as_tables_in_metric_inch_and_si_call_it() -> None:
-    kinds = {kind.metric.symbol: kind for kind in SHOWN}
     for curve in every_curve(SMOOTH, LINKAGE, np.zeros(1)):
-        kind = kinds[curve.shown.symbol]
-        for face in (curve.si, curve.shown, kind.inch):
+        for face in (curve.kind.si, curve.kind.metric, curve.kind.inch):
             if face is not None:
                 for name in (curve.name + face.suffix, f"{curve.title} [{face.symbol}]"):
                     found, factor = meaning(name)

@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from slidercrank.model.errors import AssemblyError
+from slidercrank.model.linkage.dimensions import DIMENSIONS
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.linkage.values import DIMENSIONS
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse

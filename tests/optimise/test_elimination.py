@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from slidercrank.model.linkage.values import DIMENSIONS
+from slidercrank.model.linkage.dimensions import DIMENSIONS
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.problem.violation import FEASIBLE

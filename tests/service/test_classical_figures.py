@@ -23,6 +23,8 @@ from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.figures.sheets import Line, Panel, Sheet
+from slidercrank.service.render.formatting import format_text
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.text.screen import console
 from slidercrank.service.topics.approximations import analysis as approximations_analysis
@@ -47,7 +49,7 @@ def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
     position, velocity, acceleration = sheet.panels
     for branch in ("open", "crossed"):
         expected = polygons(Linkage(0.14, 0.31, 0.06, branch), 0.5, speed=3.0, acceleration=2.0)
-        np.testing.assert_allclose(line(position, branch).x, 1e3 * expected.position[:, 0], rtol=1e-14)
+        np.testing.assert_allclose(line(position, branch).x, expected.position[:, 0], rtol=1e-14)
         for panel, points in ((velocity, expected.velocity), (acceleration, expected.acceleration)):
             closed = np.concatenate([points, points[:1]])
             np.testing.assert_array_equal(line(panel, branch).x, closed[:, 0])
@@ -110,7 +112,7 @@ def test_approximation_panels_are_those_of_the_comparison() -> None:
     for panel, key in ((of_acceleration, "accelerations"), (of_torque, "torques")):
         for drawn, entry in zip(panel.lines, numbers[key], strict=True):
             np.testing.assert_allclose(drawn.y[::6], entry["error_over_offset_percent"], rtol=1e-9)
-            np.testing.assert_allclose(drawn.x[::6], np.abs(numbers["offset_mm"]), rtol=1e-12)
+            np.testing.assert_allclose(drawn.x[::6], 1e-3 * np.abs(numbers["offset_mm"]), rtol=1e-12)
 
 
 def test_errors_of_a_massless_machine_are_not_defined() -> None:
@@ -132,7 +134,7 @@ def test_polygon_numbers_are_the_vertices() -> None:
 def test_analyses_are_json_and_short_tables(analysis: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     numbers = analysis.numbers(MACHINE, LINKAGE)
     json_text(numbers)
-    analysis.show(console(), numbers)
+    print_blocks(console(), analysis.blocks(numbers))
     text = capsys.readouterr().out
     assert 8 <= len(text.splitlines()) <= 22
     assert "nan" not in text
@@ -146,10 +148,10 @@ def test_sieve_panels_are_the_motion_of_the_sieve() -> None:
             at = path(np.array(design), np.radians(drawn.x), 1.0)
             speed = 10.0 * math.pi
             expected = {"position": 1e3 * at.x, "velocity": speed * at.x_1, "acceleration": speed**2 * at.x_2}
-            name = panel.title.split()[1].rstrip(",")
+            name = format_text(panel.title).split()[1].rstrip(",")
             np.testing.assert_allclose(drawn.y, expected[name], rtol=0, atol=1e-9 * np.abs(expected[name]).max())
     at = path(np.array((0.14, 0.31, -0.06)), np.radians(of_cases.sieve_figure().panels[0].lines[0].x), 1.0)
-    curves = {panel.title.partition(",")[0]: panel.lines[0].y for panel in of_cases.sieve_figure().panels}
+    curves = {format_text(panel.title).partition(",")[0]: panel.lines[0].y for panel in of_cases.sieve_figure().panels}
     np.testing.assert_allclose(curves["rod angular velocity"], 10.0 * math.pi * at.rod_1, rtol=0, atol=1e-9)
     np.testing.assert_allclose(curves["rod angular acceleration"], 100.0 * math.pi**2 * at.rod_2, rtol=0, atol=1e-7)
     np.testing.assert_allclose(curves["rod angle"], np.degrees(np.arcsin(at.rod_sine)), rtol=0, atol=1e-9)

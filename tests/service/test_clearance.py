@@ -19,7 +19,8 @@ from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.figures.style import image
-from slidercrank.service.topics.clearance.analysis import figure, numbers, show, simulated
+from slidercrank.service.render.terminal import print_blocks
+from slidercrank.service.topics.clearance.analysis import blocks, figure, numbers, simulated
 from slidercrank.service.topics.clearance.figure import loose_curves, speed_runs, speeds_figure
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
@@ -41,7 +42,7 @@ def run() -> ClearanceRun:
 
 def text_of(found: dict[str, object]) -> str:
     console = Console(file=io.StringIO(), width=100)
-    show(console, found)
+    print_blocks(console, blocks(found))
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
 

@@ -21,6 +21,8 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves as curves_of_figure
 from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.render.formatting import format_text
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.topics.discovery import TOPICS
 from slidercrank.service.topics.extremes import analysis as extremes
@@ -37,7 +39,7 @@ MACHINES = {"loaded": fronts.MACHINE, "locked": LOCKED, "bare": Mechanism(), "mo
 
 def written(numbers: dict[str, Any]) -> str:
     stream = io.StringIO()
-    extremes.show(Console(file=stream, width=140), numbers)
+    print_blocks(Console(file=stream, width=140), extremes.blocks(numbers))
     return stream.getvalue()
 
 
@@ -161,7 +163,7 @@ def test_panels_mark_the_extremes_on_their_curves(name: str, count: int, tmp_pat
             # A degree in ten million: the sampled angles have those of the marks on both sides.
             distances = np.abs(curve.x[:, None] - mark.x[None, :]).min(axis=0)
             assert np.all(distances < 1e-7)
-        assert bool(marks) != ("undetermined" in panel.note)
+        assert bool(marks) != ("undetermined" in format_text(panel.note))
     assert overlaps(draw_sheet(sheet)) == []
     file = TOPICS["extremes"].of(MACHINES[name], LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")

@@ -22,6 +22,7 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.topics.balance import analysis as balance
 from slidercrank.service.topics.discovery import TOPICS as DECLARED
 from slidercrank.service.topics.friction import analysis as friction
@@ -44,7 +45,7 @@ TOPICS = (friction, motor, balance)
 
 def written(topic: ModuleType, numbers: dict[str, Any]) -> str:
     stream = io.StringIO()
-    topic.show(Console(file=stream, width=140), numbers)
+    print_blocks(Console(file=stream, width=140), topic.blocks(numbers))
     return stream.getvalue()
 
 

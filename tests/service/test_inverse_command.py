@@ -77,7 +77,7 @@ def test_random_solutions_give_the_slider_motion_back(command: Command) -> None:
 
 def test_the_table_shows_what_was_asked_for(command: Command) -> None:
     shown = command("inverse", *SIZES, *HERE, *MOVING).stdout
-    for words in ("position 240 mm, velocity -1 m/s, acceleration 3 m/s^2", "outward", "inward"):
+    for words in ("position 240 mm, velocity -1 m/s, acceleration 3 m/s²", "outward", "inward"):
         assert words in shown
     for number in ("312.364", "-141.481", "128.718", "80.1563", "162.872", "-118.235"):
         assert number in shown
@@ -118,7 +118,7 @@ def test_inches_are_given_and_shown(command: Command) -> None:
     assert inch["slider_acceleration_in_s2"] == 0.0
     assert not any(key.endswith(("_mm", "_m_s", "_m_s2")) for key in inch)
     shown = command("inverse", *sizes, *motion, "--units", "inch").stdout
-    assert "position 7 in, velocity 10 in/s, acceleration 0 in/s^2" in shown
+    assert "position 7 in, velocity 10 in/s, acceleration 0 in/s²" in shown
 
 
 def test_a_job_gives_fixed_dimensions_and_the_branch(tmp_path: Path, command: Command) -> None:

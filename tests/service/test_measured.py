@@ -20,6 +20,8 @@ from slidercrank.objectives.tables.deviation import deviations
 from slidercrank.service.designs import measured_file
 from slidercrank.service.designs.measured_file import measured_text, read_measured
 from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.topics.measured import MEASURED
 from slidercrank.service.topics.measured import analysis as topic
@@ -234,6 +236,8 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     assert position["left_rms_mm"] < 1e-4 < position["rms_mm"]
     inch = json.loads(command(*arguments, "--json", "--units", "inch").stdout)["measured"]["curves"]
     assert inch["slider_position"]["rms_in"] == pytest.approx(position["rms_mm"] / 25.4, rel=1e-12)
+    text = command(*arguments, "--units", "inch").stdout
+    assert re.search(rf"slider position +200 +{position['rms_mm'] / 25.4:.6g} .* in\b", text)
     place = tmp_path / "figures"
     told = command(*arguments, "--figures", place)
     assert told.exit_code == 0, told.stderr
@@ -244,7 +248,7 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     assert [len(panel.lines) for panel in sheet.panels] == [4, 4]
     assert overlaps(draw_sheet(sheet)) == []
     for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):
-        _, fitted, measured, ring = panel.lines
+        _, fitted, measured, ring = panel_in(panel, "metric").lines
         assert np.interp(measured.x, fitted.x, fitted.y) == pytest.approx(measured.y, abs=1e-2)
         assert ring.x == pytest.approx([entry["largest_at_crank_angle_deg"]], rel=1e-9)
 
@@ -271,7 +275,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
     assert numbers["rows_without_crank_angle"] == 1
     assert numbers["curves"]["torque"]["rms_Nm"] is None
     stream = io.StringIO()
-    topic.show(Console(file=stream, width=140), numbers)
+    print_blocks(Console(file=stream, width=140), topic.blocks(numbers))
     assert "undefined" in stream.getvalue()
     assert "nan" not in stream.getvalue()
     (panel,) = topic.figure(locked, LINKAGE, measured=measured).panels

@@ -77,7 +77,7 @@ def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed:
 def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
     machine, linkage = even_engine(1, 3)
     expected = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))["peak_torque_angle_deg"][0]
-    panel = next(panel for panel in cycle_curves(machine, linkage).panels if "torque" in panel.title)
+    panel = next(panel for panel in cycle_curves(machine, linkage).panels if panel.title == "drive torque")
     assert panel.lines[1].x == pytest.approx([expected], abs=1e-9)
 
 

@@ -20,8 +20,10 @@ from slidercrank.objectives.bars import LINKS
 from slidercrank.objectives.quantity import Group
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_ready
-from slidercrank.service.topics.strength.analysis import figure, numbers, show
+from slidercrank.service.topics.strength.analysis import blocks, figure, numbers
 from tests.model.cases import STRENGTH, random_designs
 from tests.model.strength.sections import eye_rows, linkage_with, random_bars, section_stress
 from tests.service import fronts
@@ -78,11 +80,11 @@ def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_st
 
 def test_curves_of_the_figure_are_those_of_a_section_cut_from_the_other_end() -> None:
     machine, linkage = strong(22)
-    panels = figure(machine, linkage).panels
-    assert [panel.title.split()[0] for panel in panels] == [name for name in LINKS for _ in range(2)]
+    panels = [panel_in(panel, "metric") for panel in figure(machine, linkage).panels]
+    assert [str(panel.title).split()[0] for panel in panels] == [name for name in LINKS for _ in range(2)]
     for name, over, along in zip(LINKS, panels[::2], panels[1::2], strict=True):
         length = float(getattr(linkage, name))
-        share = 1e-3 * float(over.title.split()[3]) / length
+        share = 1e-3 * float(str(over.title).split()[3]) / length
         degrees = over.lines[0].x
         inner = np.flatnonzero((np.diff(degrees, prepend=-1.0) > 1e-3) & (np.diff(degrees, append=361.0) > 1e-3))[::20]
         for face, line in zip((1.0, -1.0), over.lines, strict=True):
@@ -97,7 +99,7 @@ def test_the_text_tells_every_number_and_what_is_missing_is_said() -> None:
     machine, linkage = strong(23)
     screen = Console(file=io.StringIO(), width=120)
     found = numbers(machine, linkage)
-    show(screen, found)
+    print_blocks(screen, blocks(found))
     text = screen.file.getvalue()  # type: ignore[attr-defined]
     assert f"{found['rod_stress_MPa']:.6g} MPa" in " ".join(text.split())
     for asked in (numbers, figure):

@@ -6,8 +6,8 @@ import dataclasses
 import io
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,8 @@ from matplotlib.image import imread
 from rich.console import Console
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.linkage.dimensions import DIMENSIONS
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.linkage.values import DIMENSIONS
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -26,6 +26,7 @@ from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
 from slidercrank.objectives.tables.sensitivity import sensitivity
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.topics.discovery import TOPICS
 from slidercrank.service.topics.sensitivity import analysis as sensitivity_analysis
 from slidercrank.service.topics.sensitivity.figure import tornado_figure, tornado_rows
@@ -48,9 +49,9 @@ TIGHT = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=2e-4)))
 """Of `CLOSE` some linkages within the tolerance do not turn."""
 
 
-def text_of(show: Callable[[Console, dict[str, Any]], None], numbers: dict[str, Any]) -> str:
+def text_of(topic: ModuleType, numbers: dict[str, Any]) -> str:
     console = Console(width=100, file=io.StringIO(), markup=False, highlight=False)
-    show(console, numbers)
+    print_blocks(console, topic.blocks(numbers))
     return console.file.getvalue()  # type: ignore[attr-defined,no-any-return]
 
 
@@ -93,13 +94,13 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
 
 def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
     found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
-    text = text_of(tolerance_analysis.show, found)
+    text = text_of(tolerance_analysis, found)
     assert len(text.splitlines()) <= 30
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
         assert f"{found[key]:.4g} mm" in text
     assert "crank pin clearance" in text
     assert "scatter wider" in text
-    assert "scatter wider" not in text_of(tolerance_analysis.show, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
+    assert "scatter wider" not in text_of(tolerance_analysis, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
 
 
 def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
@@ -107,7 +108,7 @@ def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_cas
     json.dumps(found, allow_nan=False)
     assert found["exact_worst_case_mm"] is None
     assert found["monte_carlo"]["stuck"] > 0
-    text = text_of(tolerance_analysis.show, found)
+    text = text_of(tolerance_analysis, found)
     assert "does not turn fully" in text
     bands = error_bands(TIGHT, CLOSE, samples=500)
     assert bands.least is None
@@ -155,8 +156,8 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
     in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
-    assert len(text_of(sensitivity_analysis.show, found).splitlines()) <= 32
-    assert "peak torque" in text_of(sensitivity_analysis.show, in_line)
+    assert len(text_of(sensitivity_analysis, found).splitlines()) <= 32
+    assert "peak torque" in text_of(sensitivity_analysis, in_line)
 
 
 @pytest.mark.parametrize("offset", [0.06, 0.0])

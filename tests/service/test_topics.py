@@ -14,7 +14,7 @@ def test_every_topic_has_numbers_text_and_figure_in_its_folder() -> None:
     assert len(TOPICS) >= 11
     for topic in TOPICS.values():
         analysis = import_module(f"{topic.package}.analysis")
-        assert all(callable(getattr(analysis, part)) for part in ("numbers", "show", "figure"))
+        assert all(callable(getattr(analysis, part)) for part in ("numbers", "blocks", "figure"))
 
 
 def test_topics_are_shown_in_the_order_of_their_places() -> None:

@@ -22,7 +22,8 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
-from slidercrank.service.figures.sheets import Panel
+from slidercrank.service.figures.sheets import Panel, panel_in
+from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.topics.discovery import TOPICS
 from slidercrank.service.topics.flywheel import analysis as flywheel
 from slidercrank.service.topics.start_up import analysis as start_up
@@ -38,7 +39,7 @@ RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywhe
 def shown(topic: ModuleType, numbers: dict[str, Any]) -> str:
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
-    topic.show(Console(file=stream, width=100), numbers)
+    print_blocks(Console(file=stream, width=100), topic.blocks(numbers))
     assert 2 < len(stream.getvalue().splitlines()) <= 20
     return stream.getvalue()
 
@@ -101,7 +102,7 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
     assert numbers["fluctuation_without_flywheel"] == pytest.approx(6.3286239 if least else 63.3867047, rel=1e-7)
     assert numbers["least_speed_without_flywheel_rpm"] == pytest.approx(least, rel=1e-7)
     stream = io.StringIO()
-    flywheel.show(Console(file=stream, width=400), numbers)
+    print_blocks(Console(file=stream, width=400), flywheel.blocks(numbers))
     assert words in stream.getvalue()
 
 
@@ -114,7 +115,7 @@ def test_a_machine_without_inertia_has_a_flywheel_and_the_reason_why_it_has_no_s
     assert numbers["reason_without_flywheel"].startswith("the crank needs inertia at every angle")
     json.dumps(numbers, allow_nan=False)
     stream = io.StringIO()
-    flywheel.show(Console(file=stream, width=400), numbers)
+    print_blocks(Console(file=stream, width=400), flywheel.blocks(numbers))
     assert "without one no steady running was found: the crank needs inertia" in stream.getvalue()
 
 
@@ -129,8 +130,7 @@ def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float)
     """Return the panels of a topic's figure, which is drawn too."""
     file = TOPICS[topic.__name__.split(".")[-2]].of(machine, LINKAGE, options).draw(folder)
     assert file.stat().st_size > 10_000
-    panels: tuple[Panel, ...] = topic.figure(machine, LINKAGE, **options).panels
-    return panels
+    return tuple(panel_in(panel, "metric") for panel in topic.figure(machine, LINKAGE, **options).panels)
 
 
 def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:

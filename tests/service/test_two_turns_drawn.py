@@ -77,9 +77,9 @@ def test_the_indicator_has_no_spike_where_the_turns_meet() -> None:
     bottom = math.degrees(LINKAGE.dead_centre_angles[0])
     near = np.abs(line.x - bottom) < 1e-4
     assert near.sum() >= 2
-    assert line.y[near] == pytest.approx(0.9, rel=1e-6)  # intake, then compression
+    assert line.y[near] == pytest.approx(0.9e5, rel=1e-6)  # intake, then compression
     near = np.abs(line.x - bottom - 360.0) < 1e-4
-    assert line.y[near] == pytest.approx([60.0 / 10.0**1.3, 1.1], rel=1e-6)
+    assert line.y[near] == pytest.approx([60.0e5 / 10.0**1.3, 1.1e5], rel=1e-6)
 
 
 def test_what_is_marked_on_a_turn_is_marked_on_both() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.errors import AssemblyError
 from ....model.linkage.linkage import Linkage
@@ -13,9 +12,10 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
 from ....model.tolerance.sources import limits
+from ....objectives.kinds import ANGLE
 from ....optimise.problem.costs import NAMES, Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
-from ...text.tables import print_table, table
+from ...render.blocks import Block, Table, Text, Unit, column, heading, joined, recorded, sentence, words
 from ..peaks import peak
 
 
@@ -75,37 +75,47 @@ def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str,
     return {name: cost.of(float(reach[name])) for name, cost in costs.given.items()}
 
 
-def show(screen: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
-    screen.print(f"Tolerances of least cost for {numbers['limit_mm']:.6g} mm of position error, {kind}", style="bold")
-    rows = table("tolerance of", ">±", ">costs", ">share", "")
-    for row in numbers["tolerances"]:
-        angle = row["tolerance_mm"] is None
-        size = f"{row['tolerance_deg']:.5g} deg" if angle else f"{row['tolerance_mm']:.5g} mm"
-        saving = (
-            f"{row['bound_saving_per_mdeg']:.4g} for each 0.001 deg"
-            if angle
-            else f"{row['bound_saving_per_um']:.4g} for each µm"
-        )
-        note = f"the {row['bound']} that is possible; beyond it would save {saving}" if row["bound"] else ""
-        share = f"{row['share_of_cost_percent']:.1f} %"
-        rows.add_row(row["name"].replace("_", " "), size, f"{row['cost']:.5g}", share, note)
-    rows.add_row("together", "", f"{numbers['cost']:.5g}", "", _before(numbers))
-    print_table(screen, rows)
-    screen.print()
-    exact = numbers["exact_worst_case_mm"]
-    also = "" if exact is None else f"; exact worst case {exact:.6g} mm"
-    screen.print(f"greatest error {numbers['error_mm']:.6g} mm{also}", soft_wrap=True)
+    rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
+    rows.append(("together", "", recorded(numbers, "cost", digits=5), "", _before(numbers)))
+    columns = column("tolerance of", left=True), column("±"), column("costs"), column("share"), column(left=True)
+    limit = recorded(numbers, "limit_mm")
+    exact: Text = ""
+    if numbers["exact_worst_case_mm"] is not None:
+        exact = words("; exact worst case {size}", size=recorded(numbers, "exact_worst_case_mm"))
+    holds = sentence("the limit holds nothing back: every tolerance is the greatest that is allowed")
     if numbers["active_angles"]:
-        at = ", ".join(f"{row['crank_angle_deg']:.4g}" for row in numbers["active_angles"])
-        saving = numbers["saving_per_um"]
-        screen.print(f"the limit holds at {at} deg; one µm more of it saves {saving:.4g}", soft_wrap=True)
-    else:
-        screen.print("the limit holds nothing back: every tolerance is the greatest that is allowed")
+        holds = sentence(
+            "the limit holds at {angles} {unit}; one µm more of it saves {saving}",
+            angles=joined([recorded(at, "crank_angle_deg", digits=4, bare=True) for at in numbers["active_angles"]]),
+            unit=Unit(ANGLE),
+            saving=recorded(numbers, "saving_per_um", digits=4),
+        )
+    return [
+        heading(f"Tolerances of least cost for {{limit}} of position error, {kind}", limit=limit),
+        Table(columns, tuple(rows)),
+        sentence("greatest error {error}{exact}", error=recorded(numbers, "error_mm"), exact=exact),
+        holds,
+    ]
 
 
-def _before(numbers: dict[str, Any]) -> str:
+def _row(tolerance: dict[str, Any]) -> tuple[Text, ...]:
+    unit, step, each = ("mm", "um", "µm") if tolerance["tolerance_deg"] is None else ("deg", "mdeg", "0.001 deg")
+    remark: Text = ""
+    if tolerance["bound"]:
+        remark = words(
+            f"the {tolerance['bound']} that is possible; beyond it would save {{saving}} for each {each}",
+            saving=recorded(tolerance, f"bound_saving_per_{step}", digits=4),
+        )
+    size, cost = recorded(tolerance, f"tolerance_{unit}", digits=5), recorded(tolerance, "cost", digits=5)
+    share = f"{tolerance['share_of_cost_percent']:.1f} %"
+    return tolerance["name"].replace("_", " "), (size,), cost, share, remark
+
+
+def _before(numbers: dict[str, Any]) -> Text:
     if numbers["cost_before"] is None:
         return ""
-    return f"in the job: {numbers['cost_before']:.5g}, for {numbers['error_before_mm']:.4g} mm"
+    cost, error = recorded(numbers, "cost_before", digits=5), recorded(numbers, "error_before_mm", digits=4)
+    return words("in the job: {cost}, for {error}", cost=cost, error=error)

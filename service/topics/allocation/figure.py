@@ -16,7 +16,7 @@ from ....model.tolerance.sources import SOURCES, counted_angles
 from ....optimise.problem.costs import Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
-from ...figures.numerals import shown
+from ...render.numerals import shown
 from .analysis import costs_before
 
 Array = NDArray[np.float64]

@@ -6,15 +6,15 @@ import math
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.classical.comparison import Errors, compare, errors_over_offset, relative_error
 from ....model.classical.lumped import rotating_and_reciprocating
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ...figures.numerals import shown
+from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE
 from ...figures.sheets import Line, Panel, Sheet, over_turn
-from ...text.tables import print_table, table
+from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
+from ...render.numerals import shown
 
 _TOLD, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}
@@ -66,57 +66,61 @@ def _percent(share: float) -> float | None:
     return 100.0 * share if math.isfinite(share) else None
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write one line for each approximation."""
-    console.print("Approximate models, inertia alone, at constant speed", style="bold", soft_wrap=True)
-    farthest = numbers["offset_mm"][-1]
-    others = [f">{100 * k // (_TOLD - 1)} %" for k in range(_TOLD)]
-    rows = table("model", ">peak", "unit", ">error", *others, ruled=True)
-    for what, unit, key, exact in (
-        ("slider acceleration", "m/s^2", "accelerations", "exact_peak_acceleration_m_s2"),
-        ("inertia torque", "N m", "torques", "exact_peak_torque_Nm"),
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return a line for each approximation."""
+    offsets = [column(f"{100 * k // (_TOLD - 1)} %") for k in range(_TOLD)]
+    columns = (column("model", left=True), column("peak"), column("unit", left=True), column("error"), *offsets)
+    rows: list[tuple[Text, ...]] = []
+    for what, kind, key, exact in (
+        ("slider acceleration", ACCELERATION, "accelerations", "exact_peak_acceleration_m_s2"),
+        ("inertia torque", TORQUE, "torques", "exact_peak_torque_Nm"),
     ):
-        rows.add_row(f"{what}, exact", f"{numbers[exact]:.5g}", unit, style="bold")
+        rows.append((f"{what}, exact", recorded(numbers, exact, digits=5), Unit(kind), *[""] * (1 + _TOLD)))
         for entry in numbers[key]:
-            peak = next(value for name, value in entry.items() if name.startswith("peak_"))
+            peak = next(name for name in entry if name.startswith("peak_"))
             errors = (entry["error_percent"], *entry["error_over_offset_percent"])
             cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
-            rows.add_row(f"  {entry['name']}", f"{peak:.5g}", unit, *cells)
-    print_table(console, rows)
-    console.print(
-        "Errors: greatest over the cycle, share of the exact peak; on the right with other offsets, in % of "
-        f"{farthest:.4g} mm.",
-        style="dim",
-        soft_wrap=True,
-    )
+            rows.append((f"  {entry['name']}", recorded(entry, peak, digits=5), Unit(kind), *cells))
+    return [
+        heading("Approximate models, inertia alone, at constant speed"),
+        Table(columns, tuple(rows), ruled=True),
+        note(
+            "Errors: greatest over the cycle, share of the exact peak; "
+            "on the right with other offsets, in % of {most}.",
+            most=recorded_all(numbers, "offset_mm", digits=4)[-1],
+        ),
+    ]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return acceleration and inertia torque, exact and approximate, and the greatest errors over offset."""
     found = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
     errors = _over_offset(mechanism, linkage, _DRAWN)
-    degrees, offsets = np.degrees(found.crank_angle), np.abs(1e3 * errors.offset)
+    degrees, offsets = np.degrees(found.crank_angle), np.abs(errors.offset)
     torques = [(_SHORT.get(name, name), 1 + n, name) for n, name in enumerate(found.torques)]
     panels = [
         over_turn(
-            "slider acceleration, m/s²",
+            "slider acceleration",
             Line("exact", degrees, found.acceleration),
             *(Line(name, degrees, curve, 1) for name, curve in found.accelerations.items()),
+            kind=ACCELERATION,
         ),
         over_turn(
-            "inertia torque, N m",
+            "inertia torque",
             Line("exact", degrees, found.torque),
             *(Line(label, degrees, found.torques[name], style) for label, style, name in torques),
+            kind=TORQUE,
         ),
         Panel(
             "greatest error of acceleration, % of its peak",
-            "offset, mm",
+            "offset",
             tuple(Line(name, offsets, 100.0 * curve, 1) for name, curve in errors.accelerations.items()),
+            along=LENGTH,
         ),
     ]
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
-        panels.append(Panel("greatest error of torque, %", "offset, mm", lines))
-    subtitle = f"{linkage.label}, {shown(mechanism.speed)} rad/s; inertia alone"
+        panels.append(Panel("greatest error of torque, %", "offset", lines, along=LENGTH))
+    subtitle = joined([dimensions(linkage), f"{shown(mechanism.speed)} rad/s; inertia alone"])
     title = "Approximate models against the exact one"
     return Sheet(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

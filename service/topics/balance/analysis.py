@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
 
 from ....model.cycle.several import WholeCurves, whole_curves
 from ....model.cycle.shaking import ShakingCurves, shaking_curves
@@ -17,9 +16,10 @@ from ....model.machine.links import Counterweight
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average
 from ....model.signals.signals import Signal
+from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.needs import MOTION
 from ...figures.sheets import Line, Sheet, over_turn, turn
-from ...text import tables as text
+from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
 from ..peaks import peak, row_of
 
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
@@ -61,18 +61,16 @@ def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) 
     return shaking_curves(mechanism, linkage, theta)
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-    lines: list[text.Line] = []
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    shown: list[NamedNumber] = []
     for name, unit, _ in _CURVES:
         for which in ("peak", "rms"):
             without = f"{which}_{name}_without_counterweight_{unit}"
-            remarks = ["over time"] if which == "rms" else []
-            if numbers[without] is not None:
-                remarks.append(text.compared(numbers, without, "without counterweight"))
-            lines.append(text.told(numbers, f"{which}_{name}_{unit}", ", ".join(remarks)))
+            remarks = ("over time" if which == "rms" else "", compared(numbers, without, "without counterweight"))
+            shown.append(named_number(numbers, f"{which}_{name}_{unit}", joined(remarks)))
     title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
-    text.show_lines(console, title, lines)
+    return number_list(title, shown)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -89,8 +87,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         moment.append(Line("without counterweight", degrees, then.moment, 1))
     along, across = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)
     panels = (
-        over_turn("shaking force, N", *size),
-        over_turn("its components, N", along, across),
-        over_turn("shaking moment about the crank pivot, N m", *moment),
+        over_turn("shaking force", *size, kind=FORCE),
+        over_turn("its components", along, across, kind=FORCE),
+        over_turn("shaking moment about the crank pivot", *moment, kind=TORQUE),
     )
     return Sheet("Shaking force and moment on the frame", "", panels, width=6.4, height=2.25, stacked=True)

@@ -8,34 +8,32 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 from ....model.clearance.run import ClearanceProgress, ClearanceRun, simulate
 from ....model.clearance.statistics import summarise
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ...text.tables import table
+from ...render.blocks import Block, Table, Text, Unit, column, heading, note, recorded, sentence, words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CYCLES, DISCARD = 12, 4
 
-# Field of the summary, key without unit, unit in the key, factor from SI, title and unit for people.
+# Field of the summary, key without unit, unit in the key, factor from SI, title, and unit where the key has none.
 ROWS = (
-    ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", "m/s^2"),
+    ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", ""),
     ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  over that of ideal joints", ""),
     ("displacement_deviation",) * 2 + ("_percent", 100.0, "slider displacement off by", "% of stroke"),
-    ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity off by", "m/s"),
+    ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity off by", ""),
     ("impacts", "impacts_per_turn", "", 1.0, "impacts per turn", ""),
     ("contact_share", "contact_share", "_percent", 100.0, "time in contact", "%"),
-    ("peak_contact_force", "peak_contact_force", "_N", 1.0, "peak contact force", "N"),
-    ("penetration", "penetration", "_mm", 1e3, "greatest penetration", "mm"),
-    ("input_work", "input_work", "_J", 1.0, "work of the drive per turn", "J"),
-    ("load_work", "load_work", "_J", 1.0, "work of the loads per turn", "J"),
-    ("dissipated", "dissipated", "_J", 1.0, "lost in the joint per turn", "J"),
-    ("stored", "stored", "_J", 1.0, "gain of stored energy per turn", "J"),
+    ("peak_contact_force", "peak_contact_force", "_N", 1.0, "peak contact force", ""),
+    ("penetration", "penetration", "_mm", 1e3, "greatest penetration", ""),
+    ("input_work", "input_work", "_J", 1.0, "work of the drive per turn", ""),
+    ("load_work", "load_work", "_J", 1.0, "work of the loads per turn", ""),
+    ("dissipated", "dissipated", "_J", 1.0, "lost in the joint per turn", ""),
+    ("stored", "stored", "_J", 1.0, "gain of stored energy per turn", ""),
 )
 
 
@@ -97,25 +95,29 @@ def numbers(
     return found
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the statistics for people."""
-    joint, radial = numbers["joint"], numbers["radial_clearance_mm"]
-    console.print(f"Radial clearance of {radial:g} mm at the {joint} (law: {numbers['law']})", style="bold")
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the statistics for people."""
+    head = heading(
+        f"Radial clearance of {{size}} at the {numbers['joint']} (law: {numbers['law']})",
+        size=recorded(numbers, "radial_clearance_mm"),
+    )
     if not numbers["turns"]:
-        console.print("cancelled before there was a turn to count")
-        return
-    rows = table("", ">", "", "")
-    for _, key, unit, _, title, symbol in ROWS:
-        value, certain = numbers[f"{key}{unit}"], numbers[f"{key}_uncertainty{unit}"]
-        if value == 0.0 and not certain:
+        return [head, sentence("cancelled before there was a turn to count")]
+    rows: list[tuple[Text, ...]] = []
+    for _, key, unit, _, title, percent in ROWS:
+        value = recorded(numbers, f"{key}{unit}", digits=4)
+        certain = recorded(numbers, f"{key}_uncertainty{unit}", digits=2, bare=True)
+        if value.number == 0.0 and not certain.number:
             continue
-        rows.add_row(title, f"{value:.4g}", "" if certain is None else f"± {certain:.2g}", symbol)
-    console.print(rows)
-    turns, discarded = numbers["turns"], numbers["turns_discarded"]
-    note = f"means over {turns} turns after {discarded} of running in, ± 99 % confidence"
-    if numbers["status"] == "cancelled":
-        note += "; cancelled before the end"
-    console.print(f" {note}", style="dim")
+        spread = "" if certain.number is None else words("± {certain}", certain=certain)
+        rows.append((title, value, spread, percent or Unit(value.kind)))
+    cancelled = "; cancelled before the end" if numbers["status"] == "cancelled" else ""
+    means = f"means over {numbers['turns']} turns after {numbers['turns_discarded']} of running in"
+    return [
+        head,
+        Table((column(left=True), column(), column(left=True), column(left=True)), tuple(rows)),
+        note(f"{means}, ± 99 % confidence{cancelled}"),
+    ]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Figure:

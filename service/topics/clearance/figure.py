@@ -15,10 +15,10 @@ from ....model.clearance.statistics import ClearanceSummary, summarise
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ...figures.numerals import shown
 from ...figures.panels import draw_panel, draw_sheet
 from ...figures.sheets import CRANK_ANGLE, DASHED, DOTS, THIN, Line, Panel, Sheet
 from ...figures.style import heading, new_figure, place, write
+from ...render.numerals import shown
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,8 @@ def clearance_figure(run: ClearanceRun) -> Figure:
         f"turn {run.cycles} of the crank; solid: loose joint, dashed: ideal joints",
     )
     position, velocity, acceleration = (_panel(curves, title) for title in curves.curves)
-    off = np.abs(curves.curves[position.title] - curves.ideal[position.title]).max()
+    loose, ideal = position.lines
+    off = np.abs(loose.y - ideal.y).max()
     share = 100.0 * off / (1e3 * float(run.linkage.stroke))
     note = f"off by {shown(float(off), 3)} mm at most, {shown(float(share), 2)} % of the stroke"
     greatest = f"greatest {shown(float(curves.force.max()))}"

@@ -5,12 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
+from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, kind_in
 from ....optimise.sizing.counterweight import Balance, Shaking
-from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
-from ...text import tables as text
+from ...render.blocks import (
+    Block,
+    NamedNumber,
+    Text,
+    Unit,
+    Value,
+    compared,
+    joined,
+    note,
+    number_list,
+    recorded,
+    words,
+)
+from ...render.numerals import shown
 
 _SAMPLES = 1441
 
@@ -56,55 +68,62 @@ def _shaking(shaking: Shaking) -> dict[str, float]:
     }
 
 
-def show(screen: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-    mass, radius, angle = (numbers[f"counterweight_{key}"] for key in ("kg", "radius_mm", "angle_deg"))
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    mass, radius, angle = (recorded(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg"))
+    moment = Value(numbers["counterweight_moment_kg_m"], kind_in("kg m"))
     saving = numbers["saving_N_per_kg"]
     remark = f"the heaviest that is allowed; each kg more would save {saving:.4g} N" if saving else ""
-    lines: list[text.Line] = [
-        ("counterweight: mass times radius", numbers["counterweight_moment_kg_m"], "kg m", remark),
-        ("its angle from the crank", angle, "deg", "180 deg is opposite to the crank pin"),
-        ("its mass", mass, "kg", f"at {radius:.6g} mm from the crank pivot"),
+    shown: list[NamedNumber] = [
+        ("counterweight: mass times radius", moment, remark),
+        ("its angle from the crank", angle, "180 deg is opposite to the crank pin"),
+        ("its mass", mass, words("at {radius} from the crank pivot", radius=radius)),
     ]
     rod = numbers["rod_balance"]
     if rod is not None:
-        place = ""
-        if rod["centre_along_mm"] is not None:
-            along, across = (round(rod[f"centre_{name}_mm"], 3) + 0.0 for name in ("along", "across"))  # no "-0"
-            place = f"centre {along:g} mm along, {across:g} mm across the rod"
-        lines += [
-            ("added to the rod", rod["mass_kg"], "kg", place),
-            ("its inertia about the crank pin", rod["inertia_kg_m2"], "kg m^2", ""),
+        shown += [
+            ("added to the rod", recorded(rod, "mass_kg"), _centre(rod)),
+            ("its inertia about the crank pin", recorded(rod, "inertia_kg_m2"), ""),
         ]
     for name, unit in (("shaking_force", "N"), ("shaking_moment", "Nm")):
         for which in ("peak", "rms"):
-            key = f"{which}_{name}_{unit}"
-            words = name.replace("_", " ")
-            title = f"RMS {words} over time" if which == "rms" else f"{which} {words}"
-            before = text.compared(numbers["before"], key, "before")
-            lines.append((title, numbers["after"][key], "N m" if unit == "Nm" else unit, before))
-    text.show_lines(screen, f"Balance of least {numbers['measure']} shaking (moment about the crank pivot)", lines)
-    line = f'counterweight = {{ mass = "{mass:.6g} kg", radius = "{radius:.6g} mm", angle = "{angle:.6g} deg" }}'
-    screen.print(f"  in the job: {line}", style="dim", soft_wrap=True)
+            key, called = f"{which}_{name}_{unit}", name.replace("_", " ")
+            title = f"RMS {called} over time" if which == "rms" else f"{which} {called}"
+            shown.append((title, recorded(numbers["after"], key), compared(numbers["before"], key, "before")))
+    line = '  in the job: counterweight = {{ mass = "{mass}", radius = "{radius}", angle = "{angle}" }}'
+    return [
+        *number_list(f"Balance of least {numbers['measure']} shaking (moment about the crank pivot)", shown),
+        note(line, mass=mass, radius=radius, angle=angle),
+    ]
+
+
+def _centre(rod: dict[str, Any]) -> Text:
+    if rod["centre_along_mm"] is None:
+        return ""
+    along, across = (Value(1e-3 * round(rod[f"centre_{name}_mm"], 3), LENGTH) for name in ("along", "across"))
+    return words("centre {along} along, {across} across the rod", along=along, across=across)
 
 
 def figure(found: Balance, *, title: str) -> Sheet:
-    """Return hodograph, force and, where a rod balance changes it, moment before and after, N and N m."""
+    """Return hodograph, force and, where a rod balance changes it, moment before and after."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
     curves = list(enumerate(zip(("before", "after"), found.hodograph(theta), strict=True)))
     hodographs = tuple(Line(name, each.force_x, each.force_y, n) for n, (name, each) in curves)
     sizes = (Line(name, degrees, np.hypot(each.force_x, each.force_y), n) for n, (name, each) in curves)
-    across = "along the slider line, N; upward: across it, N"
+    across = words("along the slider line, {unit}; upward: across it", unit=Unit(FORCE))
     panels = [
-        Panel("hodograph of the shaking force", across, hodographs, equal=True),
-        over_turn("size of the shaking force, N", *sizes),
+        Panel("hodograph of the shaking force", across, hodographs, kind=FORCE, along=FORCE, equal=True),
+        over_turn("size of the shaking force", *sizes, kind=FORCE),
     ]
     angle = shown(float(np.degrees(found.angle)) % 360.0)
-    parts = [f"counterweight {shown(found.mass)} kg at {shown(1e3 * found.radius)} mm, {angle}° from the crank"]
+    mass, radius = Value(found.mass, MASS, 4), Value(found.radius, LENGTH, 4)
+    parts: list[Text] = [
+        words(f"counterweight {{mass}} at {{radius}}, {angle}° from the crank", mass=mass, radius=radius)
+    ]
     if found.rod is not None:
         moments = (Line(name, degrees, each.moment, n) for n, (name, each) in curves)
-        panels.append(over_turn("moment about the pivot, N m", *moments))
-        parts.append(f"{shown(found.rod.mass)} kg added to the rod" if found.rod.mass else "nothing added to the rod")
-    subtitle, count = ", ".join(parts), len(panels)
-    return Sheet(f"{title}: balance", subtitle, tuple(panels), columns=count, width=5.0, height=4.4)
+        panels.append(over_turn("moment about the pivot", *moments, kind=TORQUE))
+        added = words("{mass} added to the rod", mass=Value(found.rod.mass, MASS, 4))
+        parts.append(added if found.rod.mass else "nothing added to the rod")
+    return Sheet(f"{title}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4)

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.cycle.several import whole_breakpoints, whole_curves, whole_cycle
 from ....model.linkage.linkage import Linkage
@@ -15,8 +14,9 @@ from ....model.machine.members import alone, members
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
+from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
-from ...text import tables as text
+from ...render.blocks import Block, Table, Text, column, compared, named_number, number_list, recorded
 from ..peaks import peak
 
 _FORCES = {
@@ -62,28 +62,31 @@ def _with_angle(name: str, unit: str, extreme: Extreme) -> dict[str, Any]:
     return {f"{name}_{unit}": extreme.value, f"{name}_angle_deg": at}
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-    remarks = {
-        "peak_torque_Nm": text.compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first alone"),
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    remarks: dict[str, Text] = {
+        "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first alone"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
         "mean_torque_Nm": "over the crank angle",
         "rms_torque_Nm": "over time, heats the motor",
         "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
         "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
-        "peak_shaking_force_N": text.compared(numbers, "peak_shaking_force_of_one_N", "of one alone"),
+        "peak_shaking_force_N": compared(numbers, "peak_shaking_force_of_one_N", "of one alone"),
         "rms_shaking_force_N": "over time",
-        "peak_shaking_moment_Nm": text.compared(numbers, "peak_shaking_moment_of_one_Nm", "of one alone"),
+        "peak_shaking_moment_Nm": compared(numbers, "peak_shaking_moment_of_one_Nm", "of one alone"),
         "rms_shaking_moment_Nm": "over time",
         "peak_rocking_couple_Nm": "about the shaft's zero, from the places of the cylinders",
     }
-    lines = [text.told(numbers, key, remark) for key, remark in remarks.items()]
-    text.show_lines(console, f"{len(numbers['cylinders'])} cylinders on one crankshaft, together", lines)
-    heads = (">phase, deg", ">bank, deg", ">place, mm", ">peak torque, N m")
-    rows = text.table(*heads, ">crank pin, N", ">slider pin, N", ">guide, N")
-    for own in numbers["cylinders"]:
-        rows.add_row(*(f"{value:.6g}" for value in own.values()))
-    text.print_table(console, rows)
+    together = [named_number(numbers, key, remark) for key, remark in remarks.items()]
+    columns = (
+        *(column(title, ANGLE) for title in ("phase", "bank")),
+        column("place", LENGTH),
+        column("peak torque", TORQUE),
+        *(column(title, FORCE) for title in ("crank pin", "slider pin", "guide")),
+    )
+    rows = tuple(tuple(recorded(own, key) for key in own) for own in numbers["cylinders"])
+    title = f"{len(rows)} cylinders on one crankshaft, together"
+    return [*number_list(title, together), Table(columns, rows)]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -94,11 +97,11 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     together = Line("together", degrees, now.torque)
     forces = [Line("along x", degrees, now.force_x), Line("along y", degrees, now.force_y, 1)]
     panels = [
-        over_turn("drive torque, N m", *each, together),
-        over_turn("shaking force, N", *forces),
-        over_turn("shaking moment about the shaft, N m", Line("together", degrees, now.moment)),
+        over_turn("drive torque", *each, together, kind=TORQUE),
+        over_turn("shaking force", *forces, kind=FORCE),
+        over_turn("shaking moment about the shaft", Line("together", degrees, now.moment), kind=TORQUE),
     ]
     if mechanism.arrangement is not None and mechanism.arrangement.places:
         couple = [Line("about x", degrees, now.couple_x), Line("about y", degrees, now.couple_y, 1)]
-        panels.append(over_turn("rocking couple, N m", *couple))
+        panels.append(over_turn("rocking couple", *couple, kind=TORQUE))
     return Sheet("Cylinders on one crankshaft", "", tuple(panels), width=6.4, height=2.25, stacked=True)

@@ -6,19 +6,31 @@ import math
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.cycle.self_locking import locking_reason
 from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
+from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
-from ...figures.numerals import shown, with_unit
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
-from ...text import tables as text
-from ...text.extremes import show_extremes
+from ...render.blocks import (
+    Block,
+    NamedNumber,
+    Text,
+    Value,
+    dimensions,
+    heading,
+    joined,
+    number_list,
+    recorded,
+    sentence,
+    words,
+)
+from ...render.extremes import extremes_table
+from ...render.numerals import shown
 from ...text.tables import plain
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
@@ -44,7 +56,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
 def _entry(found: CurveExtremes) -> dict[str, Any]:
     entry: dict[str, Any] = {"title": found.title}
     for word, extreme in (("least", found.least), ("greatest", found.greatest)):
-        entry[f"{word}{found.shown.suffix}"] = plain(found.shown.factor * extreme.value)
+        entry[f"{word}{found.kind.metric.suffix}"] = plain(found.kind.metric.factor * extreme.value)
         entry |= _place(word, extreme)
     return entry
 
@@ -95,30 +107,30 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
     }
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write a line for each curve, and the strokes."""
-    show_extremes(console, "Extremes over the turn, crank angles continuous", numbers["curves"])
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return a line for each curve, and the strokes."""
+    found: list[Block] = [heading("Extremes over the turn, crank angles continuous"), extremes_table(numbers["curves"])]
     if "undefined_because" in numbers:
-        console.print(f"Undefined: {numbers['undefined_because']}", soft_wrap=True)
-    strokes, lines = numbers["strokes"], list[text.Line]()
+        found.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
+    strokes, shown = numbers["strokes"], list[NamedNumber]()
     for name in _STROKES:
         stroke = strokes[name]
-        lines.append((f"{name} stroke", stroke["crank_angle_deg"], "deg", ""))
+        shown.append((f"{name} stroke", recorded(stroke, "crank_angle_deg"), ""))
         if "duration_s" in stroke:
-            at = f"at {stroke['greatest_speed_at_crank_angle_deg']:.2f} deg"
+            at = recorded(stroke, "greatest_speed_at_crank_angle_deg", decimals=2)
             if stroke["duration_s"] is not None:
-                lines.append(("  duration", stroke["duration_s"], "s", ""))
-            lines.append(("  greatest slider speed", stroke["greatest_speed_m_s"], "m/s", at))
-    for title, key, unit in (
-        ("ratio of crank angles", "angle_ratio", ""),
-        ("ratio of durations", "duration_ratio", ""),
-        ("difference of durations", "duration_difference_s", "s"),
-        ("ratio of greatest speeds", "greatest_speed_ratio", ""),
-        ("difference of greatest speeds", "greatest_speed_difference_m_s", "m/s"),
+                shown.append(("  duration", Value(stroke["duration_s"], TIME), ""))
+            shown.append(("  greatest slider speed", recorded(stroke, "greatest_speed_m_s"), words("at {at}", at=at)))
+    for title, key, kind in (
+        ("ratio of crank angles", "angle_ratio", RATIO),
+        ("ratio of durations", "duration_ratio", RATIO),
+        ("difference of durations", "duration_difference_s", TIME),
+        ("ratio of greatest speeds", "greatest_speed_ratio", RATIO),
+        ("difference of greatest speeds", "greatest_speed_difference_m_s", SPEED),
     ):
         if strokes.get(key) is not None:
-            lines.append((title, strokes[key], unit, "outward against inward"))
-    text.show_lines(console, "Strokes", lines)
+            shown.append((title, Value(strokes[key], kind), "outward against inward"))
+    return [*found, *number_list("Strokes", shown)]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -134,7 +146,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
-    return Sheet("Extremes over the turn", linkage.label, panels, columns=min(2, len(panels)), width=5.2)
+    return Sheet("Extremes over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2)
 
 
 def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
@@ -142,14 +154,16 @@ def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
 
 
 def _panel(found: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
-    factor = found.shown.factor
-    lines = [Line("", degrees, factor * values)]
+    lines = [Line("", degrees, values)]
     ends = [end for end in _ends(found) if math.isfinite(end.crank_angle)]
-    note = "constant" if math.isfinite(found.least.value) else "undetermined where friction locks"
-    noted: tuple[float, ...] = ()
+    note: Text = "constant" if math.isfinite(found.least.value) else "undetermined where friction locks"
     if ends:
-        angles = np.degrees([end.crank_angle for end in ends])
-        noted = tuple(factor * end.value for end in ends)
-        lines.append(Line("", angles, np.array(noted), points=True))
-        note = ", ".join(f"{{}} at {shown(at)}°" for at in angles)
-    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note, noted=noted)
+        angles, sizes = np.degrees([end.crank_angle for end in ends]), [end.value for end in ends]
+        lines.append(Line("", angles, np.array(sizes), points=True))
+        note = joined(
+            [
+                words(f"{{value}} at {shown(at)}°", value=Value(size, found.kind, digits=4, bare=True))
+                for size, at in zip(sizes, angles, strict=True)
+            ]
+        )
+    return over_turn(found.title, *lines, kind=found.kind, note=note)

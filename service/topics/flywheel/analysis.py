@@ -6,16 +6,16 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.transient.flywheel import design_flywheel
 from ....model.transient.steady import Runner, SteadyRunning
-from ...figures.numerals import shown
+from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
-from ...text.tables import table
+from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
+from ...render.numerals import shown
 from ..start_up.analysis import RPM, in_order, steady_numbers
 
 FLUCTUATION = 0.02
@@ -57,32 +57,53 @@ def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[tuple[float, float
         return None, str(error)
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers as a sentence and a short table."""
-    wanted, inertia = numbers["wanted_fluctuation"], numbers["flywheel_kgm2"]
-    bare, steady = numbers["fluctuation_without_flywheel"], numbers["steady"]
-    slowest = numbers["least_speed_without_flywheel_rpm"]
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
+    wanted = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
+    needed = sentence(f"No flywheel is needed {wanted}: without one {{without}}.", without=_without_one(numbers))
+    if inertia:
+        needed = sentence(
+            f"Flywheel on the crank shaft {wanted}: {{inertia}} (classical estimate {{estimate}}); "
+            "without one {without}.",
+            inertia=Value(inertia, INERTIA, 5),
+            estimate=Value(numbers["classical_estimate_kgm2"], INERTIA, 5),
+            without=_without_one(numbers),
+        )
+    return [
+        needed,
+        sentence("Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time."),
+        sentence(
+            "{so}: mean speed {speed}, motor torque up to {torque} on the crank, mean power {power}.",
+            so="With it" if inertia else "So",
+            speed=recorded(steady, "mean_speed_rpm", digits=5),
+            torque=recorded(steady, "peak_motor_torque_Nm", digits=4),
+            power=recorded(steady, "mean_power_W", digits=4),
+        ),
+        Table(
+            (column("fluctuation"), column("flywheel", INERTIA), column("classical", INERTIA)),
+            tuple(
+                (Value(tried, digits=4), Value(exact, INERTIA, 4), Value(classical, INERTIA, 4))
+                for tried, exact, classical in zip(
+                    numbers["fluctuations"],
+                    numbers["flywheels_kgm2"],
+                    numbers["classical_estimates_kgm2"],
+                    strict=True,
+                )
+            ),
+        ),
+    ]
+
+
+def _without_one(numbers: dict[str, Any]) -> Text:
+    """Return how the machine runs without a flywheel."""
+    bare = numbers["fluctuation_without_flywheel"]
     if bare is None:
-        without = f"no steady running was found: {numbers['reason_without_flywheel']}"
-    elif slowest:
-        without = f"it is {bare:.4g} (least speed {slowest:.4g} rpm)"
-    else:
-        without = f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
-    for sentence in (
-        f"Flywheel on the crank shaft for a speed fluctuation of {wanted:g}: {inertia:.5g} kg m² "
-        f"(classical estimate {numbers['classical_estimate_kgm2']:.5g} kg m²); without one {without}."
-        if inertia
-        else f"No flywheel is needed for a speed fluctuation of {wanted:g}: without one {without}.",
-        "Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time.",
-        f"{'With it' if inertia else 'So'}: mean speed {steady['mean_speed_rpm']:.5g} rpm, motor torque up to "
-        f"{steady['peak_motor_torque_Nm']:.4g} N m on the crank, mean power {steady['mean_power_W']:.4g} W.",
-    ):
-        console.print(sentence, soft_wrap=True)
-    rows = table(">fluctuation", ">flywheel, kg m²", ">classical, kg m²")
-    keys = ("fluctuations", "flywheels_kgm2", "classical_estimates_kgm2")
-    for row in zip(*(numbers[key] for key in keys), strict=True):
-        rows.add_row(*(f"{value:.4g}" for value in row))
-    console.print(rows)
+        return f"no steady running was found: {numbers['reason_without_flywheel']}"
+    slowest = recorded(numbers, "least_speed_without_flywheel_rpm", digits=4)
+    if slowest.number:
+        return words(f"it is {bare:.4g} (least speed {{slowest}})", slowest=slowest)
+    return f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> Sheet:
@@ -114,14 +135,16 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
         turns.append(("with half of it", small, FAINT))
     speeds = []
     for name, running, style in turns:
-        angle, (speed,) = in_order(running, RPM * running.speed)
+        angle, (speed,) = in_order(running, running.speed)
         speeds.append(Line(name, angle, speed, style))
     reached = shown(found.running.fluctuation)
-    said = f"{shown(found.inertia)} kg m² for {reached}" if found.inertia else f"none needed for {shown(fluctuation)}"
+    size: Text = f"none needed for {shown(fluctuation)}"
+    if found.inertia:
+        size = words(f"{{inertia}} for {reached}", inertia=Value(found.inertia, INERTIA, 4))
     motor = "constant motor torque" if mechanism.drive is None else "the motor's own torque curve"
     panels = (
-        Panel("coefficient of speed fluctuation", "flywheel on the crank shaft, kg m²", tuple(lines)),
-        over_turn("crank speed over a turn, rpm", *speeds),
+        Panel("coefficient of speed fluctuation", "flywheel on the crank shaft", tuple(lines), along=INERTIA),
+        over_turn("crank speed over a turn", *speeds, kind=ANGULAR_SPEED),
     )
     title = "Flywheel and speed fluctuation"
-    return Sheet(title, f"{said}; {motor}", panels, columns=2, width=4.9, height=3.2)
+    return Sheet(title, words("{size}; {motor}", size=size, motor=motor), panels, columns=2, width=4.9, height=3.2)

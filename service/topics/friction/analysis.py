@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.efficiency import energies
@@ -19,8 +18,9 @@ from ....model.machine.members import alone, is_shaft
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
-from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
-from ...text import tables as text
+from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
+from ...figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, over_turn, turn
+from ...render.blocks import Block, NamedNumber, Value, compared, joined, named_number, number_list, recorded, words
 from ...text.tables import plain
 from ..peaks import peak, row_of
 
@@ -30,6 +30,7 @@ _WORDS = {
     "locks or may jam": "LOCKS at some crank angles, may jam at others",
     "may jam": "MAY JAM: the forces are not determined",
 }
+_OVER = "over the crank angle"
 _JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
 
 
@@ -77,41 +78,39 @@ def _word(holds: float | None) -> str:
     return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
     where = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
-    heat, share = numbers["friction_heat_J"], ""
-    if heat:
-        parts = [(name, numbers[f"{name}_heat_J"] / heat) for name in _JOINTS if numbers[f"{name}_heat_J"]]
-        share = ", ".join(f"{name.replace('_', ' ')} {100.0 * part:.3g} %" for name, part in parts)
-    least = f"least transmission angle {numbers['least_transmission_angle_deg']:.4g} deg less angles of friction"
-    lines: list[text.Line] = [
-        ("self-locking margin", numbers["self_locking_margin_deg"], "deg", least),
-        ("angle of friction, guide", numbers["guide_friction_angle_deg"], "deg", ""),
-        ("angle of friction, pins", numbers["pin_friction_angle_deg"], "deg", ""),
+    heat, drives = numbers["friction_heat_J"], (numbers["useful_work_J"] or 0.0) < 0.0
+    parts = [(name, numbers[f"{name}_heat_J"] / heat) for name in _JOINTS if heat and numbers[f"{name}_heat_J"]]
+    shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * part:.3g} %" for name, part in parts)
+    least = words(
+        "least transmission angle {angle} less angles of friction",
+        angle=recorded(numbers, "least_transmission_angle_deg", digits=4),
+    )
+    shown: list[NamedNumber] = [
+        ("self-locking margin", recorded(numbers, "self_locking_margin_deg"), least),
+        ("angle of friction, guide", recorded(numbers, "guide_friction_angle_deg"), ""),
+        ("angle of friction, pins", recorded(numbers, "pin_friction_angle_deg"), ""),
     ]
-    for name, suffix, unit in (
-        ("peak torque", "Nm", "N m"),
-        ("mean torque", "Nm", "N m"),
-        ("peak guide force", "N", "N"),
+    for key, smooth, over in (
+        ("peak_torque_Nm", "peak_torque_without_friction_Nm", ""),
+        ("mean_torque_Nm", "mean_torque_without_friction_Nm", _OVER),
+        ("peak_guide_force_N", "peak_guide_force_without_friction_N", ""),
     ):
-        stem = name.replace(" ", "_")
-        without = text.compared(numbers, f"{stem}_without_friction_{suffix}", "without friction")
-        without = f"over the crank angle, {without}" if name == "mean torque" else without
-        lines.append((name, numbers[f"{stem}_{suffix}"], unit, without))
-    efficiency = numbers["efficiency"]
-    drives = (numbers["useful_work_J"] or 0.0) < 0.0
-    side = "negative: the load drives the machine" if drives else "against the load"
-    share_of = "of the load's work is delivered at the crank" if drives else ""
+        shown.append(named_number(numbers, key, joined([over, compared(numbers, smooth, "without friction")])))
     why = "the load does no net work" if heat is not None else "nothing is determined"
-    lines += [
-        ("input work per cycle", numbers["input_work_J"], "J", ""),
-        ("useful work per cycle", numbers["useful_work_J"], "J", side),
-        ("friction heat per cycle", heat, "J", share),
-        ("efficiency", *((None, "%", why) if efficiency is None else (100.0 * efficiency, "%", share_of))),
+    delivered = "of the load's work is delivered at the crank" if drives else ""
+    efficiency = numbers["efficiency"]
+    side = "negative: the load drives the machine" if drives else "against the load"
+    shown += [
+        ("input work per cycle", recorded(numbers, "input_work_J"), ""),
+        ("useful work per cycle", recorded(numbers, "useful_work_J"), side),
+        ("friction heat per cycle", recorded(numbers, "friction_heat_J"), shares),
+        ("efficiency", Value(efficiency, PERCENT), why if efficiency is None else delivered),
     ]
     of = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""
-    text.show_lines(console, f"Friction{of}: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", lines)
+    return number_list(f"Friction{of}: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", shown)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -127,21 +126,21 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends, turns=turns)
     degrees = np.degrees(theta)
     with_it, without = (cycle(each, linkage, theta) for each in (mechanism, smooth))
-    margin = float(np.degrees(found.margin))
-    least = float(np.degrees(linkage.least_transmission_angle))
+    margin, least = float(found.margin), float(linkage.least_transmission_angle)
     level = ("locks below (worst side)", least - margin) if np.isfinite(margin) else None
 
-    def both(title: str, name: str) -> Panel:
+    def both(title: str, kind: Kind, name: str) -> Panel:
         lines = (("with friction", with_it), ("without", without))
-        return over_turn(title, *(Line(label, degrees, getattr(of, name), n) for n, (label, of) in enumerate(lines)))
+        curves = (Line(label, degrees, getattr(of, name), n) for n, (label, of) in enumerate(lines))
+        return over_turn(title, *curves, kind=kind)
 
-    angle = Line("transmission angle", degrees, np.degrees(with_it.transmission_angle))
+    angle = Line("transmission angle", degrees, with_it.transmission_angle)
     panels = (
-        both("drive torque, N m", "torque"),
-        both("force of the guide on the slider, N", "guide"),
-        over_turn("transmission angle, deg", angle, level=level),
+        both("drive torque", TORQUE, "torque"),
+        both("force of the guide on the slider", FORCE, "guide"),
+        over_turn("transmission angle", angle, kind=ANGLE, level=level),
     )
     locked = tuple((float(np.degrees(a)), float(np.degrees(b))) for a, b in found.locked)
-    across = panels[-1].across + (" (shaded: locks or may jam)" if locked else "")
+    across = joined([CRANK_ANGLE, "(shaded: locks or may jam)" if locked else ""], " ")
     shaded = tuple(replace(panel, across=across, shaded=locked) for panel in panels)
     return Sheet("Friction over the cycle", "", shaded, width=6.4, height=2.25, stacked=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.cycle.gas_cycle import cylinders
 from ....model.cycle.indicator import burning_ends, indicator, valve_events
@@ -15,10 +15,12 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
+from ....objectives.kinds import PRESSURE, VOLUME, face
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
-from ...text import tables as text
+from ...render.blocks import Block, NamedNumber, Value, number_list, recorded
 
-_BAR, _CM3 = 1e-5, 1e6
+_GAS_PRESSURE = replace(PRESSURE, metric=face("bar", 1e-5))
+_BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
 
 
 def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
@@ -58,21 +60,23 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     return {"cylinders": found}
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    found: list[Block] = []
     for one in numbers["cylinders"]:
-        lines: list[text.Line] = [
-            ("least volume", one["least_volume_cm3"], "cm³", ""),
-            ("greatest volume", one["greatest_volume_cm3"], "cm³", ""),
-            ("least pressure", one["least_pressure_bar"], "bar", ""),
-            ("greatest pressure", one["greatest_pressure_bar"], "bar", ""),
+        shown: list[NamedNumber] = [
+            ("least volume", recorded(one, "least_volume_cm3"), ""),
+            ("greatest volume", recorded(one, "greatest_volume_cm3"), ""),
+            ("least pressure", Value(one["least_pressure_bar"] / _BAR, _GAS_PRESSURE), ""),
+            ("greatest pressure", Value(one["greatest_pressure_bar"] / _BAR, _GAS_PRESSURE), ""),
         ]
         valve, falls = "a valve opens", "the pressure falls from its peak"
-        for name, note in (("expansion", valve), ("compression", valve), ("burning", falls)):
-            angle = one[f"{name}_ends_deg"]
-            if angle is not None:
-                lines.append((f"{name} ends", angle, "deg", note))
-        text.show_lines(console, f"Indicator diagram of load {one['load']} (pressures are absolute)", lines)
+        for name, event in (("expansion", valve), ("compression", valve), ("burning", falls)):
+            angle = recorded(one, f"{name}_ends_deg")
+            if angle.number is not None:
+                shown.append((f"{name} ends", angle, event))
+        found += number_list(f"Indicator diagram of load {one['load']} (pressures are absolute)", shown)
+    return found
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -84,12 +88,12 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         theta = turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)
         # Closed: the diagram ends where it began.
-        volume, pressure = (_CM3 * np.append(curve.volume, curve.volume[0]), _BAR * curve.pressure)
+        volume, pressure = (np.append(values, values[0]) for values in (curve.volume, curve.pressure))
         name = f"load {place + 1}"
-        over_volume.append(Line(name, volume, np.append(pressure, pressure[0]), style))
-        over_angle.append(Line(name, np.degrees(theta), pressure, style))
+        over_volume.append(Line(name, volume, pressure, style))
+        over_angle.append(Line(name, np.degrees(theta), curve.pressure, style))
     panels = (
-        Panel("pressure, bar", "volume, cm³", tuple(over_volume)),
-        over_turn("pressure, bar", *over_angle),
+        Panel("pressure", "volume", tuple(over_volume), kind=_GAS_PRESSURE, along=VOLUME),
+        over_turn("pressure", *over_angle, kind=_GAS_PRESSURE),
     )
     return Sheet("Indicator diagram", "", panels, width=6.4, height=3.0)

@@ -7,19 +7,20 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.counted import counted
+from ....objectives.keys import kind_of_key
+from ....objectives.kinds import ANGLE
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
-from ...designs.columns import split_unit
-from ...figures.numerals import shown, with_unit
 from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, over_turn, turn
-from ...text.tables import plain, print_table, table
+from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
+from ...render.numerals import shown
+from ...text.tables import plain
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
 _NAMED = 12  # of the columns that were left out
@@ -45,13 +46,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> di
 
 def _entry(found: Deviation) -> dict[str, Any]:
     def value(name: str, number: float | None) -> dict[str, float | None]:
-        shown = None if number is None else plain(found.shown.factor * number)
-        return {f"{name}{found.shown.suffix}": shown}
+        return {f"{name}{unit.suffix}": None if number is None else plain(unit.factor * number)}
 
     def angle(name: str, number: float | None) -> dict[str, float | None]:
         return {f"{name}_deg": None if number is None else plain(math.degrees(number))}
 
-    fit = found.fit
+    fit, unit = found.fit, found.kind.metric
     return {
         "title": found.title,
         "samples": found.count,
@@ -65,37 +65,38 @@ def _entry(found: Deviation) -> dict[str, Any]:
     }
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the deviation of each curve, then the shifts that fit best, and what was left out."""
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the deviation of each curve, then the shifts that fit best, and what was left out."""
     source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
-    head = f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"
-    console.print(head, style="bold", soft_wrap=True)
-    rows = table("curve", ">samples", ">RMS", ">mean", ">largest", ">at,\ndeg", "unit", ruled=True)
-    fits = table("curve", ">crank angle,\ndeg", ">value", ">RMS left", "unit", ruled=True)
+    deviations: list[tuple[Text, ...]] = []
+    fits: list[tuple[Text, ...]] = []
     for entry in numbers["curves"].values():
-        given, unit = told(entry)
-        at = given["largest_at_crank_angle"]
-        cells = [_text(given[name]) for name in ("rms", "mean", "largest")]
-        rows.add_row(given["title"], str(given["samples"]), *cells, "" if at is None else f"{at:.2f}", unit)
-        shifts = [given[name] for name in ("best_crank_angle_shift", "best_shift", "left_rms")]
-        fits.add_row(
-            given["title"],
-            *("none" if value is None else f"{value:+.6g}" for value in shifts[:2]),
-            "" if shifts[2] is None else f"{shifts[2]:.6g}",
-            unit,
-        )
-    print_table(console, rows)
-    console.print()
-    console.print("Shifts that, added to what was measured, fit best; not applied above", style="bold", soft_wrap=True)
-    print_table(console, fits)
-    for line in left_out(numbers):
-        console.print(line, soft_wrap=True, markup=False)
+        values = [curve_value(entry, name) for name in ("rms", "mean", "largest")]
+        at = curve_value(entry, "largest_at_crank_angle", decimals=2, missing="")
+        title, unit = entry["title"], Unit(values[0].kind)
+        deviations.append((title, str(entry["samples"]), *values, at, unit))
+        shifts = [
+            curve_value(entry, name, sign=True, missing="none") for name in ("best_crank_angle_shift", "best_shift")
+        ]
+        fits.append((title, *shifts, curve_value(entry, "left_rms", missing=""), unit))
+    curve, unit_column = column("curve", left=True), column("unit", left=True)
+    sizes = [column(name) for name in ("samples", "RMS", "mean", "largest")]
+    return [
+        heading(f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"),
+        Table((curve, *sizes, column("at", ANGLE), unit_column), tuple(deviations), ruled=True),
+        heading("Shifts that, added to what was measured, fit best; not applied above"),
+        Table(
+            (curve, column("crank angle", ANGLE), column("value"), column("RMS left"), unit_column),
+            tuple(fits),
+            ruled=True,
+        ),
+        *map(Sentence, left_out(numbers)),
+    ]
 
 
-def told(entry: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
-    """Return the numbers of a curve by their names without units, and the unit of its values."""
-    unit = next(split_unit(key)[1] for key in entry if split_unit(key)[0] == "rms")
-    return {split_unit(key)[0]: value for key, value in entry.items()}, unit
+def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
+    """Return a number of a curve by its name without the unit. look: further fields of `Value`."""
+    return recorded(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
 
 
 def left_out(numbers: Mapping[str, Any]) -> list[str]:
@@ -109,10 +110,6 @@ def left_out(numbers: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _text(value: float | None) -> str:
-    return "undefined" if value is None else f"{value:.6g}"
-
-
 def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Sheet:
     """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
     degrees = np.degrees(np.mod(measured.crank_angle, cycle_turns(mechanism) * 2.0 * np.pi))
@@ -120,7 +117,10 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> She
         _panel(found, _curves(mechanism, linkage, found), degrees, measured.values[found.name])
         for found in deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
-    subtitle = f"{linkage.label}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation"
+    subtitle = words(
+        "{sizes}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation",
+        sizes=dimensions(linkage),
+    )
     return Sheet("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
@@ -132,20 +132,20 @@ def _curves(mechanism: Mechanism, linkage: Linkage, found: Deviation) -> list[Li
         theta = turn(cuts_of(mechanism, linkage) - angle, turns=turns)
         at = np.mod(theta + angle, turns * 2.0 * np.pi)
         (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == found.name)
-        return Line("", np.degrees(theta), found.shown.factor * (curve - value), style=style)
+        return Line("", np.degrees(theta), curve - value, style=style)
 
     fit = found.fit
     return [line(0, 0.0, 0.0), *([] if fit is None else [line(DASHED, fit.crank_angle, fit.value)])]
 
 
 def _panel(found: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
-    factor = found.shown.factor
     there = np.flatnonzero(np.isfinite(samples))
     drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
-    lines = [*computed, Line("", at[drawn], factor * samples[drawn], style=SAMPLES)]
-    note, noted = _UNDETERMINED, tuple[float, ...]()
+    lines = [*computed, Line("", at[drawn], samples[drawn], style=SAMPLES)]
+    note: Text = _UNDETERMINED
     if math.isfinite(found.rms):
-        place, sample = np.degrees([found.crank_angle]), factor * np.array([found.sample])
-        lines.append(Line("", place, sample, points=True))
-        note, noted = f"RMS {{}}, largest {{}} at {shown(place[0])}°", (factor * found.rms, factor * found.largest)
-    return over_turn(with_unit(found.title, found.shown.symbol), *lines, note=note, noted=noted)
+        place = np.degrees([found.crank_angle])
+        lines.append(Line("", place, np.array([found.sample]), points=True))
+        rms, largest = (Value(value, found.kind, 4, bare=True) for value in (found.rms, found.largest))
+        note = words(f"RMS {{rms}}, largest {{largest}} at {shown(place[0])}°", rms=rms, largest=largest)
+    return over_turn(found.title, *lines, kind=found.kind, note=note)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 from scipy.optimize import minimize_scalar
 
 from ....model.cycle.cycle import breakpoints, cycle
@@ -24,9 +23,10 @@ from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
 from ....model.signals.of_shaft import time_share
 from ....model.signals.signals import Signal
+from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.needs import SPEED
 from ...figures.sheets import Line, Sheet, over_turn, turn
-from ...text import tables as text
+from ...render.blocks import Block, named_number, number_list
 from ...text.tables import plain
 from ..peaks import peak, row_of
 
@@ -88,8 +88,8 @@ def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     return sum(own.reflected_inertia for own in curves)
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
     remarks = {
         "rms_torque_Nm": "over time, heats the motor",
         "mean_torque_Nm": "over the crank angle",
@@ -98,10 +98,10 @@ def show(console: Console, numbers: dict[str, Any]) -> None:
     }
     if numbers["peak_power_W"] is None and numbers["peak_torque_Nm"] is not None:
         remarks |= dict.fromkeys(("peak_power_W", "mean_power_W"), SPEED.rule)
-    lines = [text.told(numbers, key, remarks.get(key, "")) for key in numbers if not key.endswith("_angle_deg")]
     known = numbers["peak_torque_Nm"] is not None
-    locks = "Motor: friction locks or jams the linkage, no torque is determined"
-    text.show_lines(console, "Motor" if known else locks, lines)
+    title = "Motor" if known else "Motor: friction locks or jams the linkage, no torque is determined"
+    keys = [key for key in numbers if not key.endswith("_angle_deg")]
+    return number_list(title, [named_number(numbers, key, remarks.get(key, "")) for key in keys])
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -118,11 +118,10 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     inertia = Line("inertia", degrees, _inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
     power = Line("power", degrees, torque * pace(mechanism, theta)[0])
+    levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))
     panels = (
-        over_turn(
-            "drive torque, N m", Line("torque", degrees, torque), level=None if locks else ("RMS over time", rms)
-        ),
-        over_turn("power, W", power, level=None if locks else ("mean over time", mean)),
-        over_turn("reflected inertia, kg m²", inertia, level=("mean", usual)),
+        over_turn("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),
+        over_turn("power", power, kind=POWER, level=levels[1]),
+        over_turn("reflected inertia", inertia, kind=INERTIA, level=("mean", usual)),
     )
     return Sheet("Motor over the cycle", "", panels, width=6.4, height=2.25, stacked=True)

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
+from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
-from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import System, shown_in
+from ....objectives.kinds import LENGTH, RATIO, SHOWN, Kind, System, face, shown_in
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
+from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of
-from ...text.tables import print_table, table
 from ..peaks import row_of
 
 if TYPE_CHECKING:
@@ -50,40 +48,46 @@ def in_units(numbers: dict[str, Any], system: System) -> dict[str, Any]:
     return {"quantities": [entry(row) for row in numbers["quantities"]]}
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people: change of each quantity for one mm or in more, and in percent per percent."""
-    per = "mm" if f"{DIMENSIONS[0]}_per_mm" in numbers["quantities"][0] else "in"
-    console.print(f"Change of each quantity for 1 {per} more of a dimension (and in % for 1 % more)", style="bold")
-    heads = [head for name in DIMENSIONS for head in (f">{name}", ">")]
-    rows = table("quantity", ">value", "unit", *heads)
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people: change of each quantity for 1 mm or 1 in more, and in percent per percent."""
+    rows: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
     for row in numbers["quantities"]:
-        slopes = [row[f"{name}_per_{per}{side}"] for name in DIMENSIONS for side in ("", "_below")]
+        slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
         if row["quantity"] in plain or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
-        cells = []
+        kind = next((kind for kind in SHOWN if kind.metric.symbol == row["unit"]), RATIO)
+        cells: list[Text] = []
         for name in DIMENSIONS:
-            relative = _sides(row, f"{name}_percent", 3)
-            cells += [_sides(row, f"{name}_per_{per}", 4), "" if relative == "-" else f"({relative} %)"]
-            kinks = kinks or " / " in cells[-2]
-        rows.add_row(row["title"], f"{row['value']:.5g}", row["unit"], *cells)
-    print_table(console, rows)
-    if kinks:
-        console.print("a / b: at a kink, the derivative below and above the dimension", style="dim")
+            slope = _derivative(row, f"{name}_per_mm", _per_length(kind), 4)
+            percent = words("({percent} %)", percent=_derivative(row, f"{name}_percent", RATIO, 3))
+            cells += [slope, "" if row[f"{name}_percent"] is None else percent]
+            kinks = kinks or isinstance(slope, tuple)
+        value = Value(row["value"] / kind.metric.factor, kind, 5)
+        rows.append((row["title"], value, Unit(kind), *cells))
+    heads = [head for name in DIMENSIONS for head in (column(name), column())]
+    columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
+    title = "Change of each quantity for 1 {unit} more of a dimension (and in % for 1 % more)"
+    found: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
+    return [*found, note("a / b: at a kink, the derivative below and above the dimension")] if kinks else found
 
 
-def _sides(row: dict[str, Any], key: str, digits: int) -> str:
+def _per_length(kind: Kind) -> Kind:
+    """Return the kind of a derivative by a dimension; its unit is left out, as the heading says for how much it is."""
+    inch = kind.face("inch").factor / LENGTH.face("inch").factor
+    return replace(kind, metric=face("", kind.metric.factor / LENGTH.metric.factor), inch=face("", inch))
+
+
+def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
     """Return a derivative as text: both where the quantity has a kink."""
+
+    def value(number: float | None) -> Value:
+        return Value(None if number is None else number / kind.metric.factor, kind, digits, sign=True, missing="-")
+
     below, above = row[f"{key}_below"], row[key]
     if below is None or above is None or abs(above - below) <= _SAME * max(abs(above), abs(below)):
-        return _signed(above, digits)
-    return f"{_signed(below, digits)} / {_signed(above, digits)}"
-
-
-def _signed(value: float | None, digits: int) -> str:
-    if value is None or not math.isfinite(value):
-        return "-"
-    return "0" if value == 0.0 else f"{value:+.{digits}g}"
+        return value(above)
+    return words("{below} / {above}", below=value(below), above=value(above))
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:

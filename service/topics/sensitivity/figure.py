@@ -7,13 +7,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
-from ....model.linkage.values import DIMENSIONS
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing
 from ....objectives.tables.sensitivity import sensitivity
-from ...figures.numerals import shown
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
+from ...render.numerals import shown
 from ..peaks import row_of
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -15,16 +13,17 @@ from ....model.machine.mechanism import Mechanism
 from ....model.transient.forward import State, simulate
 from ....model.transient.record import Transient
 from ....model.transient.steady import SteadyRunning, steady_running
-from ...figures.numerals import shown
+from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
-from ...text.tables import table
+from ...render.blocks import Block, Table, Unit, column, recorded, sentence
+from ...render.numerals import shown
 
 LONGEST = 60.0
 """s; a start that takes longer is not followed to its end unless asked for."""
 TURNS = 300
 STEADY = 1e-4
 """Share by which the speed may still change from turn to turn."""
-RPM = 30.0 / math.pi
+RPM = ANGULAR_SPEED.metric.factor
 
 
 def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Transient, SteadyRunning | None, str]:
@@ -84,35 +83,41 @@ def steady_numbers(running: SteadyRunning) -> dict[str, Any]:
     }
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers as a short table."""
-    rows = table("", ">", "")
-    console.print(f"Start from rest: {numbers['message']}.", soft_wrap=True)
-    told = [
-        ("speed reached", "final_speed_rpm", "rpm"),
-        ("peak motor torque, on the crank", "peak_motor_torque_Nm", "N m"),
-        ("peak torque into the mechanism", "peak_torque_Nm", "N m"),
-        ("peak motor power", "peak_power_W", "W"),
-        ("work of the motor", "motor_work_J", "J"),
-        ("work on the loads", "load_work_J", "J"),
-        ("heat of friction", "friction_work_J", "J"),
-        ("kinetic energy gained", "kinetic_energy_gained_J", "J"),
-        ("error of the energy balance", "energy_imbalance", ""),
-    ]
-    then = [
-        ("steady running: mean speed over time", "mean_speed_rpm", "rpm"),
-        ("coefficient of speed fluctuation", "fluctuation", ""),
-        ("peak motor torque", "peak_motor_torque_Nm", "N m"),
-        ("mean motor power over time", "mean_power_W", "W"),
-    ]
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    titles = {
+        "final_speed_rpm": "speed reached",
+        "peak_motor_torque_Nm": "peak motor torque, on the crank",
+        "peak_torque_Nm": "peak torque into the mechanism",
+        "peak_power_W": "peak motor power",
+        "motor_work_J": "work of the motor",
+        "load_work_J": "work on the loads",
+        "friction_work_J": "heat of friction",
+        "kinetic_energy_gained_J": "kinetic energy gained",
+        "energy_imbalance": "error of the energy balance",
+    }
+    steady_titles = {
+        "mean_speed_rpm": "steady running: mean speed over time",
+        "fluctuation": "coefficient of speed fluctuation",
+        "peak_motor_torque_Nm": "peak motor torque",
+        "mean_power_W": "mean motor power over time",
+    }
     steady = numbers["steady"]
-    told = [line for line in told if line[1] != "friction_work_J" or numbers["friction_work_J"]]
-    for found, lines in ((numbers, told), (steady, then if steady is not None else [])):
-        for title, key, unit in lines:
-            rows.add_row(title, f"{found[key]:.4g}", unit)
-    console.print(rows)
+    lines = [
+        (title, recorded(numbers, key, digits=4))
+        for key, title in titles.items()
+        if key != "friction_work_J" or numbers[key]
+    ]
+    if steady is not None:
+        lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
+    rows = tuple((title, value, Unit(value.kind)) for title, value in lines)
+    found: list[Block] = [
+        sentence("Start from rest: {message}.", message=numbers["message"]),
+        Table((column(left=True), column(), column(left=True)), rows),
+    ]
     if steady is None:
-        console.print(f"No steady running: {numbers['why_not_steady']}.", soft_wrap=True)
+        found.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"]))
+    return found
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Sheet:
@@ -122,16 +127,16 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Sheet:
     """
     run, running, reason = start(mechanism, linkage, **options)
     message = run.message if not reason else f"{run.message}; no steady running"
-    speed = Panel("crank speed, rpm", "time, s", (Line("", run.time, RPM * run.speed),))
+    speed = Panel("crank speed", "time", (Line("", run.time, run.speed),), kind=ANGULAR_SPEED, along=TIME)
     torques = (Line("motor", run.time, run.motor_torque), Line("mechanism", run.time, run.torque, FAINT))
-    torque = Panel("torque on the crank, N m", "time, s", torques)
+    torque = Panel("torque on the crank", "time", torques, kind=TORQUE, along=TIME)
     if running is None:
         return Sheet("Start from rest", message, (speed, torque), width=9.6, height=2.3, stacked=True)
-    angle, (speeds, motor, taken) = in_order(running, RPM * running.speed, running.motor_torque, running.torque)
-    fluctuation = f"fluctuation {shown(running.fluctuation, 3)}"
-    turning = over_turn("speed in steady running, rpm", Line("", angle, speeds), note=fluctuation)
+    angle, (speeds, motor, taken) = in_order(running, running.speed, running.motor_torque, running.torque)
+    note = f"fluctuation {shown(running.fluctuation, 3)}"
+    turning = over_turn("speed in steady running", Line("", angle, speeds), kind=ANGULAR_SPEED, note=note)
     pair = (Line("", angle, motor), Line("", angle, taken, FAINT))
-    panels = (speed, turning, torque, over_turn("torque in steady running, N m", *pair))
+    panels = (speed, turning, torque, over_turn("torque in steady running", *pair, kind=TORQUE))
     return Sheet("Start from rest", message, panels, columns=2, width=(5.9, 3.9), height=2.3, stacked=True)
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.classical.static_forces import static_forces
 from ....model.cycle.cycle import cycle
@@ -19,10 +18,24 @@ from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.signals import Signal
+from ....objectives.kinds import ANGLE, FORCE, TORQUE
 from ...figures.sheets import Line, Sheet, over_turn
-from ...text.tables import print_table, table
+from ...render.blocks import (
+    Block,
+    Table,
+    Text,
+    column,
+    dimensions,
+    heading,
+    joined,
+    recorded,
+    recorded_all,
+    sentence,
+    words,
+)
 from ..peaks import peak
 
+_OWN = "loads of the job"
 _STEP = 30
 _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is near
 
@@ -68,7 +81,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
     own = load is None and bool(_own(mechanism))
     return {
-        "load": "loads of the job" if own else f"{-1.0 if load is None else load:g} N, constant, positive outward",
+        "load": _OWN if own else f"{-1.0 if load is None else load:g} N, constant, positive outward",
         "peak_rod_force_N": rod.value,
         "peak_rod_force_angle_deg": rod.degrees,
         "peak_guide_reaction_N": guide.value,
@@ -87,33 +100,40 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     }
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the peaks and the forces every 30 deg."""
-    console.print(f"Static forces, without masses and friction ({numbers['load']})", style="bold", soft_wrap=True)
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the forces every 30 deg and the peaks."""
     columns = {
-        ">crank angle,\ndeg": "crank_angle_deg",
-        ">load,\nN": "load_N",
-        ">rod force,\nN": "rod_force_N",
-        ">guide,\nN": "guide_reaction_N",
-        ">crank torque,\nN m": "crank_torque_Nm",
-        ">mechanical\nadvantage": "mechanical_advantage",
+        "crank_angle_deg": column("crank angle", ANGLE),
+        "load_N": column("load", FORCE),
+        "rod_force_N": column("rod force", FORCE),
+        "guide_reaction_N": column("guide", FORCE),
+        "crank_torque_Nm": column("crank torque", TORQUE),
+        "mechanical_advantage": column("mechanical\nadvantage"),
     }
-    rows = table(*columns, ruled=True)
-    for row in zip(*(numbers[key] for key in columns.values()), strict=True):
-        rows.add_row(*("unbounded" if value is None else f"{value:.4g}" for value in row))
-    print_table(console, rows)
-    for what, key, unit in (
-        ("rod force", "peak_rod_force_N", " N"),
-        ("guide reaction", "peak_guide_reaction_N", " N"),
-        ("crank torque", "peak_crank_torque_Nm", " N m"),
+    rows = zip(*(recorded_all(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
+    found: list[Block] = [
+        heading("Static forces, without masses and friction ({load})", load=_load(numbers)),
+        Table(tuple(columns.values()), tuple(rows), ruled=True),
+    ]
+    for what, key in (
+        ("rod force", "peak_rod_force_N"),
+        ("guide reaction", "peak_guide_reaction_N"),
+        ("crank torque", "peak_crank_torque_Nm"),
     ):
-        at = numbers[f"{key.rpartition('_')[0]}_angle_deg"]
-        console.print(f"greatest {what} {numbers[key]:.6g}{unit} at {at:.2f} deg", soft_wrap=True)
-    console.print(
-        f"least mechanical advantage {numbers['least_mechanical_advantage']:.6g} at "
-        f"{numbers['least_mechanical_advantage_angle_deg']:.2f} deg (slider load over tangential crank pin force)",
-        soft_wrap=True,
+        at = recorded(numbers, f"{key.rpartition('_')[0]}_angle_deg", decimals=2)
+        found.append(sentence(f"greatest {what} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
+    least = sentence(
+        "least mechanical advantage {value} at {at} (slider load over tangential crank pin force)",
+        value=recorded(numbers, "least_mechanical_advantage"),
+        at=recorded(numbers, "least_mechanical_advantage_angle_deg", decimals=2),
     )
+    return [*found, least]
+
+
+def _load(numbers: dict[str, Any]) -> Text:
+    if numbers["load"] == _OWN:
+        return _OWN
+    return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> Sheet:
@@ -130,8 +150,8 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None)
         Line("guide", degrees, at.guide_reaction, 1),
     )
     panels = (
-        over_turn("forces, N", *forces),
-        over_turn("crank torque, N m", Line("", degrees, at.crank_torque)),
+        over_turn("forces", *forces, kind=FORCE),
+        over_turn("crank torque", Line("", degrees, at.crank_torque), kind=TORQUE),
         over_turn(f"mechanical advantage, up to {_MOST_ADVANTAGE:g}", Line("", degrees, advantage)),
     )
-    return Sheet("Static forces", f"{linkage.label}; without masses and friction", panels, width=8.0)
+    return Sheet("Static forces", joined([dimensions(linkage), "without masses and friction"], "; "), panels, width=8.0)

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -18,14 +17,14 @@ from ....model.strength.bar_stress import bar_stress
 from ....model.strength.places import Along
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS, NEAR
+from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
 from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_values import missing_value_reason
 from ...designs.violations import violated_by
-from ...figures.numerals import shown
 from ...figures.sheets import Line, Panel, Sheet, over_turn
-from ...text import tables as text
+from ...render.blocks import Block, Table, Text, Value, column, number_list, recorded, words
 from ...text.tables import plain
 from ..peaks import row_of
 
@@ -84,28 +83,31 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
     return found
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-    by_field = {of.field: of for of in QUANTITIES.values()}
-    lines: list[text.Line] = [
-        (by_field[key].title, value, by_field[key].unit.symbol, "") for key, value in numbers.items() if key in by_field
-    ]
-    text.show_lines(console, "Strength of crank and rod", lines)
-    heads = ("where", ">greatest,\nMPa", ">at crank\nangle, deg", ">from crank\npin, mm")
-    rows = text.table(*heads, ruled=True)
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    titles = {of.field: of.title for of in QUANTITIES.values()}
+    shown = [(titles[key], recorded(numbers, key), "") for key in numbers if key in titles]
+    rows: list[tuple[Text, ...]] = []
+
+    def row(where: str, bar: dict[str, Any], *keys: str) -> tuple[Text, ...]:
+        return where, *(recorded(bar, key, missing="–") for key in keys)
+
     for name, bar in numbers["bars"].items():
         for sign in _SIGNS:
-            places = (bar[f"greatest_{sign}_{key}"] for key in ("MPa", "at_crank_angle_deg", "from_crank_pin_mm"))
-            rows.add_row(f"along the {name}, {sign}", *(_told(one) for one in places))
+            of = f"greatest_{sign}"
+            keys = f"{of}_MPa", f"{of}_at_crank_angle_deg", f"{of}_from_crank_pin_mm"
+            rows.append(row(f"along the {name}, {sign}", bar, *keys))
     for name, bar in numbers["bars"].items():
         for pin in (NEAR, LINKS[name].far):
-            places = (bar[f"eye_at_{pin}_{key}"] for key in ("MPa", "at_crank_angle_deg"))
-            rows.add_row(f"eye of the {name} at the {pin.replace('_', ' ')}", *(_told(one) for one in places))
-    text.print_table(console, rows)
-
-
-def _told(number: float | None) -> str:
-    return "–" if number is None else f"{number:.6g}"
+            where = f"eye of the {name} at the {pin.replace('_', ' ')}"
+            rows.append((*row(where, bar, f"eye_at_{pin}_MPa", f"eye_at_{pin}_at_crank_angle_deg"), ""))
+    columns = (
+        column("where", left=True),
+        column("greatest", PRESSURE),
+        column("at crank angle", ANGLE),
+        column("from crank pin", LENGTH),
+    )
+    return [*number_list("Strength of crank and rod", shown), Table(columns, tuple(rows), ruled=True)]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -119,16 +121,15 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         stress = bar_stress(mechanism, LINKS[name].part, row_of(linkage))
         if not len(stress.theta):
             raise InputError("friction locks the design, so that its stresses are not determined; change its friction")
-        length, worst = 1e3 * float(getattr(linkage, name)), stress.worst
+        length, worst = float(getattr(linkage, name)), stress.worst
         degrees = np.degrees(stress.theta)
-        faces = [
-            Line(label, degrees, 1e-6 * stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))
-        ]
-        where = shown(length * stress.shares[worst])
-        panels.append(over_turn(f"{name} stress at {where} mm, MPa", *faces))
+        faces = [Line(label, degrees, stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))]
+        at = words("{name} stress at {where}", name=name, where=Value(length * stress.shares[worst], LENGTH, 4))
+        panels.append(over_turn(at, *faces, kind=PRESSURE))
         along = [
-            Line(label, length * stress.shares, 1e-6 * end, n)
+            Line(label, length * stress.shares, end, n)
             for n, (label, end) in enumerate(zip(("least", "greatest"), stress.envelope, strict=True))
         ]
-        panels.append(Panel(f"{name} stress over the turn, MPa", "from the crank pin, mm", tuple(along)))
+        over = f"{name} stress over the turn"
+        panels.append(Panel(over, "from the crank pin", tuple(along), kind=PRESSURE, along=LENGTH))
     return Sheet("Strength of crank and rod", "", tuple(panels), width=6.4, height=2.25)

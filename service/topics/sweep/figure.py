@@ -16,8 +16,8 @@ from ....objectives.kinds import System, shown_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
-from ...figures.numerals import with_unit
 from ...figures.style import BLUE, MUTED, SHADE, TEXT, colours, dress, heading, limits, new_figure, place, title_panel
+from ...render.numerals import with_unit
 
 Array = NDArray[np.float64]
 MOST = 6

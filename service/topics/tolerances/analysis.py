@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
@@ -16,7 +15,8 @@ from ....model.tolerance.exact import worst
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
 from ....model.tolerance.sources import SOURCES, limits, source_influences
-from ...text.tables import print_table, table
+from ....objectives.kinds import LENGTH
+from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
 from ..peaks import row_of
 
 if TYPE_CHECKING:
@@ -111,50 +111,56 @@ def _histogram(greatest: np.ndarray) -> dict[str, list[float] | list[int]] | Non
     return {"edges_mm": edges.tolist(), "counts": counts.tolist()}
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-    exact, angle = numbers["exact_worst_case_mm"], numbers["exact_worst_case_angle_deg"]
-    console.print("Position error from tolerances, greatest over the counted part of the cycle", style="bold")
-    rows = table("", "")
-    rows.add_row("worst case, first order", _at(numbers["worst_case_mm"], numbers["worst_case_angle_deg"]))
-    rows.add_row(
-        "worst case, exact",
-        "not defined: a linkage within the tolerances does not turn fully" if exact is None else _at(exact, angle),
-    )
-    rows.add_row("root-sum-square", _at(numbers["root_sum_square_mm"], numbers["root_sum_square_angle_deg"]))
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+
+    def at(name: str) -> Text:
+        if numbers[f"{name}_mm"] is None:
+            return "not defined: a linkage within the tolerances does not turn fully"
+        size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
+        return words("{size} at {angle}", size=size, angle=angle)
+
     simulation = numbers["monte_carlo"]
-    spread = ", ".join(
-        f"{percent} % within {value:.4g} mm" for percent, value in simulation["percentiles_greatest_mm"].items()
-    )
-    rows.add_row(f"{simulation['samples']:,} random machines", spread or "-")
+    spread = [
+        words(f"{percent} % within {{size}}", size=Value(1e-3 * value, LENGTH, 4))
+        for percent, value in simulation["percentiles_greatest_mm"].items()
+    ]
+    rows: list[tuple[Text, ...]] = [
+        ("worst case, first order", at("worst_case")),
+        ("worst case, exact", at("exact_worst_case")),
+        ("root-sum-square", at("root_sum_square")),
+        (f"{simulation['samples']:,} random machines", joined(spread) or "-"),
+    ]
     if simulation["stuck"]:
-        rows.add_row("", f"{simulation['stuck']:,} of them do not turn fully")
+        rows.append(("", f"{simulation['stuck']:,} of them do not turn fully"))
     for found in numbers["yields"]:
         low, high = found["yield_low_percent"], found["yield_high_percent"]
-        rows.add_row(
-            f"yield at {found['limit_mm']:.4g} mm ({found['limit']})",
-            f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} % "
-            f"at {found['confidence_percent']:g} % confidence",
-        )
-    print_table(console, rows)
+        share = f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} %"
+        limit = words("yield at {size} ({name})", size=recorded(found, "limit_mm", digits=4), name=found["limit"])
+        rows.append((limit, f"{share} at {found['confidence_percent']:g} % confidence"))
+    shown: list[Block] = [
+        heading("Position error from tolerances, greatest over the counted part of the cycle"),
+        Table((column(left=True), column(left=True)), tuple(rows)),
+    ]
     if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
-        note = (
-            "The root-sum-square takes a clearance for three standard deviations; pins pressed to either side scatter"
+        shown.append(
+            note(
+                "The root-sum-square takes a clearance for three standard deviations; pins pressed to either side "
+                "scatter wider, as the random machines show."
+            )
         )
-        console.print(f"{note} wider, as the random machines show.", style="dim", soft_wrap=True)
-    console.print()
-    sources = table("where it comes from", ">limit", ">adds, mm", ">of worst case", ">of variance")
-    for row in numbers["contributions"]:
-        limit = f"{row['limit_deg']:.4g} deg" if row["limit_mm"] is None else f"{row['limit_mm']:.4g} mm"
-        of_worst, of_variance = row["share_of_worst_case_percent"], row["share_of_variance_percent"]
-        sources.add_row(
-            row["source"], limit, f"{row['contribution_mm']:.4g}", f"{of_worst:.1f} %", f"{of_variance:.1f} %"
-        )
-    print_table(console, sources)
+    return [*shown, _sources(numbers["contributions"])]
 
 
-def _at(size: float, angle: float) -> str:
-    return f"{size:.4g} mm at {angle:.4g} deg"
+def _sources(contributions: list[dict[str, Any]]) -> Table:
+    rows = []
+    for row in contributions:
+        limit = recorded(row, "limit_deg" if row["limit_mm"] is None else "limit_mm", digits=4)
+        of_worst, of_variance = (row[f"share_of_{name}_percent"] for name in ("worst_case", "variance"))
+        adds = recorded(row, "contribution_mm", digits=4)
+        rows.append((row["source"], (limit,), adds, f"{of_worst:.1f} %", f"{of_variance:.1f} %"))
+    heads = column("limit"), column("adds", LENGTH), column("of worst case"), column("of variance")
+    return Table((column("where it comes from", left=True), *heads), tuple(rows))
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from ....model.cycle.cycle import breakpoints
 from ....model.cycle.pace import pace_knots
@@ -16,22 +15,22 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.transient.uneven import uneven_curves, uneven_cycle
-from ....objectives.kinds import face
-from ...figures.sheets import DASHED, Line, Sheet, over_turn, turn
-from ...text import tables as text
+from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
+from ...figures.sheets import DASHED, Line, Panel, Sheet, over_turn, turn
+from ...render.blocks import Block, Value, compared, joined, named_number, number_list
 
 _RPM = 30.0 / math.pi
-_UNITS = {
-    "torque": "N m",
-    "power": "W",
-    "pivot_force": "N",
-    "crank_pin_force": "N",
-    "slider_pin_force": "N",
-    "guide_force": "N",
-    "slider_speed": "m/s",
-    "slider_acceleration": "m/s^2",
-    "shaking_force": "N",
-    "shaking_moment": "N m",
+_KINDS = {
+    "torque": TORQUE,
+    "power": POWER,
+    "pivot_force": FORCE,
+    "crank_pin_force": FORCE,
+    "slider_pin_force": FORCE,
+    "guide_force": FORCE,
+    "slider_speed": SPEED,
+    "slider_acceleration": ACCELERATION,
+    "shaking_force": FORCE,
+    "shaking_moment": TORQUE,
 }
 
 
@@ -61,35 +60,32 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "rms_torque_at_constant_speed_Nm": even.rms_torque,
         "mean_power_W": found.mean_power,
     }
-    for name, unit in _UNITS.items():
-        suffix = face(unit).suffix
+    for name, kind in _KINDS.items():
+        suffix = kind.metric.suffix
         record[f"peak_{name}{suffix}"] = found.peaks[name].value
         record[f"peak_{name}_angle_deg"] = math.degrees(found.peaks[name].angle)
         record[f"peak_{name}_at_constant_speed{suffix}"] = even.peaks[name].value
     return record
 
 
-def show(console: Console, numbers: dict[str, Any]) -> None:
-    """Write the numbers for people."""
-
-    def told(key: str, remark: str = "") -> text.Line:
-        return text.told(numbers, key, remark)
-
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
     even = "at constant speed"
-    lines = [
-        *(told(key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
-        told("speed_fluctuation", "(greatest - least) / mean over time"),
-        ("period", numbers["period_s"], "s", "of a turn"),
-        told("peak_crank_acceleration_rad_s2"),
-        told("mean_torque_Nm", "over the crank angle"),
-        told("rms_torque_Nm", f"over time, {text.compared(numbers, 'rms_torque_at_constant_speed_Nm', even)}"),
-        told("mean_power_W", "over time"),
+    rms = joined(["over time", compared(numbers, "rms_torque_at_constant_speed_Nm", even)])
+    shown = [
+        *(named_number(numbers, key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
+        named_number(numbers, "speed_fluctuation", "(greatest - least) / mean over time"),
+        ("period", Value(numbers["period_s"], TIME), "of a turn"),
+        named_number(numbers, "peak_crank_acceleration_rad_s2"),
+        named_number(numbers, "mean_torque_Nm", "over the crank angle"),
+        named_number(numbers, "rms_torque_Nm", rms),
+        named_number(numbers, "mean_power_W", "over time"),
     ]
-    for name, unit in _UNITS.items():
-        suffix = face(unit).suffix
-        remark = text.compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
-        lines.append(told(f"peak_{name}{suffix}", remark))
-    text.show_lines(console, "At the speed profile (constant speed: the mean over the crank angle)", lines)
+    for name, kind in _KINDS.items():
+        suffix = kind.metric.suffix
+        remark = compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
+        shown.append(named_number(numbers, f"peak_{name}{suffix}", remark))
+    return number_list("At the speed profile (constant speed: the mean over the crank angle)", shown)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
@@ -100,13 +96,14 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     degrees = np.degrees(theta)
     now, even = (uneven_curves(each, linkage, theta) for each in (mechanism, replace(mechanism, speed_profile=None)))
 
-    def both(title: str, first: Any, second: Any) -> Any:
-        return over_turn(title, Line("profile", degrees, first), Line("constant speed", degrees, second, DASHED))
+    def both(title: str, kind: Kind, first: Any, second: Any) -> Panel:
+        lines = Line("profile", degrees, first), Line("constant speed", degrees, second, DASHED)
+        return over_turn(title, *lines, kind=kind)
 
     panels = (
-        both("crank speed, rpm", _RPM * now.speed, _RPM * even.speed),
-        both("drive torque, N m", now.curves.torque, even.curves.torque),
-        both("slider acceleration, m/s²", now.curves.slider_acceleration, even.curves.slider_acceleration),
-        both("shaking force, N", now.others["shaking_force"], even.others["shaking_force"]),
+        both("crank speed", ANGULAR_SPEED, now.speed, even.speed),
+        both("drive torque", TORQUE, now.curves.torque, even.curves.torque),
+        both("slider acceleration", ACCELERATION, now.curves.slider_acceleration, even.curves.slider_acceleration),
+        both("shaking force", FORCE, now.others["shaking_force"], even.others["shaking_force"]),
     )
     return Sheet("Uneven crank speed", "", panels, width=6.4, height=2.25, stacked=True)

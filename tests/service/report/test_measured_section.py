@@ -12,7 +12,7 @@ from slidercrank.objectives.tables.measured import Measured, measured_from
 from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.cycle_table import cycle_csv
 from slidercrank.service.designs.measured_file import read_measured
-from slidercrank.service.figures.numerals import rounded
+from slidercrank.service.render.numerals import rounded
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph, Picture, Section, Table
 from slidercrank.service.report.html import html_file
@@ -57,6 +57,8 @@ def test_every_number_is_in_its_tables(subject: Subject, system: str) -> None:
     assert entry["best_crank_angle_shift_deg"] == pytest.approx(np.degrees(-0.1), abs=1e-5)
     assert shift.rows[0][2] == rounded(factor * entry["best_shift_Nm"])
     assert note.text == "Columns that are no curve or empty, left out: room."
+    (panel,) = picture.draw().axes
+    assert panel.get_title(loc="left") == f"drive torque, {unit}"
 
 
 def test_a_report_has_them_where_they_are_given(subject: Subject) -> None:

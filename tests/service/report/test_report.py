@@ -20,7 +20,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.requirements import Range
 from slidercrank.optimise.solve import solve
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.figures.numerals import as_stored, rounded
+from slidercrank.service.render.numerals import as_stored, rounded
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
 from slidercrank.service.report.html import html_file

@@ -1,0 +1,165 @@
+"""Sentences and tables as data. Their numbers keep their kind, so that whoever renders them chooses the units."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.keys import kind_of_key
+from ...objectives.kinds import LENGTH, RATIO, Kind
+
+if TYPE_CHECKING:
+    from ...model.linkage.linkage import Linkage
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number with its kind.
+
+    number: in SI; None where it is not defined. digits: significant ones that are shown. decimals: digits after the
+    point instead. sign: whether a positive number gets a plus. bare: without its unit. missing: text for None and NaN.
+    """
+
+    number: float | None
+    kind: Kind = RATIO
+    digits: int = 6
+    decimals: int | None = None
+    sign: bool = False
+    bare: bool = False
+    missing: str = "undefined"
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit of a kind, alone in a cell: that of the numbers in its row."""
+
+    kind: Kind
+
+
+Part = str | Value | Unit
+Text = Part | tuple[Part, ...]
+"""Text whose values have their units. In a cell, a value by itself has none: the head or the row says it."""
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """A sentence. style: a heading, plain text, or a note on what precedes it."""
+
+    text: Text
+    style: Literal["heading", "plain", "note"] = "plain"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table. title: its head. kind: of its numbers, if the head has their unit. right: its alignment."""
+
+    title: Text = ""
+    kind: Kind | None = None
+    right: bool = True
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table. rows: cells by column. ruled: with a line below the heads. dim: positions of columns with remarks.
+
+    indented: below its heading.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Text, ...], ...]
+    ruled: bool = False
+    indented: bool = False
+    dim: tuple[int, ...] = ()
+
+
+Block = Sentence | Table
+
+
+def words(template: str, **values: Text) -> Text:
+    """Return a text from a template with a name in braces for each value: "{force} at {angle}"."""
+    parts: list[Part] = []
+    for text, name, _, _ in string.Formatter().parse(template):
+        parts += [text] if text else []
+        if name is not None:
+            value = values[name]
+            parts += value if isinstance(value, tuple) else [value]
+    return tuple(parts)
+
+
+def heading(template: str, **values: Text) -> Sentence:
+    """Return a heading; see `words`."""
+    return Sentence(words(template, **values), "heading")
+
+
+def sentence(template: str, **values: Text) -> Sentence:
+    """Return a sentence; see `words`."""
+    return Sentence(words(template, **values))
+
+
+def note(template: str, **values: Text) -> Sentence:
+    """Return a note; see `words`."""
+    return Sentence(words(template, **values), "note")
+
+
+def joined(texts: Sequence[Text], separator: str = ", ") -> Text:
+    """Return texts one after the other; empty ones are left out."""
+    parts: list[Part] = []
+    for text in texts:
+        if text not in ("", ()):
+            parts += [separator] if parts else []
+            parts += text if isinstance(text, tuple) else [text]
+    return tuple(parts)
+
+
+def column(title: Text = "", kind: Kind | None = None, *, left: bool = False) -> Column:
+    """Return a column of numbers, or of words aligned to the left."""
+    return Column(title, kind, right=not left)
+
+
+def recorded(record: Mapping[str, Any], key: str, **look: Any) -> Value:
+    """Return a number of a metric record, whose key says its unit. look: further fields of `Value`."""
+    return recorded_all({key: [record[key]]}, key, **look)[0]
+
+
+def recorded_all(record: Mapping[str, Any], key: str, **look: Any) -> list[Value]:
+    """Return a list of numbers of a metric record; see `recorded`."""
+    _, kind = kind_of_key(key)
+    return [Value(None if number is None else number / kind.metric.factor, kind, **look) for number in record[key]]
+
+
+NamedNumber = tuple[str, Text, Text]
+"""Name of a number, the number, and a remark."""
+
+
+def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> NamedNumber:
+    """Return a number of a metric record, named by its key, with a remark and the crank angle of a peak."""
+    name, _ = kind_of_key(key)
+    angle = f"{name}_angle_deg"
+    at = words("at {angle}", angle=recorded(record, angle, decimals=2)) if record.get(angle) is not None else ""
+    return name.replace("_", " ").replace("rms ", "RMS "), recorded(record, key), joined([at, remark])
+
+
+def number_list(title: Text, numbers: Sequence[NamedNumber]) -> list[Block]:
+    """Return a heading and a line for each number, with its unit and remark."""
+    rows = []
+    for name, number, remark in numbers:
+        unit: Text = Unit(number.kind) if isinstance(number, Value) and number.number is not None else ""
+        rows.append((name, number, unit, remark))
+    columns = (column(left=True), column(), column(left=True), column(left=True))
+    return [Sentence(title, "heading"), Table(columns, tuple(rows), indented=True, dim=(3,))]
+
+
+def compared(record: Mapping[str, Any], key: str, remark: str) -> Text:
+    """Return a remark on a number of a metric record: "12.5 N m without friction"; nothing where there is none."""
+    value = recorded(record, key)
+    return "" if value.number is None else words("{value} {remark}", value=value, remark=remark)
+
+
+def dimensions(linkage: Linkage) -> Text:
+    """Return crank, rod and offset of a linkage, and its branch if crossed."""
+    crossed = "" if linkage.branch == "open" else ", crossed"
+    sizes = {name: Value(float(getattr(linkage, name)), LENGTH) for name in DIMENSIONS}
+    return words("crank {crank}, rod {rod}, offset {offset}{crossed}", crossed=crossed, **sizes)

@@ -1,0 +1,83 @@
+"""Text of values and blocks in a system of units: the one place where a number of an answer becomes text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...objectives.kinds import System, unit_text
+from .blocks import Block, Sentence, Table, Text, Unit, Value
+from .numerals import shown
+
+_LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756 in
+
+
+@dataclass(frozen=True)
+class PlainBlock:
+    """A sentence, or a table where there are rows, as text in one system of units.
+
+    heading: whether the sentence heads what follows. heads: of the columns, empty ones where they have none. right:
+    whether a column is aligned to the right, as numbers are. rows: the texts of the cells.
+    """
+
+    sentence: str = ""
+    heading: bool = False
+    heads: tuple[str, ...] = ()
+    right: tuple[bool, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+
+
+def format_value(value: Value, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
+    """Return a value with its unit in a system. bare: without the unit. printed: as figures write numbers."""
+    if value.number is None or math.isnan(value.number):
+        return value.missing
+    face = value.kind.face(system)
+    digits = value.digits if face is value.kind.metric else max(value.digits, _LEAST_DIGITS)
+    number, unit = face.factor * value.number, "" if bare or value.bare else unit_text(face.symbol)
+    if printed and value.decimals is None:
+        text = shown(number, digits)
+    else:
+        text = format(number, f".{digits}g" if value.decimals is None else f".{value.decimals}f")
+        text = text.removeprefix("-") if float(text) == 0.0 else text
+        text = text.replace("-", "−") if printed else text
+    return f"{'+' if value.sign and number > 0.0 else ''}{text} {unit}".rstrip()
+
+
+def format_text(text: Text, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
+    """Return a text with its values in a system. bare: a value that is all of it has no unit. See `format_value`."""
+    if isinstance(text, str):
+        return text
+    if isinstance(text, Value):
+        return format_value(text, system, bare=bare, printed=printed)
+    if isinstance(text, Unit):
+        return unit_text(text.kind.face(system).symbol)
+    return "".join(format_text(part, system, printed=printed) for part in text)
+
+
+def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> tuple[str, ...]:
+    """Return the heads of a table, each with the unit of its column after a separator."""
+    found = []
+    for column in table.columns:
+        unit = "" if column.kind is None else unit_text(column.kind.face(system).symbol)
+        found.append(separator.join(part for part in (format_text(column.title, system), unit) if part))
+    return tuple(found)
+
+
+def cells(table: Table, system: System = "metric", *, printed: bool = False) -> tuple[tuple[str, ...], ...]:
+    """Return the cells of a table; see `format_value`."""
+    return tuple(tuple(format_text(cell, system, bare=True, printed=printed) for cell in row) for row in table.rows)
+
+
+def plain_blocks(blocks: Sequence[Block], system: System = "metric") -> list[PlainBlock]:
+    """Return blocks as text in a system of units."""
+    return [
+        PlainBlock(format_text(block.text, system), heading=block.style == "heading")
+        if isinstance(block, Sentence)
+        else PlainBlock(
+            heads=tuple(" ".join(head.split()) for head in heads(block, system)),
+            right=tuple(column.right for column in block.columns),
+            rows=tuple(tuple(cell.strip() for cell in row) for row in cells(block, system)),
+        )
+        for block in blocks
+    ]

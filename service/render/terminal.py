@@ -1,0 +1,72 @@
+"""Blocks on a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ...objectives.kinds import System
+from .blocks import Block, Sentence, Table
+from .formatting import cells, format_text, heads
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table as Drawn
+
+_STYLES = {"heading": "bold", "plain": None, "note": "dim"}
+
+
+def print_blocks(screen: Console, blocks: Sequence[Block], system: System = "metric") -> None:
+    """Write blocks in a system of units; what follows a table and the notes on it stands apart."""
+    for before, block in zip((None, *blocks), blocks, strict=False):
+        if (isinstance(before, Table) or _is_note(before)) and not _is_note(block):
+            screen.print()
+        if isinstance(block, Sentence):
+            screen.print(format_text(block.text, system), style=_STYLES[block.style], soft_wrap=True, markup=False)
+        else:
+            _print_table(screen, block, system)
+
+
+def _is_note(block: Block | None) -> bool:
+    return isinstance(block, Sentence) and block.style == "note"
+
+
+def _print_table(screen: Console, block: Table, system: System) -> None:
+    titles = heads(block, system, separator=",\n" if block.ruled else ", ")
+    rows = table(
+        *(f"{'>' if column.right else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
+        ruled=block.ruled,
+    )
+    for place in block.dim:
+        rows.columns[place].style = "dim"
+    for first, *rest in cells(block, system):
+        rows.add_row(f"  {first}" if block.indented else first, *rest)
+    print_table(screen, rows)
+
+
+def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
+    """Return an empty table. columns: heads, aligned to the right where they begin with ">". ruled: the heads.
+
+    look: further options of `rich.table.Table`.
+    """
+    from rich import box
+    from rich.table import Table as Drawn
+
+    usual: dict[str, Any] = {"pad_edge": False, "show_header": any(column.strip(">") for column in columns)}
+    usual |= {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False} if ruled else {"box": None}
+    found = Drawn(**({"padding": (0, 2, 0, 0)} | usual | look))
+    for column in columns:
+        right = column.startswith(">")
+        found.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
+    return found
+
+
+def print_table(screen: Console, table: Drawn) -> None:
+    """Write a table at its own width: a narrow terminal breaks its lines, but no number is cut."""
+    natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
+    before = screen.width
+    try:
+        screen.width = max(before, natural)
+        screen.print(table)
+    finally:
+        screen.width = before
