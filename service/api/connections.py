@@ -79,6 +79,7 @@ class Gate:
         one = self._queue.popleft()
         if self._queue:
             one.loop.call_soon(self._go_on)
+        one.flow.resume_reading()
         one.read()
 
     def make_room(self, new: Connection) -> bool:

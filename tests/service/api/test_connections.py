@@ -278,6 +278,15 @@ def status_of(came: IO[bytes] | socket.SocketIO) -> int:
     return status
 
 
+def test_the_rest_of_a_request_comes_after_the_answer_before_it(open_service: httpx.Client) -> None:
+    with connected(open_service) as there:
+        came = there.makefile("rb")
+        there.sendall(LIVE + b"\r\n" + LIVE)
+        assert status_of(came) == 200
+        there.sendall(b"\r\n")
+        assert status_of(came) == 200
+
+
 def test_answers_that_nobody_takes_end_the_connection(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
