@@ -165,7 +165,7 @@ SIZED = {
         "slider": {"mass": "5 kg"},
         **{name: {"width": "40 mm", "depth": "20 mm", "density": "7850 kg/m^3"} for name in ("crank", "rod")},
     },
-    "sections": EXAMPLE,
+    "sections": EXAMPLE | {"pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"}},
 }
 
 
