@@ -3,65 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
-import json
-import random
-import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 import httpx
 import psutil
 import pytest
 
-from slidercrank.service.api import connections, server
-from slidercrank.service.api.connections import MOST_HEAD, Connection
+from slidercrank.service.api import connections
+from slidercrank.service.api.connections import MOST_HEAD
 from slidercrank.service.store import Store
+from tests.service.api.connected import LIVE, answer, connected, sent, status_of
 from tests.service.api.serving import TOKEN, client_of
 from tests.service.store.contents import add
-
-LIVE = b"GET /api/v1/health/live HTTP/1.1\r\nHost: localhost\r\n"
-
-
-@contextlib.contextmanager
-def connected(client: httpx.Client, *, takes: int = 65_536) -> Iterator[socket.socket]:
-    """Connect. takes: bytes that wait in the system at each end."""
-    with socket.socket() as there:
-        there.settimeout(10.0)
-        there.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, takes)
-        there.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, takes)
-        there.connect(("127.0.0.1", client.base_url.port or 0))
-        yield there
-
-
-def ask_until_nothing_is_read(there: socket.socket) -> None:
-    """Send requests without taking an answer until the service reads no more of them."""
-    there.settimeout(0.3)
-    with contextlib.suppress(TimeoutError):
-        for _ in range(1000):
-            there.sendall((LIVE + b"\r\n") * 100)
-    there.settimeout(10.0)
-
-
-def answer(there: socket.socket) -> tuple[int, dict[str, object]]:
-    """Return status and problem document of what a connection is answered before it is closed."""
-    content = b""
-    with contextlib.suppress(ConnectionResetError):
-        while part := there.recv(65_536):
-            content += part
-    head, _, body = content.partition(b"\r\n\r\n")
-    assert b"content-type: application/problem+json" in head.lower()
-    assert b"connection: close" in head.lower()
-    return int(head.split()[1]), json.loads(body)
-
-
-def sent(there: socket.socket, *parts: bytes) -> tuple[int, dict[str, object]]:
-    with contextlib.suppress(ConnectionError):
-        for part in parts:
-            there.sendall(part)
-    return answer(there)
 
 
 @pytest.fixture(scope="module")
@@ -209,156 +164,3 @@ def test_where_all_connections_are_being_answered_a_new_one_is_told_so(
             status, document = answer(late)
         assert status == 503
         assert "at most 3 connections" in str(document["detail"])
-
-
-@pytest.fixture
-def ahead(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Give how many requests were read and not yet answered on a connection, each time that one was read.
-
-    Fails where more than 100 kB wait to be read.
-    """
-    counts: list[int] = []
-
-    class Counted(Connection):
-        unanswered = 0
-
-        def data_received(self, data: bytes) -> None:
-            super().data_received(data)
-            if len(self._backlog) > 100_000:
-                counts.append(len(self._backlog))
-
-        def on_headers_complete(self) -> None:
-            self.unanswered += 1
-            counts.append(self.unanswered)
-            super().on_headers_complete()
-
-        def on_response_complete(self) -> None:
-            self.unanswered -= 1
-            super().on_response_complete()
-
-    monkeypatch.setattr(connections, "Connection", Counted)
-    return counts
-
-
-def test_requests_that_come_together_are_read_one_at_a_time_and_all_answered(tmp_path: Path, ahead: list[int]) -> None:
-    chance = random.Random(36)
-    token = f"Authorization: Bearer {TOKEN}\r\n".encode()
-    check = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n" + token
-    blank = b'{"job": {"name": "' + b"a" * 3000 + b'"}}\r\n\r\n\r\n\r\n'
-    asked = {
-        LIVE + b"\r\n": 200,
-        b"GET /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\n\r\n": 401,
-        b"GET /api/v1/jobs/9 HTTP/1.1\r\nHost: localhost\r\n" + token + b"\r\n": 404,
-        check + b"Content-Length: %d\r\n\r\n" % len(blank) + blank: 422,
-        check + b"Transfer-Encoding: chunked\r\n\r\n%x\r\n" % len(blank) + blank + b"\r\n0\r\n\r\n": 422,
-    }
-    with Store(tmp_path / "store.db") as store, client_of(store, token=TOKEN) as client:
-        for _ in range(10):
-            requests = chance.choices(list(asked), k=20)
-            content = b"".join(requests)
-            cuts = sorted(chance.choices(range(len(content)), k=chance.choice([0, 2, 200])))
-            with connected(client) as there:
-                for begin, end in itertools.pairwise([0, *cuts, len(content)]):
-                    there.sendall(content[begin:end])
-                came = there.makefile("rb")
-                assert [status_of(came) for _ in requests] == [asked[request] for request in requests]
-        with connected(client, takes=1) as there:
-            ask_until_nothing_is_read(there)
-    assert max(ahead) <= 2  # the second where it comes with the end of a body
-
-
-def status_of(came: IO[bytes] | socket.SocketIO) -> int:
-    """Return the status of the next answer, which is read to its end."""
-    status, length = int(came.readline().split()[1]), 0
-    while line := came.readline().strip():
-        name, _, value = line.partition(b":")
-        if name.lower() == b"content-length":
-            length = int(value)
-    came.read(length)
-    return status
-
-
-def test_the_rest_of_a_request_comes_after_the_answer_before_it(open_service: httpx.Client) -> None:
-    with connected(open_service) as there:
-        came = there.makefile("rb")
-        there.sendall(LIVE + b"\r\n" + LIVE)
-        assert status_of(came) == 200
-        there.sendall(b"\r\n")
-        assert status_of(came) == 200
-
-
-def test_answers_that_nobody_takes_end_the_connection(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    monkeypatch.setattr(server, "ANSWER_SECONDS", 0.4)
-    with Store(tmp_path / "store.db") as store, client_of(store) as client, connected(client, takes=1) as there:
-        ask_until_nothing_is_read(there)
-        with pytest.raises(ConnectionResetError):
-            there.sendall(bytes(50_000_000))
-    assert "answers were not taken" in caplog.text
-
-
-@pytest.mark.parametrize("token", [None, TOKEN])
-def test_answers_that_nobody_takes_keep_nobody_out(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, token: str | None
-) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
-    with (
-        Store(tmp_path / "store.db") as store,
-        client_of(store, token=token) as client,
-        contextlib.ExitStack() as stack,
-    ):
-        for _ in range(3):
-            ask_until_nothing_is_read(stack.enter_context(connected(client, takes=1)))
-        for _ in range(3):
-            with connected(client) as late:
-                late.sendall(LIVE + b"\r\n")
-                assert status_of(late.makefile("rb")) == 200
-
-
-def test_who_has_the_token_keeps_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 5)
-    jobs = b"GET /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\n"
-    token = f"Authorization: Bearer {TOKEN}\r\n".encode()
-    with (
-        Store(tmp_path / "store.db") as store,
-        client_of(store, token=TOKEN) as client,
-        contextlib.ExitStack() as stack,
-    ):
-        known = stack.enter_context(connected(client))
-        answers = known.makefile("rb")
-        known.sendall(jobs + token + b"\r\n")
-        assert status_of(answers) == 200
-        for request, status in ((LIVE, 200), (jobs, 401)) * 10:
-            other = stack.enter_context(connected(client))
-            other.sendall(request + b"\r\n")
-            assert status_of(other.makefile("rb")) == status
-        known.sendall(jobs + token + b"\r\n")
-        assert status_of(answers) == 200
-
-
-def test_time_that_a_request_waits_unread_is_not_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "BODY_SECONDS", 0.2)
-    stream = b"GET /api/v1/jobs/1/events HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n"
-    post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1"
-    with Store(tmp_path / "store.db") as store, client_of(store) as client, connected(client) as there:
-        job = add(store)
-        there.sendall(stream + post)
-        came = there.makefile("rb")
-        while not came.readline().startswith(b"id: 1"):
-            pass
-        time.sleep(0.5)
-        there.sendall(b"234567890")
-        store.cancel(job.id)
-        while came.readline() != b"0\r\n":  # the stream ends
-            pass
-        assert came.readline() == b"\r\n"
-        assert status_of(came) == 415
-
-
-def test_without_the_token_no_body_is_kept(open_service: httpx.Client) -> None:
-    post = b"%s HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000\r\n\r\n{"
-    for place, status in ((b"GET /api/v1/health/live", 200), (b"POST /api/v1/jobs", 401)):
-        with connected(open_service) as there:
-            there.sendall(post % place)
-            assert status_of(there.makefile("rb")) == status
