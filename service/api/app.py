@@ -51,7 +51,13 @@ _PARTS = (
     ),
 )
 """Modules of the endpoints, in the order of their description."""
-MODULES = (__name__, *(f"{__package__}.{part}" for part in _PARTS), "numba", "slidercrank.optimise.job")
+MODULES = (
+    __name__,
+    *(f"{__package__}.{part}" for part in _PARTS),
+    "numba",
+    "scipy.optimize",
+    "slidercrank.optimise.job",
+)
 """Modules that `computing_app` needs, and those by which most answers begin."""
 THREADS = 8
 """Requests that are read for at a time. More threads take turns with the interpreter: of 100 requests at once the

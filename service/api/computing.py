@@ -29,7 +29,7 @@ from .computing_process import OUT_OF_TIME, Make, Question, answer_questions, is
 from .throttle import Turns
 
 MOST = Limits(seconds=60.0, memory=10**9)
-"""What an answer may take: time of the processor, and memory of its process."""
+"""What an answer may take: time of the processor, and memory beyond that of a process at rest."""
 _FAREWELL = 1.0  # s that an answer may still take when its client has gone: a process that ends in time is kept
 _SENT = ("type", "asgi", "http_version", "method", "scheme", "path", "raw_path", "query_string", "root_path", "headers")
 _REMEDY = "ask for less, or use a command such as slidercrank analyse, which has no limits"

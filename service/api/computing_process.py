@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 from starlette.types import ASGIApp, Message
@@ -37,9 +38,9 @@ def answer_questions(connection: Connection, make: Make, most: Limits) -> None:
         os.nice(NICENESS)
     try:
         with make() as app, asyncio.Runner() as runner:
-            _limit_memory(most.memory)
             while connection.poll(_IDLE):
                 scope, body = connection.recv()
+                _limit_memory(most.memory)
                 _limit_time(most.seconds)
                 last = runner.run(_answer(app, scope, body, connection.send))
                 _limit_time(None)
@@ -73,13 +74,14 @@ async def _answer(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callab
 
 
 def _limit_memory(most: int | None) -> None:
-    """Have memory refused beyond a number of bytes, where the system can."""
-    try:
+    """Have memory refused beyond a number of bytes more than this process has now, where the system can."""
+    statistics = Path("/proc/self/statm")
+    if most is not None and statistics.exists():
         import resource
-    except ImportError:  # on Windows
-        return
-    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    resource.setrlimit(resource.RLIMIT_DATA, (hard if most is None else most, hard))
+
+        # Not a limit of the whole: libraries reserve memory for each processor, and wait for ever where they get none.
+        has = int(statistics.read_text().split()[5]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_DATA, (has + most, resource.getrlimit(resource.RLIMIT_DATA)[1]))
 
 
 def _limit_time(seconds: float | None) -> None:

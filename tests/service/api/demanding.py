@@ -23,6 +23,7 @@ from slidercrank.service.workers.heartbeat import EXHAUSTED, leave
 from tests.service.api.serving import serving
 
 _ROUTES = {"quick": QuickRoute, "long": LongRoute}
+_KEPT: list[bytearray] = []
 MOST = Limits(seconds=0.5, memory=400_000_000)
 
 
@@ -32,6 +33,11 @@ def _process(_: Request) -> Response:
 
 def _memory(request: Request) -> Response:
     return PlainTextResponse(str(len(bytearray(int(request.query_params["bytes"])))))
+
+
+def _kept(request: Request) -> Response:
+    _KEPT.append(bytearray(int(request.query_params["bytes"])))
+    return PlainTextResponse("kept")
 
 
 def _time(request: Request) -> Response:
@@ -58,7 +64,14 @@ async def _endless(_: Request) -> Response:
 @contextlib.contextmanager
 def demanding() -> Iterator[Starlette]:
     """Give the application, as each process makes it."""
-    endpoints = {"process": _process, "memory": _memory, "time": _time, "killed": _killed, "endless": _endless}
+    endpoints = {
+        "process": _process,
+        "memory": _memory,
+        "kept": _kept,
+        "time": _time,
+        "killed": _killed,
+        "endless": _endless,
+    }
     routes = [Route(f"/{kind}/{name}", of) for kind in _ROUTES for name, of in endpoints.items()]
     yield Starlette(routes=routes, exception_handlers={MemoryError: lambda *_: leave(EXHAUSTED)})
 

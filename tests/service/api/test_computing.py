@@ -50,6 +50,8 @@ def test_a_request_within_its_limits_is_answered_and_its_process_is_kept(client:
     assert client.get("/quick/memory?bytes=100000000").text == "100000000"
     assert client.get("/quick/time?seconds=0.2").text == "done"
     assert client.get("/quick/time?seconds=0.4").text == "done"  # each has its own time
+    for _ in range(2):
+        assert client.get("/quick/kept?bytes=300000000").text == "kept"  # what others left does not count
     assert _process(client) == before
 
 
