@@ -21,7 +21,7 @@ ATTACKS: dict[Attack, tuple[int, bytes]] = {
     "many": (530, (_REQUEST + b"\r\n") * 300),
     "long": (40, (_REQUEST + b"\r\n") * 9000),
     "heads": (530, _HEAD + _HEAD[:-2]),
-    "bodies": (530, _REQUEST + b"Content-Length: 1000000\r\n\r\n" + b"b" * 999_999),
+    "bodies": (530, _REQUEST + b"Content-Length: 1000000\r\n\r\n" + b"b" * 500_000),
 }
 """Connections, and what each sends: 300 and 9,000 requests of 53 bytes, large heads, bodies that do not end."""
 
