@@ -20,8 +20,8 @@ MEMORY = 200.0
 """MB that an API may take beyond those at rest."""
 _CLOSED = 120.0
 """s within which it has closed all connections of a flood."""
-_STORE = 5
-"""Files that a store may open beyond those at rest."""
+_STORE = 150
+"""Files that a store may open beyond those at rest: three for each of its threads, of which a service has 40."""
 
 
 @dataclass
