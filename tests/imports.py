@@ -15,7 +15,7 @@ _FROM = re.compile(r"^[ \t]*from[ \t]+(\.*)([\w.]*)[ \t]+import[ \t]+(\([^)]*\)|
 _IMPORT = re.compile(r"^[ \t]*import[ \t]+([\w.]+)(?:[ \t]+as[ \t]+(\w+))?", re.MULTILINE)
 _COMMENT = re.compile(r"#[^\n]*")
 _SCRIPT = re.compile(r"""(?:\bfrom|\bimport)\s*\(?\s*["'](\.{1,2}/[^"']+)["']""")
-_VIEW = re.compile(r"match: \(parts\) => (.*?), load: \(\) => import\(\"\./(.*?)\"\)")
+_VIEW = re.compile(r"match: \(parts\) => (.*?),\s+load: \(\) => import\(\"\./(.*?)\"\)")
 
 
 def files_of(root: Path, *suffixes: str) -> list[Path]:

@@ -24,8 +24,8 @@ FILES = {
     "optimise/data/reader.py": "def read() -> None: ...\n",
     "service/page/static/app.js": 'import { h } from "./lib/dom.js";\nconst VIEWS = [\n'
     '  { match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },\n'
-    '  { match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, '
-    'load: () => import("./views/design.js") },\n];\n',
+    '  {\n    match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4,\n'
+    '    load: () => import("./views/design.js"),\n  },\n];\n',
     "service/page/static/views/new_run.js": 'import { h } from "../lib/dom.js";\n',
     "service/page/static/views/design.js": 'import "../lib/dom.js";\nimport { lines } from "../charts/lines.js";\n',
     "service/page/static/lib/dom.js": "export const h = 1;\n",
