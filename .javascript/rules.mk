@@ -1,6 +1,6 @@
 # JavaScript of the page and of the player: lint and types (npm), unit tests (node 18.18 or newer; Debian: nodejs npm).
 # Without node they are left out, and make says so.
-.PHONY: lint-javascript test-javascript clean-javascript
+.PHONY: lint-javascript format-javascript test-javascript clean-javascript
 lint: lint-javascript
 test: test-javascript
 CHECKS += lint-javascript test-javascript
@@ -9,12 +9,17 @@ clean: clean-javascript
 JAVASCRIPT := .javascript
 JS_CACHE := $(JAVASCRIPT)/node_modules/.cache
 IN_NODE := $(JAVASCRIPT)/node_modules/.bin
+PRETTIER := $(IN_NODE)/prettier --config $(JAVASCRIPT)/package.json --log-level warn \
+  $(JAVASCRIPT)/*.js 'service/**/*.js' 'tests/**/*.mjs'
 
 ifneq ($(shell sh -c 'command -v npm'),)
 lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(JAVASCRIPT)/openapi.d.ts
 	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 --cache --cache-location $(JS_CACHE)/eslint \
 	  $(JAVASCRIPT) service tests
 	$(IN_NODE)/tsc --project service/page --incremental --tsBuildInfoFile $(JS_CACHE)/types
+
+format-javascript: $(JAVASCRIPT)/node_modules/.installed
+	$(PRETTIER) --write
 
 # The shapes of the API, from its own description: anew whenever Python has changed.
 $(JAVASCRIPT)/openapi.d.ts: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed-test $(JAVASCRIPT)/describe.py \
