@@ -8,13 +8,19 @@ export default [
   {
     rules: {
       eqeqeq: "error",
-      "no-unused-vars": ["error", { varsIgnorePattern: "^_", argsIgnorePattern: "^_", destructuredArrayIgnorePattern: "^_" }],
+      "no-unused-vars": [
+        "error",
+        { varsIgnorePattern: "^_", argsIgnorePattern: "^_", destructuredArrayIgnorePattern: "^_" },
+      ],
       "no-var": "error",
       "object-shorthand": "error",
       "prefer-const": ["error", { destructuring: "all" }],
     },
   },
   { files: ["service/page/static/**/*.js"], languageOptions: { globals: globals.browser } },
-  { files: ["service/motion/player/*.js"], languageOptions: { globals: globals.browser, sourceType: "script" } },
+  {
+    files: ["service/motion/player/*.js"],
+    languageOptions: { globals: globals.browser, sourceType: "script" },
+  },
   { files: ["tests/**/*.mjs", ".javascript/*.js"], languageOptions: { globals: globals.node } },
 ];

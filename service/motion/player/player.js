@@ -12,7 +12,9 @@ const speed = /** @type {HTMLSelectElement} */ (at("speed"));
 const count = data.slider.length;
 const whole = 360 * data.turns;
 const cursors = [...document.querySelectorAll(".strip .now")];
-const outputs = /** @type {HTMLOutputElement[]} */ ([...document.querySelectorAll("output[data-curve]")]);
+const outputs = /** @type {HTMLOutputElement[]} */ ([
+  ...document.querySelectorAll("output[data-curve]"),
+]);
 let angle = 0;
 let playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
 /** @type {number | null} */
@@ -57,7 +59,8 @@ function draw() {
     cursor.setAttribute("x1", String(angle / data.turns));
     cursor.setAttribute("x2", String(angle / data.turns));
   }
-  for (const output of outputs) output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
+  for (const output of outputs)
+    output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
   at("angle-now").textContent = `${crank.toFixed(0).replace("-", "\u2212")}\u00b0`;
   if (document.activeElement !== slide || playing) slide.value = String(angle);
 }

@@ -17,13 +17,37 @@ import { sentenceOf } from "./lib/refusals.js";
  */
 const VIEWS = [
   { name: "runs", match: (parts) => parts.length === 0, load: () => import("./views/runs.js") },
-  { name: "new-run", match: (parts) => parts[0] === "new" && parts.length === 1, load: () => import("./views/new_run.js") },
-  { name: "compare", match: (parts) => parts[0] === "compare" && parts.length === 1, load: () => import("./views/compare.js") },
-  { name: "run", match: (parts) => parts[0] === "jobs" && parts.length === 2, load: () => import("./views/run.js") },
-  { name: "design", match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4, load: () => import("./views/design.js") },
-  { name: "help", match: (parts) => parts[0] === "help" && parts.length <= 2, load: () => import("./views/help.js") },
+  {
+    name: "new-run",
+    match: (parts) => parts[0] === "new" && parts.length === 1,
+    load: () => import("./views/new_run.js"),
+  },
+  {
+    name: "compare",
+    match: (parts) => parts[0] === "compare" && parts.length === 1,
+    load: () => import("./views/compare.js"),
+  },
+  {
+    name: "run",
+    match: (parts) => parts[0] === "jobs" && parts.length === 2,
+    load: () => import("./views/run.js"),
+  },
+  {
+    name: "design",
+    match: (parts) => parts[0] === "jobs" && parts[2] === "designs" && parts.length === 4,
+    load: () => import("./views/design.js"),
+  },
+  {
+    name: "help",
+    match: (parts) => parts[0] === "help" && parts.length <= 2,
+    load: () => import("./views/help.js"),
+  },
 ];
-const NAVIGATION = [["Runs", "#/"], ["New run", "#/new"], ["Help", "#/help"]];
+const NAVIGATION = [
+  ["Runs", "#/"],
+  ["New run", "#/new"],
+  ["Help", "#/help"],
+];
 
 let leaving = new AbortController();
 
@@ -52,7 +76,12 @@ async function showView() {
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
     document.title = "slidercrank";
-    fill(place, h("h1", {}, "This cannot be shown"), h("p", {}, sentenceOf(error)), h("p", {}, h("a", { href: "#/" }, "All runs")));
+    fill(
+      place,
+      h("h1", {}, "This cannot be shown"),
+      h("p", {}, sentenceOf(error)),
+      h("p", {}, h("a", { href: "#/" }, "All runs")),
+    );
   }
 }
 
@@ -60,7 +89,16 @@ function markNavigation() {
   const here = `#/${read().parts[0] ?? ""}`;
   fill(
     byId("nav"),
-    NAVIGATION.map(([title, href]) => h("a", { href, "aria-current": href === here || (href === "#/" && here === "#/jobs") ? "page" : null }, title)),
+    NAVIGATION.map(([title, href]) =>
+      h(
+        "a",
+        {
+          href,
+          "aria-current": href === here || (href === "#/" && here === "#/jobs") ? "page" : null,
+        },
+        title,
+      ),
+    ),
   );
 }
 
@@ -69,16 +107,41 @@ function showPreferences() {
   document.documentElement.dataset.scheme = scheme;
   /** @param {string} label @param {[string, string][]} options @param {string} value @param {(value: string) => unknown} choose */
   const choice = (label, options, value, choose) =>
-    h("label", {}, h("span", { class: "hidden" }, label), h("select", { onchange: (event) => choose(event.currentTarget.value) },
-      options.map(([key, title]) => h("option", { value: key, selected: key === value }, title))));
+    h(
+      "label",
+      {},
+      h("span", { class: "hidden" }, label),
+      h(
+        "select",
+        { onchange: (event) => choose(event.currentTarget.value) },
+        options.map(([key, title]) => h("option", { value: key, selected: key === value }, title)),
+      ),
+    );
   fill(
     byId("preferences"),
-    choice("Units", [["si", "mm, N"], ["inch", "inch, lbf"]], system(), (name) => chooseSystem(name).catch(sayProblem)),
-    choice("Colours", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], scheme, (name) => {
-      localStorage.setItem("scheme", name);
-      document.documentElement.dataset.scheme = name;
-      window.dispatchEvent(new Event("scheme"));
-    }),
+    choice(
+      "Units",
+      [
+        ["si", "mm, N"],
+        ["inch", "inch, lbf"],
+      ],
+      system(),
+      (name) => chooseSystem(name).catch(sayProblem),
+    ),
+    choice(
+      "Colours",
+      [
+        ["auto", "Auto"],
+        ["light", "Light"],
+        ["dark", "Dark"],
+      ],
+      scheme,
+      (name) => {
+        localStorage.setItem("scheme", name);
+        document.documentElement.dataset.scheme = name;
+        window.dispatchEvent(new Event("scheme"));
+      },
+    ),
   );
 }
 

@@ -32,7 +32,11 @@ export const OVER_SWING = [
   { name: "position", title: "slider position" },
 ];
 const QUARTERS = [0, 90, 180, 270, 360];
-const ENDS = [{ at: 0, text: "start" }, { at: 180, text: "end" }, { at: 360, text: "start" }];
+const ENDS = [
+  { at: 0, text: "start" },
+  { at: 180, text: "end" },
+  { at: 360, text: "start" },
+];
 
 /** Return the way of the slider from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
 export function wayAt({ curves, sliderEnds: [inner] }, angle) {
@@ -53,7 +57,8 @@ export function acrossOf(name, rpm, turns = 1) {
     unit: "°",
     ticks: turns ? QUARTERS.map((at) => ({ at, text: `${turns * at}°` })) : ENDS,
     span: () => ({ low: 0, high: 360 }),
-    path: (_, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: (360 * n) / count, n: n % count })),
+    path: (_, count) =>
+      Array.from({ length: count + 1 }, (_, n) => ({ x: (360 * n) / count, n: n % count })),
     place: (_, angle) => angle,
     angle: (x) => x,
   };
@@ -65,7 +70,11 @@ function overTime(seconds, direction) {
     title: "time",
     unit: "s",
     span: () => ({ low: 0, high: seconds }),
-    path: (_, count) => Array.from({ length: count + 1 }, (_, k) => ({ x: (seconds * k) / count, n: (((direction * k) % count) + count) % count })),
+    path: (_, count) =>
+      Array.from({ length: count + 1 }, (_, k) => ({
+        x: (seconds * k) / count,
+        n: (((direction * k) % count) + count) % count,
+      })),
     place: (_, angle) => (seconds * turned(direction * angle)) / 360,
     angle: (x) => turned((direction * 360 * x) / seconds),
   };
@@ -78,8 +87,16 @@ function overCrank() {
   return {
     title: "crank angle",
     unit: "°",
-    span: (series) => range(series.flatMap(({ curves }) => curves.crank_angle_deg), 0.02),
-    path: (one, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: place(one, (360 * n) / count), n: n % count })),
+    span: (series) =>
+      range(
+        series.flatMap(({ curves }) => curves.crank_angle_deg),
+        0.02,
+      ),
+    path: (one, count) =>
+      Array.from({ length: count + 1 }, (_, n) => ({
+        x: place(one, (360 * n) / count),
+        n: n % count,
+      })),
     place,
     angle: null,
   };
@@ -95,8 +112,20 @@ function overWay(name) {
   return {
     title: name === "way" ? "way from the inner dead centre" : "slider position",
     unit: unitOf("mm"),
-    span: (series) => range(series.flatMap((one) => (one.turns ? one.centres.map((angle) => place(one, angle)) : one.curves.slider_position_mm.map((at) => at === null ? null : inShown(at, "mm")))), 0.02),
-    path: (one, count) => Array.from({ length: count + 1 }, (_, n) => ({ x: place(one, (360 * n) / count) ?? NaN, n: n % count })),
+    span: (series) =>
+      range(
+        series.flatMap((one) =>
+          one.turns
+            ? one.centres.map((angle) => place(one, angle))
+            : one.curves.slider_position_mm.map((at) => (at === null ? null : inShown(at, "mm"))),
+        ),
+        0.02,
+      ),
+    path: (one, count) =>
+      Array.from({ length: count + 1 }, (_, n) => ({
+        x: place(one, (360 * n) / count) ?? NaN,
+        n: n % count,
+      })),
     place,
     angle: null,
   };

@@ -37,7 +37,8 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   context.fillStyle = ink.quiet;
   context.textAlign = "right";
   context.textBaseline = "middle";
-  for (const [value, text] of y.ticks) context.fillText(text, area.left - 6, y.at(value), area.left - 22);
+  for (const [value, text] of y.ticks)
+    context.fillText(text, area.left - 6, y.at(value), area.left - 22);
   context.save();
   context.translate(11, (area.top + bottom) / 2);
   context.rotate(-Math.PI / 2);

@@ -57,7 +57,11 @@ export function following(from, mask, { of, by }) {
   for (let row = 0; row < mask.length; row += 1) {
     if (!mask[row] || row === from) continue;
     const ahead = by * (of(row) - start);
-    if ((ahead > 0 || (ahead === 0 && by * (row - from) > 0)) && (ahead < least || (ahead === least && by * (row - best) < 0))) [best, least] = [row, ahead];
+    if (
+      (ahead > 0 || (ahead === 0 && by * (row - from) > 0)) &&
+      (ahead < least || (ahead === least && by * (row - best) < 0))
+    )
+      [best, least] = [row, ahead];
   }
   return best;
 }

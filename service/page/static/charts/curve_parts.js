@@ -16,15 +16,36 @@ const NAMES = { turn: ["inner", "outer"], swing: ["start", "end"] };
 
 /** @param {Pen} pen @param {number} width */
 export function axes({ x, y, across, height }, width) {
-  const ticks = across.ticks ?? x.ticks.map((at, n, all) => ({ at, text: n === all.length - 1 ? `${x.text(at)} ${across.unit}` : x.text(at) }));
+  const ticks =
+    across.ticks ??
+    x.ticks.map((at, n, all) => ({
+      at,
+      text: n === all.length - 1 ? `${x.text(at)} ${across.unit}` : x.text(at),
+    }));
   return svg(
     "g",
     { class: "axes" },
     y.ticks.map((tick) => [
-      svg("line", { class: tick === 0 ? "zero" : "grid", x1: ROOM.left, x2: width - ROOM.right, y1: y.at(tick), y2: y.at(tick) }),
+      svg("line", {
+        class: tick === 0 ? "zero" : "grid",
+        x1: ROOM.left,
+        x2: width - ROOM.right,
+        y1: y.at(tick),
+        y2: y.at(tick),
+      }),
       svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
     ]),
-    ticks.map(({ at, text: words }) => svg("text", { x: x.at(at), y: height - 6, "text-anchor": x.at(at) > width - 3 * ROOM.right ? "end" : "middle" }, words)),
+    ticks.map(({ at, text: words }) =>
+      svg(
+        "text",
+        {
+          x: x.at(at),
+          y: height - 6,
+          "text-anchor": x.at(at) > width - 3 * ROOM.right ? "end" : "middle",
+        },
+        words,
+      ),
+    ),
   );
 }
 
@@ -35,9 +56,20 @@ export function centreLines({ x, across, height }, first) {
   return [...first.centres, ...again].map((angle, n) => {
     const at = x.at(across.place(first, angle) ?? NaN);
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
-    return svg("g", { class: "centre" },
+    return svg(
+      "g",
+      { class: "centre" },
       svg("line", { x1: at, x2: at, y1: ROOM.top, y2: height - ROOM.bottom }),
-      svg("text", { x: at, y: ROOM.top - 11, "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle" }, NAMES[first.turns ? "turn" : "swing"][n % 2]));
+      svg(
+        "text",
+        {
+          x: at,
+          y: ROOM.top - 11,
+          "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle",
+        },
+        NAMES[first.turns ? "turn" : "swing"][n % 2],
+      ),
+    );
   });
 }
 
@@ -71,9 +103,16 @@ export function peaks(one, { x, y, across }) {
     const at = x.at(across.place(one, angle) ?? NaN);
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
-    return svg("g", { class: "peak" },
+    return svg(
+      "g",
+      { class: "peak" },
       svg("circle", { cx: at, cy: y.at(value), r: 2.5, "data-series": series }),
-      svg("text", { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor }, `${ends ? "" : "≈ "}${text(value, "", 4)}`));
+      svg(
+        "text",
+        { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor },
+        `${ends ? "" : "≈ "}${text(value, "", 4)}`,
+      ),
+    );
   });
 }
 
@@ -87,7 +126,8 @@ export function summary(words, unit, series, key, across) {
     const found = exact?.[key] ?? extremes(curves[key]);
     if (!found) return `${name}: not defined`;
     /** @param {{ value: number, angle: number }} given */
-    const at = ({ value, angle }) => `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
+    const at = ({ value, angle }) =>
+      `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
   });
   return `${words} over the ${across.title}. ${each.join(". ")}.`;

@@ -74,13 +74,21 @@ export function curveCharts(place, turned, sizes) {
     const first = large.flatMap((key) => charts.find((one) => one.panel.key === key) ?? []);
     const chosen = (first.length ? first : charts).slice(0, MOST_LARGE);
     for (const one of charts) one.size(chosen.includes(one));
-    fill(wide, chosen.map((one) => one.figure));
-    fill(grid, charts.filter((one) => !chosen.includes(one)).map((one) => one.figure));
+    fill(
+      wide,
+      chosen.map((one) => one.figure),
+    );
+    fill(
+      grid,
+      charts.filter((one) => !chosen.includes(one)).map((one) => one.figure),
+    );
   }
 
   /** Make a curve large, in place of the last of those that are, or small. @param {string} key */
   function resize(key) {
-    const now = charts.filter((one) => one.figure.parentElement === wide).map((one) => one.panel.key);
+    const now = charts
+      .filter((one) => one.figure.parentElement === wide)
+      .map((one) => one.panel.key);
     const rest = now.filter((one) => one !== key);
     large = now.includes(key) ? (rest.length ? rest : now) : [key, ...rest].slice(0, MOST_LARGE);
     sizes.told(large);
@@ -108,11 +116,14 @@ export function curveCharts(place, turned, sizes) {
 
   const sight = new IntersectionObserver((seen) => {
     observed = true;
-    for (const { target, isIntersecting } of seen) isIntersecting ? inSight.add(target) : inSight.delete(target);
+    for (const { target, isIntersecting } of seen)
+      isIntersecting ? inSight.add(target) : inSight.delete(target);
     charts.filter((one) => inSight.has(one.figure)).forEach(drawn);
   });
 
-  const watcher = new ResizeObserver(() => charts.length && Math.round(place.clientWidth) !== width && arrange());
+  const watcher = new ResizeObserver(
+    () => charts.length && Math.round(place.clientWidth) !== width && arrange(),
+  );
   watcher.observe(place);
   return {
     /** @param {Shown[]} series @param {Panel[]} panels @param {Across} over */
@@ -131,14 +142,23 @@ export function curveCharts(place, turned, sizes) {
 
 /** @param {Panel} panel @param {(angle: number, taken: boolean) => void} turned @param {(key: string) => void} resize */
 function chart(panel, turned, resize) {
-  const sizer = h("button", { type: "button", class: "small sizer", onclick: () => resize(panel.key) });
+  const sizer = h("button", {
+    type: "button",
+    class: "small sizer",
+    onclick: () => resize(panel.key),
+  });
   const readout = h("span", { class: "readout number" });
   const title = h("span", { class: "title" });
   const picture = svg("svg", { class: "chart", role: "img" });
   // Cursor and dots lie over the picture, which is not painted again as they move.
   const cursor = h("div", { class: "cursor" });
   const plot = h("div", { class: "plot" }, picture);
-  const figure = h("figure", { "data-key": panel.key }, h("figcaption", {}, title, readout, sizer), plot);
+  const figure = h(
+    "figure",
+    { "data-key": panel.key },
+    h("figcaption", {}, title, readout, sizer),
+    plot,
+  );
   let height = HEIGHTS.small;
   /** @type {Page.Scale & { width: number } | null} */
   let x = null;
@@ -156,8 +176,15 @@ function chart(panel, turned, resize) {
   const move = (event) => {
     if (!x) return;
     const box = picture.getBoundingClientRect();
-    const at = [event.clientX - box.left, event.clientY - box.top].map((pixel) => (pixel * /** @type {{ width: number }} */ (x).width) / box.width);
-    turned(across.angle ? Math.min(Math.max(across.angle(x.value(at[0])), 0), 359.99) : nearest(at[0], at[1]), lit);
+    const at = [event.clientX - box.left, event.clientY - box.top].map(
+      (pixel) => (pixel * /** @type {{ width: number }} */ (x).width) / box.width,
+    );
+    turned(
+      across.angle
+        ? Math.min(Math.max(across.angle(x.value(at[0])), 0), 359.99)
+        : nearest(at[0], at[1]),
+      lit,
+    );
   };
 
   /** Return the crank angle whose point on the first curve is nearest: over a way there are two at every place. @param {number} right @param {number} down */
@@ -166,7 +193,8 @@ function chart(panel, turned, resize) {
     let [best, least] = [0, Infinity];
     for (const { x: at, n } of across.path(series[0], values.length)) {
       const value = values[n];
-      const distance = value === null || !x ? Infinity : Math.hypot(x.at(at) - right, y.at(value) - down);
+      const distance =
+        value === null || !x ? Infinity : Math.hypot(x.at(at) - right, y.at(value) - down);
       if (distance < least) [best, least] = [n, distance];
     }
     return (360 * best) / values.length;
@@ -177,8 +205,12 @@ function chart(panel, turned, resize) {
     picture.setPointerCapture(event.pointerId);
     move(event);
   });
-  picture.addEventListener("pointermove", (event) => (lit || event.pointerType === "mouse") && move(event));
-  for (const end of ["pointerup", "pointercancel"]) picture.addEventListener(end, () => (lit = false));
+  picture.addEventListener(
+    "pointermove",
+    (event) => (lit || event.pointerType === "mouse") && move(event),
+  );
+  for (const end of ["pointerup", "pointercancel"])
+    picture.addEventListener(end, () => (lit = false));
 
   return {
     panel,
@@ -199,17 +231,35 @@ function chart(panel, turned, resize) {
     draw({ key, title: words, unit }, all, over) {
       const width = Math.max(80, Math.round(plot.clientWidth));
       across = over;
-      series = all.filter(({ curves }) => curves[key]).map((one) => ({ ...one, values: one.curves[key].map((value) => value === null ? null : inShown(value, unit)), ends: endsOf(one.exact?.[key], unit) }));
+      series = all
+        .filter(({ curves }) => curves[key])
+        .map((one) => ({
+          ...one,
+          values: one.curves[key].map((value) => (value === null ? null : inShown(value, unit))),
+          ends: endsOf(one.exact?.[key], unit),
+        }));
       title.textContent = `${words} (${unitOf(unit)})`;
-      const { low, high } = range(series.flatMap(({ values }) => values), 0.14);
+      const { low, high } = range(
+        series.flatMap(({ values }) => values),
+        0.14,
+      );
       const span = across.span(series);
-      x = { ...scale(span.low, span.high, ROOM.left, width - ROOM.right, width > 300 ? 6 : 3), width };
+      x = {
+        ...scale(span.low, span.high, ROOM.left, width - ROOM.right, width > 300 ? 6 : 3),
+        width,
+      };
       y = scale(low, high, height - ROOM.bottom, ROOM.top, height > 200 ? 6 : 3);
       picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
       picture.setAttribute("aria-label", summary(words, unit, series, key, across));
       dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
       const pen = { x, y, across, height };
-      fill(picture, axes(pen, width), centreLines(pen, series[0]), series.map((one) => line(one, pen)).reverse(), series[0] && peaks(series[0], pen));
+      fill(
+        picture,
+        axes(pen, width),
+        centreLines(pen, series[0]),
+        series.map((one) => line(one, pen)).reverse(),
+        series[0] && peaks(series[0], pen),
+      );
       fill(plot, picture, cursor, dots.toReversed());
     },
     /** @param {number} angle @param {boolean} read */
@@ -219,8 +269,17 @@ function chart(panel, turned, resize) {
       const places = series.map((one) => scaled.at(across.place(one, angle) ?? NaN));
       cursor.style.transform = `translate(${(places[0] ?? 0).toFixed(1)}px, ${ROOM.top}px)`;
       const values = series.map((one) => between(one.values, angle));
-      values.forEach((value, n) => (dots[n].style.transform = value === null ? "translate(-99px, 0)" : `translate(${places[n].toFixed(1)}px, ${y.at(value).toFixed(1)}px)`));
-      if (read) readout.textContent = values.map((value) => (value === null ? "–" : text(value, "", 4))).join("  ·  ");
+      values.forEach(
+        (value, n) =>
+          (dots[n].style.transform =
+            value === null
+              ? "translate(-99px, 0)"
+              : `translate(${places[n].toFixed(1)}px, ${y.at(value).toFixed(1)}px)`),
+      );
+      if (read)
+        readout.textContent = values
+          .map((value) => (value === null ? "–" : text(value, "", 4)))
+          .join("  ·  ");
     },
   };
 }
@@ -229,5 +288,8 @@ function chart(panel, turned, resize) {
 function endsOf(exact, unit) {
   if (!exact) return null;
   const { low, high } = exact;
-  return { low: { ...low, value: inShown(low.value, unit) }, high: { ...high, value: inShown(high.value, unit) } };
+  return {
+    low: { ...low, value: inShown(low.value, unit) },
+    high: { ...high, value: inShown(high.value, unit) },
+  };
 }

@@ -31,14 +31,16 @@ export class Density {
       if (Math.abs(rise) <= run) {
         const slope = Math.trunc((rise * 65536) / run);
         let at = (from << 16) + 32768;
-        for (let x = start; x < start + run; x += 1, at += slope) counts[(at >> 16) * width + x] += by;
+        for (let x = start; x < start + run; x += 1, at += slope)
+          counts[(at >> 16) * width + x] += by;
       } else {
         const steps = Math.abs(rise);
         const down = rise > 0 ? width : -width;
         const slope = Math.trunc((run * 65536) / steps);
         let at = (start << 16) + 32768;
         let place = from * width;
-        for (let step = 0; step < steps; step += 1, at += slope, place += down) counts[place + (at >> 16)] += by;
+        for (let step = 0; step < steps; step += 1, at += slope, place += down)
+          counts[place + (at >> 16)] += by;
       }
     }
   }
@@ -56,7 +58,8 @@ export class Density {
     const { counts, pixels } = this;
     const colour = (blue << 16) | (green << 8) | red;
     const table = new Uint32Array(256);
-    for (let count = 1; count < 256; count += 1) table[count] = (Math.round(255 * (1 - (1 - strength) ** count)) << 24) | colour;
+    for (let count = 1; count < 256; count += 1)
+      table[count] = (Math.round(255 * (1 - (1 - strength) ** count)) << 24) | colour;
     for (let place = 0; place < counts.length; place += 1) {
       const count = counts[place];
       pixels[place] = table[count < 255 ? count : 255];

@@ -14,7 +14,11 @@ export function binned(heights, axes, mask, top, bottom) {
     if (!mask[row]) continue;
     for (let axis = 0; axis < axes; axis += 1) {
       const y = heights[row * axes + axis];
-      if (y >= 0) counts[axis * BINS + Math.max(0, Math.min(BINS - 1, Math.floor(((y - top) / (bottom - top)) * BINS)))] += 1;
+      if (y >= 0)
+        counts[
+          axis * BINS +
+            Math.max(0, Math.min(BINS - 1, Math.floor(((y - top) / (bottom - top)) * BINS)))
+        ] += 1;
     }
   }
   return counts;

@@ -18,7 +18,10 @@ export function inside(line, x, y) {
 /** Return a line with at most 32 of its corners, evenly spread. @param {readonly Page.Point[]} line */
 export function thinned(line) {
   const step = Math.max(1, line.length / MOST);
-  return Array.from({ length: Math.min(MOST, line.length) }, (_, index) => line[Math.floor(index * step)]);
+  return Array.from(
+    { length: Math.min(MOST, line.length) },
+    (_, index) => line[Math.floor(index * step)],
+  );
 }
 
 /** Draw a closed line of pixels on canvas. @param {Page.Canvas} context @param {readonly Page.Point[]} line @param {Page.Ink} ink */

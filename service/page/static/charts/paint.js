@@ -2,7 +2,19 @@
 
 import { h } from "../lib/dom.js";
 
-const VIRIDIS = ["#440154", "#482475", "#414487", "#355f8d", "#2a788e", "#21918c", "#22a884", "#44bf70", "#7ad151", "#bddf26", "#fde725"]; // tenth by tenth
+const VIRIDIS = [
+  "#440154",
+  "#482475",
+  "#414487",
+  "#355f8d",
+  "#2a788e",
+  "#21918c",
+  "#22a884",
+  "#44bf70",
+  "#7ad151",
+  "#bddf26",
+  "#fde725",
+]; // tenth by tenth
 
 /**
  * Return layers over each other: {place, resize(width, height), contexts}; lengths are pixels of the page.
@@ -64,7 +76,8 @@ export function squares(context, across, up, mask, of, colours) {
     const [x, y] = [Math.round(across[row]) - 1, Math.round(up[row]) - 1];
     if (!(x >= 0 && y >= 0 && x < width - 2 && y < height - 2)) continue;
     const ink = inks[of[row]];
-    for (let place = y * width + x, line = 0; line < 3; line += 1, place += width) pixels[place] = pixels[place + 1] = pixels[place + 2] = ink;
+    for (let place = y * width + x, line = 0; line < 3; line += 1, place += width)
+      pixels[place] = pixels[place + 1] = pixels[place + 2] = ink;
   }
   context.putImageData(image, 0, 0);
 }
@@ -88,7 +101,9 @@ export function ramp(ink, count) {
     const at = (index / Math.max(1, count - 1)) * (stops.length - 1);
     const left = Math.min(stops.length - 2, Math.floor(at));
     const share = at - left;
-    const mixed = stops[left].map((part, channel) => Math.round(part + share * (stops[left + 1][channel] - part)));
+    const mixed = stops[left].map((part, channel) =>
+      Math.round(part + share * (stops[left + 1][channel] - part)),
+    );
     return `rgb(${mixed.join(" ")})`;
   });
 }

@@ -52,7 +52,10 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
  * @param {Chart} chart
  */
 export function parallel(chart) {
-  const stack = layers(3, "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The fields below set the same limits as dragging on an axis.");
+  const stack = layers(
+    3,
+    "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The fields below set the same limits as dragging on an axis.",
+  );
   const { place, contexts } = stack;
   /** @type {View} */
   let view; // nothing until it is drawn first
@@ -80,15 +83,36 @@ export function parallel(chart) {
       const zero = at(0);
       const factor = at(1) - zero;
       for (let row = 0; row < numbers.length; row += 1) {
-        if (!Number.isNaN(numbers[row])) heights[row * axes.length + axis] = Math.round(even ? zero + factor * numbers[row] : at(numbers[row]));
+        if (!Number.isNaN(numbers[row]))
+          heights[row * axes.length + axis] = Math.round(
+            even ? zero + factor * numbers[row] : at(numbers[row]),
+          );
       }
     });
     const ink = colours();
     const all = data.count > FEW ? new Density(width, height, across, heights) : null;
     stack.resize(width, height, all ? [BACK, FRONT] : []);
-    view = { width, height, axes, across, scales, heights, all, backed: false, chosen: null, ink, shades: shadesOf(data, chart.colour(), ink) };
+    view = {
+      width,
+      height,
+      axes,
+      across,
+      scales,
+      heights,
+      all,
+      backed: false,
+      chosen: null,
+      ink,
+      shades: shadesOf(data, chart.colour(), ink),
+    };
     if (all) for (let row = 0; row < data.count; row += 1) all.add(row, 1);
-    else lines(contexts[BACK], (row) => row >= 0, () => ink.line, 1);
+    else
+      lines(
+        contexts[BACK],
+        (row) => row >= 0,
+        () => ink.line,
+        1,
+      );
   }
 
   /** Draw all designs behind the chosen ones, once; of many, they are seen only while some are left out. */
@@ -120,18 +144,28 @@ export function parallel(chart) {
     if (!view.all) {
       stack.clear(FRONT);
       const { of, colours: inks } = view.shades;
-      lines(contexts[FRONT], (row) => mask[row] === 1, (row) => inks[of[row]], 1.2, chosen > 60 ? 0.6 : 0.85);
+      lines(
+        contexts[FRONT],
+        (row) => mask[row] === 1,
+        (row) => inks[of[row]],
+        1.2,
+        chosen > 60 ? 0.6 : 0.85,
+      );
       return;
     }
     if (!view.chosen) {
-      view.chosen = { density: new Density(view.width, view.height, view.across, view.heights), mask: new Uint8Array(mask.length).fill(1) };
+      view.chosen = {
+        density: new Density(view.width, view.height, view.across, view.heights),
+        mask: new Uint8Array(mask.length).fill(1),
+      };
       view.chosen.density.counts.set(view.all.counts);
     }
     const { density, mask: before } = view.chosen;
     let changed = 0;
     for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) changed += 1;
     if (changed <= chosen) {
-      for (let row = 0; row < mask.length; row += 1) if (mask[row] !== before[row]) density.add(row, mask[row] ? 1 : -1);
+      for (let row = 0; row < mask.length; row += 1)
+        if (mask[row] !== before[row]) density.add(row, mask[row] ? 1 : -1);
     } else {
       density.clear();
       for (let row = 0; row < mask.length; row += 1) if (mask[row]) density.add(row, 1);
@@ -159,7 +193,9 @@ export function parallel(chart) {
       context.stroke();
       drawLimit(context, axis, chart.limits.of.get(key));
       const unit = chart.data.column(key).unit;
-      for (const [value, label] of words ? wordTicks(words) : ticks(chart.data.range(key), unit, chart.log(key))) {
+      for (const [value, label] of words
+        ? wordTicks(words)
+        : ticks(chart.data.range(key), unit, chart.log(key))) {
         const y = scales[axis].at(value);
         context.lineWidth = 3;
         context.strokeStyle = ink.panel;
@@ -182,7 +218,9 @@ export function parallel(chart) {
   function heightsOf(cells) {
     return Int16Array.from(view.axes, ({ key }, axis) => {
       const words = chart.data.words(key);
-      const y = view.scales[axis].at(words ? words.indexOf(String(cells[key])) : Number(cells[key] ?? NaN));
+      const y = view.scales[axis].at(
+        words ? words.indexOf(String(cells[key])) : Number(cells[key] ?? NaN),
+      );
       return Number.isFinite(y) ? Math.min(view.height - ROOM / 2, Math.max(ROOM / 2, y)) : -1;
     });
   }
@@ -196,7 +234,11 @@ export function parallel(chart) {
       const y = heights[row * axes.length + axis];
       if (y < 0) return;
       const words = text(chart.data.cell(key, row), chart.data.column(key).unit, 4);
-      const place = /** @type {const} */ ([words, across[axis] - 9, Math.min(height - 8, Math.max(8, y))]);
+      const place = /** @type {const} */ ([
+        words,
+        across[axis] - 9,
+        Math.min(height - 8, Math.max(8, y)),
+      ]);
       context.lineWidth = 5;
       context.strokeStyle = ink.panel;
       context.strokeText(...place);
@@ -227,7 +269,9 @@ export function parallel(chart) {
     const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
     if (limit.words) {
       const words = chart.data.words(view.axes[axis].key) ?? [];
-      return limit.words.filter((word) => words.includes(word)).map((word) => [at(words.indexOf(word)) - 9, at(words.indexOf(word)) + 9]);
+      return limit.words
+        .filter((word) => words.includes(word))
+        .map((word) => [at(words.indexOf(word)) - 9, at(words.indexOf(word)) + 9]);
     }
     /** @param {number | null} value @param {number} end */
     const inside = (value, end) => at(Math.min(high, Math.max(low, value ?? end)));
@@ -272,7 +316,8 @@ export function parallel(chart) {
     if (!view) return;
     if (!dragged) {
       const row = under(event);
-      stack.top.style.cursor = axisAt(event).axis >= 0 ? "ns-resize" : row === null ? "default" : "pointer";
+      stack.top.style.cursor =
+        axisAt(event).axis >= 0 ? "ns-resize" : row === null ? "default" : "pointer";
       chart.point(row);
       return;
     }
@@ -281,7 +326,10 @@ export function parallel(chart) {
     dragged.moved = true;
     let ends = [dragged.from, pending];
     if (dragged.span) {
-      const by = Math.min(view.height - ROOM - dragged.span[1], Math.max(ROOM - dragged.span[0], pending - dragged.from));
+      const by = Math.min(
+        view.height - ROOM - dragged.span[1],
+        Math.max(ROOM - dragged.span[0], pending - dragged.from),
+      );
       ends = dragged.span.map((end) => end + by);
     }
     const { key } = view.axes[dragged.axis];
@@ -289,21 +337,33 @@ export function parallel(chart) {
     const [first, second] = ends.map(value).sort((a, b) => a - b);
     const words = chart.data.words(key);
     if (words) {
-      chart.limit(key, { words: words.filter((_, index) => index >= first - 0.3 && index <= second + 0.3) });
+      chart.limit(key, {
+        words: words.filter((_, index) => index >= first - 0.3 && index <= second + 0.3),
+      });
       return;
     }
     const bit = (at(high) - at(low)) / 500; // of the axis: nearer than this to its end is at the end
     const step = value(at(low) + bit) - low;
     /** @param {number} number */
-    const tidy = (number) => Number(number.toPrecision(Math.max(3, 1 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / step)))));
-    chart.limit(key, { low: first <= low + step ? null : tidy(first), high: second >= value(at(high) - bit) ? null : tidy(second) });
+    const tidy = (number) =>
+      Number(
+        number.toPrecision(
+          Math.max(3, 1 + Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / step))),
+        ),
+      );
+    chart.limit(key, {
+      low: first <= low + step ? null : tidy(first),
+      high: second >= value(at(high) - bit) ? null : tidy(second),
+    });
   }
 
   /** @param {PointerEvent} event */
   const end = (event) => {
-    const row = pressed && event.type === "pointerup" && axisAt(event).axis < 0 ? under(event) : null;
+    const row =
+      pressed && event.type === "pointerup" && axisAt(event).axis < 0 ? under(event) : null;
     [dragged, pressed] = [null, false];
-    if (row !== null) (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
+    if (row !== null)
+      (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
   };
   /** @param {MouseEvent} event */
   const clear = (event) => {
@@ -317,8 +377,12 @@ export function parallel(chart) {
   stack.top.addEventListener("dblclick", clear);
   let along = 0; // the axis along which keys go from design to design
   byKeys(place, {
-    mask: () => chart.limits.mask, point: chart.point, open: chart.open, select: chart.select,
-    say: (row) => `${chart.say(row)}. Up and down go along the axis of ${chart.data.column(view.axes[along].key).title}.`,
+    mask: () => chart.limits.mask,
+    point: chart.point,
+    open: chart.open,
+    select: chart.select,
+    say: (row) =>
+      `${chart.say(row)}. Up and down go along the axis of ${chart.data.column(view.axes[along].key).title}.`,
     next(row, key) {
       if (key === "ArrowLeft" || key === "ArrowRight") {
         along = (along + (key === "ArrowRight" ? 1 : view.axes.length - 1)) % view.axes.length;
@@ -326,7 +390,10 @@ export function parallel(chart) {
       }
       const { axes, heights } = view;
       along = Math.min(along, axes.length - 1);
-      return { of: (other) => heights[other * axes.length + along], by: key === "ArrowUp" ? -1 : 1 };
+      return {
+        of: (other) => heights[other * axes.length + along],
+        by: key === "ArrowUp" ? -1 : 1,
+      };
     },
   });
   stack.top.addEventListener("pointerleave", () => {

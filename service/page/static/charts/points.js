@@ -37,14 +37,62 @@ export function points(series, x, y, label, held = null, told = undefined) {
   const up = axis(1, y, HEIGHT - AREA.bottom, AREA.top);
   const bottom = HEIGHT - AREA.bottom;
   const middle = (AREA.top + bottom) / 2;
-  const picture = svg("svg", { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
-    across.ticks.map((tick) => [svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }), svg("text", { x: across.at(tick), y: bottom + 18, "text-anchor": "middle" }, across.text(tick))]),
-    up.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick))]),
-    svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 6, "text-anchor": "middle" }, headed(x)),
-    svg("text", { class: "title", x: 17, y: middle, transform: `rotate(-90 17 ${middle})`, "text-anchor": "middle" }, headed(y)),
-    drawn.map((own, index) => svg("g", { class: `series-${1 + (index % 6)}` }, own
-      .map(([a, b]) => SHAPES[index % SHAPES.length](round(across.at(inShown(a, x.unit))), round(up.at(inShown(b, y.unit))))))));
-  if (told) pointed(picture, series, (point) => [across.at(inShown(point[0], x.unit)), up.at(inShown(point[1], y.unit))], told);
+  const picture = svg(
+    "svg",
+    { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
+    across.ticks.map((tick) => [
+      svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }),
+      svg(
+        "text",
+        { x: across.at(tick), y: bottom + 18, "text-anchor": "middle" },
+        across.text(tick),
+      ),
+    ]),
+    up.ticks.map((tick) => [
+      svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }),
+      svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick)),
+    ]),
+    svg(
+      "text",
+      {
+        class: "title",
+        x: (AREA.left + WIDTH - AREA.right) / 2,
+        y: HEIGHT - 6,
+        "text-anchor": "middle",
+      },
+      headed(x),
+    ),
+    svg(
+      "text",
+      {
+        class: "title",
+        x: 17,
+        y: middle,
+        transform: `rotate(-90 17 ${middle})`,
+        "text-anchor": "middle",
+      },
+      headed(y),
+    ),
+    drawn.map((own, index) =>
+      svg(
+        "g",
+        { class: `series-${1 + (index % 6)}` },
+        own.map(([a, b]) =>
+          SHAPES[index % SHAPES.length](
+            round(across.at(inShown(a, x.unit))),
+            round(up.at(inShown(b, y.unit))),
+          ),
+        ),
+      ),
+    ),
+  );
+  if (told)
+    pointed(
+      picture,
+      series,
+      (point) => [across.at(inShown(point[0], x.unit)), up.at(inShown(point[1], y.unit))],
+      told,
+    );
   return picture;
 }
 
@@ -54,13 +102,18 @@ export function points(series, x, y, label, held = null, told = undefined) {
  * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} told
  */
 function pointed(picture, series, place, { at, open }) {
-  const all = series.flatMap((one, number) => one.points.flatMap((point, row) => (isPoint(point) ? [{ number, row, at: place(point) }] : [])));
+  const all = series.flatMap((one, number) =>
+    one.points.flatMap((point, row) => (isPoint(point) ? [{ number, row, at: place(point) }] : [])),
+  );
   const ring = svg("circle", { class: "ring", r: 8, cx: -99, cy: -99 });
   picture.append(ring);
   /** @param {MouseEvent} event */
   const under = ({ clientX, clientY }) => {
     const box = picture.getBoundingClientRect();
-    const [x, y] = [((clientX - box.left) * WIDTH) / box.width, ((clientY - box.top) * HEIGHT) / box.height];
+    const [x, y] = [
+      ((clientX - box.left) * WIDTH) / box.width,
+      ((clientY - box.top) * HEIGHT) / box.height,
+    ];
     /** @type {(typeof all)[0] | null} */
     let nearest = null;
     let least = NEAR * NEAR;
@@ -92,7 +145,11 @@ export function isPoint(point) {
 
 /** Return the sign of a series for a legend. @param {number} index */
 export function sign(index) {
-  return svg("svg", { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" }, svg("g", { class: `series-${1 + (index % 6)}` }, SHAPES[index % SHAPES.length](6, 6)));
+  return svg(
+    "svg",
+    { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" },
+    svg("g", { class: `series-${1 + (index % 6)}` }, SHAPES[index % SHAPES.length](6, 6)),
+  );
 }
 
 /** @param {number} pixel */

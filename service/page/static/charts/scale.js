@@ -17,7 +17,8 @@ export function scale(low, high, start, end, count = 5) {
   const step = roundStep((high - low) / count);
   const power = Math.floor(Math.log10(step) + 1e-9); // of the last digit in which ticks differ
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1)
+    ticks.push(i * step);
   return {
     low,
     high,
@@ -38,9 +39,15 @@ export function logScale(low, high, start, end, count = 5) {
   if (isConstant(low, high)) return even;
   const [from, to] = [Math.log10(low), Math.log10(high)];
   const factor = (end - start) / (to - from);
-  const powers = Array.from({ length: Math.ceil(to) - Math.floor(from) + 1 }, (_, n) => Math.floor(from) + n);
+  const powers = Array.from(
+    { length: Math.ceil(to) - Math.floor(from) + 1 },
+    (_, n) => Math.floor(from) + n,
+  );
   /** @param {number[]} steps */
-  const within = (steps) => powers.flatMap((power) => steps.map((step) => Number(`${step}e${power}`))).filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9));
+  const within = (steps) =>
+    powers
+      .flatMap((power) => steps.map((step) => Number(`${step}e${power}`)))
+      .filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9));
   const fine = within([1, 2, 5]);
   const ticks = fine.length < 3 ? even.ticks : fine.length > 2 * count ? within([1]) : fine;
   return {
@@ -49,7 +56,8 @@ export function logScale(low, high, start, end, count = 5) {
     ticks,
     at: (value) => (value > 0 ? start + (Math.log10(value) - from) * factor : NaN),
     value: (pixel) => 10 ** (from + (pixel - start) / factor),
-    text: fine.length < 3 ? even.text : (tick) => tickText(tick, Math.floor(Math.log10(tick) + 1e-9)),
+    text:
+      fine.length < 3 ? even.text : (tick) => tickText(tick, Math.floor(Math.log10(tick) + 1e-9)),
   };
 }
 
@@ -61,7 +69,10 @@ export function mayBeLog({ low, high }) {
 /** Return a tick as text, to the digit of a power of ten. @param {number} tick @param {number} power */
 function tickText(tick, power) {
   const size = Math.abs(tick);
-  const text = size >= 1e5 ? tick.toExponential(Math.max(0, Math.floor(Math.log10(size)) - power)) : tick.toFixed(Math.max(0, -power));
+  const text =
+    size >= 1e5
+      ? tick.toExponential(Math.max(0, Math.floor(Math.log10(size)) - power))
+      : tick.toFixed(Math.max(0, -power));
   return text.replace(/^-0(\.0*)?$/, "0").replace("-", "−");
 }
 

@@ -40,7 +40,12 @@ const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
 /** @param {Page.Canvas} context @param {number} x @param {number} y @param {number} size */
 function diamond(context, x, y, size) {
   context.moveTo(x, y - size);
-  for (const [a, b] of [[1, 0], [0, 1], [-1, 0]]) context.lineTo(x + a * size, y + b * size);
+  for (const [a, b] of [
+    [1, 0],
+    [0, 1],
+    [-1, 0],
+  ])
+    context.lineTo(x + a * size, y + b * size);
   context.closePath();
 }
 
@@ -51,7 +56,10 @@ function diamond(context, x, y, size) {
  * @param {Chart} chart
  */
 export function scatter(chart) {
-  const stack = layers(3, "Scatter of two quantities: arrow keys go from design to design, Enter opens one, the space bar selects it. The table below has the same designs.");
+  const stack = layers(
+    3,
+    "Scatter of two quantities: arrow keys go from design to design, Enter opens one, the space bar selects it. The table below has the same designs.",
+  );
   const { place, contexts, top } = stack;
   /** @type {View} */
   let view; // nothing until it is drawn first
@@ -65,13 +73,26 @@ export function scatter(chart) {
     const width = Math.max(1, Math.round(place.clientWidth));
     const height = Math.max(260, Math.min(460, Math.round(width * 0.72)));
     const { data } = chart;
-    const [x, y] = [axis(chart.x(), AREA.left, width - AREA.right, 6), axis(chart.y(), height - AREA.bottom, AREA.top, 6)];
+    const [x, y] = [
+      axis(chart.x(), AREA.left, width - AREA.right, 6),
+      axis(chart.y(), height - AREA.bottom, AREA.top, 6),
+    ];
     const across = data.numbers(chart.x()).map(x.at);
     const up = data.numbers(chart.y()).map(y.at);
     const many = data.count > FEW;
     const ink = colours();
     stack.resize(width, height, many ? [BACK, FRONT] : []);
-    view = { width, height, x, y, across, up, many, ink, shades: shadesOf(data, chart.colour(), ink) };
+    view = {
+      width,
+      height,
+      x,
+      y,
+      across,
+      up,
+      many,
+      ink,
+      shades: shadesOf(data, chart.colour(), ink),
+    };
     const context = contexts[BACK];
     // Squares replace what is there, so they come first.
     if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
@@ -101,15 +122,27 @@ export function scatter(chart) {
     const made = log ? logScale : scale;
     const drawn = made(low, high, start, end);
     const factor = inShown(1, column.unit);
-    const shown = made(inShown(drawn.low, column.unit), inShown(drawn.high, column.unit), start, end, count);
-    const ticks = words ? wordTicks(words) : shown.ticks.map((tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]));
+    const shown = made(
+      inShown(drawn.low, column.unit),
+      inShown(drawn.high, column.unit),
+      start,
+      end,
+      count,
+    );
+    const ticks = words
+      ? wordTicks(words)
+      : shown.ticks.map(
+          (tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]),
+        );
     return { ...drawn, column, ticks, better: data.better(key) };
   }
 
   /** Return the numbers that an axis has to reach. @param {string} key @returns {Iterable<Api.Row[string]>} */
   function withOthers(key) {
     const others = [...chart.others(), ...chart.behind()];
-    return others.length ? [...chart.data.numbers(key), ...others.map((row) => row[key])] : chart.data.numbers(key);
+    return others.length
+      ? [...chart.data.numbers(key), ...others.map((row) => row[key])]
+      : chart.data.numbers(key);
   }
 
   /** Return where a mark stands. @param {Page.Mark} mark @returns {Page.Point} */
@@ -170,7 +203,10 @@ export function scatter(chart) {
       context.globalAlpha = 1;
     }
     const { lasso } = chart.limits;
-    const drawn = lasso && lasso.x === chart.x() && lasso.y === chart.y() ? lasso.line.map(([a, b]) => /** @type {Page.Point} */ ([view.x.at(a), view.y.at(b)])) : null;
+    const drawn =
+      lasso && lasso.x === chart.x() && lasso.y === chart.y()
+        ? lasso.line.map(([a, b]) => /** @type {Page.Point} */ ([view.x.at(a), view.y.at(b)]))
+        : null;
     const shown = line ?? drawn;
     if (shown) drawLasso(context, shown, ink);
   }
@@ -185,7 +221,12 @@ export function scatter(chart) {
     const left = x > view.width * 0.7;
     const { width } = context.measureText(name);
     const start = left ? x - 9 - width : x + 9;
-    if (written.some((other) => start < other.end && start + width > other.start && Math.abs(y - other.y) < 15)) return;
+    if (
+      written.some(
+        (other) => start < other.end && start + width > other.start && Math.abs(y - other.y) < 15,
+      )
+    )
+      return;
     written.push({ start, end: start + width, y });
     context.textAlign = left ? "right" : "left";
     context.textBaseline = "bottom";
@@ -236,11 +277,20 @@ export function scatter(chart) {
     if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return;
     if (free) {
       line = [...(line ?? [[from.x, from.y]]), [here.x, here.y]];
-      if (line.length > 2) chart.lasso(thinned(line).map(([x, y]) => [view.x.value(x), view.y.value(y)]));
+      if (line.length > 2)
+        chart.lasso(thinned(line).map(([x, y]) => [view.x.value(x), view.y.value(y)]));
       return;
     }
-    box = { x: Math.min(from.x, here.x), right: Math.max(from.x, here.x), y: Math.min(from.y, here.y), bottom: Math.max(from.y, here.y) };
-    chart.box(limitOf(chart.x(), view.x, box.x, box.right), limitOf(chart.y(), view.y, box.bottom, box.y));
+    box = {
+      x: Math.min(from.x, here.x),
+      right: Math.max(from.x, here.x),
+      y: Math.min(from.y, here.y),
+      bottom: Math.max(from.y, here.y),
+    };
+    chart.box(
+      limitOf(chart.x(), view.x, box.x, box.right),
+      limitOf(chart.y(), view.y, box.bottom, box.y),
+    );
   });
   /** @param {PointerEvent} event */
   const end = (event) => {
@@ -250,15 +300,23 @@ export function scatter(chart) {
     if (drawn) drawOver();
     else if (event.type === "pointerup") {
       const row = under(at(event));
-      if (row !== null) (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
+      if (row !== null)
+        (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
     }
   };
   top.addEventListener("pointerup", end);
   top.addEventListener("pointercancel", end);
   top.addEventListener("pointerleave", () => from || chart.point(null));
   byKeys(place, {
-    mask: () => chart.limits.mask, point: chart.point, open: chart.open, select: chart.select, say: chart.say,
-    next: (_, key) => (key === "ArrowLeft" || key === "ArrowRight" ? { of: (row) => view.across[row], by: key === "ArrowRight" ? 1 : -1 } : { of: (row) => view.up[row], by: key === "ArrowUp" ? -1 : 1 }),
+    mask: () => chart.limits.mask,
+    point: chart.point,
+    open: chart.open,
+    select: chart.select,
+    say: chart.say,
+    next: (_, key) =>
+      key === "ArrowLeft" || key === "ArrowRight"
+        ? { of: (row) => view.across[row], by: key === "ArrowRight" ? 1 : -1 }
+        : { of: (row) => view.up[row], by: key === "ArrowUp" ? -1 : 1 },
   });
 
   /** @param {string} key @param {Page.Axis} drawn @param {number} first @param {number} second @returns {Page.Limit} */

@@ -13,9 +13,14 @@ const SHADES = 24;
 export function shadesOf(data, key, ink) {
   if (!key || !data.has(key)) return { of: new Uint8Array(data.count), colours: [ink.accent] };
   const numbers = data.numbers(key);
-  if (data.words(key)) return { of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)), colours: palette(ink, 6) };
+  if (data.words(key))
+    return {
+      of: Uint8Array.from(numbers, (number) => (Number.isNaN(number) ? 0 : number % 6)),
+      colours: palette(ink, 6),
+    };
   const { low, high } = data.range(key);
   const of = new Uint8Array(numbers.length);
-  for (let row = 0; row < numbers.length; row += 1) of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
+  for (let row = 0; row < numbers.length; row += 1)
+    of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
   return { of, colours: ramp(ink, SHADES) };
 }

@@ -17,7 +17,10 @@ export function steady() {
     if (before && before.low <= low && high <= before.high) return before;
     const [least, most] = [Math.min(low, before?.low ?? low), Math.max(high, before?.high ?? high)];
     const ahead = AHEAD * (most - least);
-    const now = { low: !before || low < before.low ? least - ahead : least, high: !before || high > before.high ? most + ahead : most };
+    const now = {
+      low: !before || low < before.low ? least - ahead : least,
+      high: !before || high > before.high ? most + ahead : most,
+    };
     held.set(key, now);
     return now;
   };

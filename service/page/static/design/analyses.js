@@ -15,7 +15,11 @@ import { sentenceOf } from "../lib/refusals.js";
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 const NEAR = "200px"; // before they are in sight
 const FLYWHEEL = "flywheel"; // the topic that has an option
-const CERTIFY = { name: "certify", title: "Certify", shows: "how far the front can be from the true one" };
+const CERTIFY = {
+  name: "certify",
+  title: "Certify",
+  shows: "how far the front can be from the true one",
+};
 
 /**
  * Put the tabs into `place`. drawn: names of topics that the view draws itself. tab: that is chosen; told(tab): another one is, "" for the
@@ -24,8 +28,18 @@ const CERTIFY = { name: "certify", title: "Certify", shows: "how far the front c
  * @param {{ job: string, number: number, drawn: readonly string[], tab: string, told: (tab: string) => void, signal: AbortSignal }} given
  */
 export function analyses(place, { job, number, drawn, tab, told, signal }) {
-  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown: step });
-  const panel = h("div", { class: "panel analysis", role: "tabpanel", id: "analysis", tabindex: 0 });
+  const tabs = h("div", {
+    class: "tabs",
+    role: "tablist",
+    "aria-label": "Analyses",
+    onkeydown: step,
+  });
+  const panel = h("div", {
+    class: "panel analysis",
+    role: "tabpanel",
+    id: "analysis",
+    tabindex: 0,
+  });
   fill(place, h("h2", {}, "Analyses"), tabs, panel);
   /** @type {Api.Topic[]} */
   let topics = [];
@@ -33,13 +47,23 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   /** @type {Page.Numbers | null} */
   let lengths = null;
   let turn = 0;
-  const wanted = h("input", { type: "text", inputmode: "decimal", class: "short number", name: "fluctuation", autocomplete: "off", placeholder: "0.02" });
+  const wanted = h("input", {
+    type: "text",
+    inputmode: "decimal",
+    class: "short number",
+    name: "fluctuation",
+    autocomplete: "off",
+    placeholder: "0.02",
+  });
 
   /** @type {Promise<void> | null} */
   let begun = null;
-  const watcher = new IntersectionObserver((now) => {
-    if (now.some((one) => one.isIntersecting)) begun ??= begin();
-  }, { rootMargin: NEAR });
+  const watcher = new IntersectionObserver(
+    (now) => {
+      if (now.some((one) => one.isIntersecting)) begun ??= begin();
+    },
+    { rootMargin: NEAR },
+  );
   watcher.observe(place);
   beforePrinting(() => (begun ??= begin()).then(pictured), signal);
   signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
@@ -47,13 +71,19 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   /** Wait for the figure of the tab. */
   async function pictured() {
     const picture = panel.querySelector("img");
-    if (picture && !picture.complete) await new Promise((done) => ["load", "error"].forEach((name) => picture.addEventListener(name, done, { once: true })));
+    if (picture && !picture.complete)
+      await new Promise((done) =>
+        ["load", "error"].forEach((name) => picture.addEventListener(name, done, { once: true })),
+      );
   }
 
   async function begin() {
     watcher.disconnect();
     try {
-      topics = [...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)), CERTIFY];
+      topics = [
+        ...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)),
+        CERTIFY,
+      ];
       await choose((topics.find(({ name }) => name === chosen) ?? topics[0]).name);
     } catch (error) {
       if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
@@ -64,9 +94,25 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   function choose(name) {
     chosen = name;
     if (begun) told(name === topics[0].name ? "" : name);
-    fill(tabs, topics.map((one) => h("button", {
-      type: "button", role: "tab", id: `tab-${one.name}`, "aria-controls": "analysis", "aria-selected": String(one.name === name), tabindex: one.name === name ? 0 : -1, title: one.shows, onclick: () => choose(one.name),
-    }, one.title)));
+    fill(
+      tabs,
+      topics.map((one) =>
+        h(
+          "button",
+          {
+            type: "button",
+            role: "tab",
+            id: `tab-${one.name}`,
+            "aria-controls": "analysis",
+            "aria-selected": String(one.name === name),
+            tabindex: one.name === name ? 0 : -1,
+            title: one.shows,
+            onclick: () => choose(one.name),
+          },
+          one.title,
+        ),
+      ),
+    );
     panel.setAttribute("aria-labelledby", `tab-${name}`);
     return ask();
   }
@@ -89,11 +135,21 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
     const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
     const head = [
-      h("p", { class: "quiet hint" }, `${capital(inWords(shows))}${lengths ? "; of the changed design" : ""}. As `, h("code", {}, `analyse --show ${chosen}`), " tells it."),
+      h(
+        "p",
+        { class: "quiet hint" },
+        `${capital(inWords(shows))}${lengths ? "; of the changed design" : ""}. As `,
+        h("code", {}, `analyse --show ${chosen}`),
+        " tells it.",
+      ),
       chosen === FLYWHEEL && sizing,
     ];
     const held = focused(sizing);
-    const options = { ...lengths, units: apiSystem(), fluctuation: chosen === FLYWHEEL ? fluctuation() : null };
+    const options = {
+      ...lengths,
+      units: apiSystem(),
+      fluctuation: chosen === FLYWHEEL ? fluctuation() : null,
+    };
     const answer = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     fill(panel, head, answer);
     held?.focus();
@@ -102,21 +158,48 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
       if (own !== turn || !found) return;
       const { told: blocks } = found;
       const file = address(`${path}.svg`, options);
-      const picture = h("img", { src: file, alt: `Figure: ${title}`, onerror: ({ currentTarget }) => currentTarget.remove() });
-      fill(answer, h("div", { class: "analysis-columns" }, h("div", {}, blocks.map(block)), picture));
+      const picture = h("img", {
+        src: file,
+        alt: `Figure: ${title}`,
+        onerror: ({ currentTarget }) => currentTarget.remove(),
+      });
+      fill(
+        answer,
+        h("div", { class: "analysis-columns" }, h("div", {}, blocks.map(block)), picture),
+      );
     } catch (error) {
       if (own !== turn || isAbort(error)) return;
       const lacks = statusOf(error) === 422;
-      fill(answer, h("p", { class: lacks ? "quiet" : "error" }, `${sentenceOf(error)}. `, lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job")));
+      fill(
+        answer,
+        h(
+          "p",
+          { class: lacks ? "quiet" : "error" },
+          `${sentenceOf(error)}. `,
+          lacks && h("a", { href: link(["new"], { from: job }) }, "Change the job"),
+        ),
+      );
     }
   }
 
-  const sizing = h("form", { class: "row", novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, h("label", {}, "Speed fluctuation, at most ", wanted), h("button", {}, "Size the flywheel"));
+  const sizing = h(
+    "form",
+    {
+      class: "row",
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        ask();
+      },
+    },
+    h("label", {}, "Speed fluctuation, at most ", wanted),
+    h("button", {}, "Size the flywheel"),
+  );
 
   /** Return the fluctuation that was typed, as a number where it is one; null for the usual one. */
   function fluctuation() {
     const typed = measured(wanted.value, "");
-    return typed.empty ? null : typed.value ?? wanted.value.trim();
+    return typed.empty ? null : (typed.value ?? wanted.value.trim());
   }
 
   window.addEventListener("units", () => begun && chosen !== CERTIFY.name && ask(), { signal });
@@ -135,7 +218,41 @@ function block({ sentence, heading, heads, right, rows }) {
   if (!rows.length) return h(heading ? "h3" : "p", {}, sentence);
   /** @param {number} n */
   const side = (n) => (right[n] ? "number" : null);
-  const head = heads.some(Boolean) && h("thead", {}, h("tr", {}, heads.map((title, n) => h(title ? "th" : "td", { scope: title ? "col" : null, class: side(n) }, title))));
-  return scrolled("Numbers of the analysis", h("table", {}, h("caption", { class: "hidden" }, "Numbers of the analysis"), head,
-    h("tbody", {}, rows.map((cells) => h("tr", {}, cells.map((cell, n) => (n ? h("td", { class: side(n) }, cell) : h("th", { scope: "row", class: side(n) }, cell))))))));
+  const head =
+    heads.some(Boolean) &&
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        heads.map((title, n) =>
+          h(title ? "th" : "td", { scope: title ? "col" : null, class: side(n) }, title),
+        ),
+      ),
+    );
+  return scrolled(
+    "Numbers of the analysis",
+    h(
+      "table",
+      {},
+      h("caption", { class: "hidden" }, "Numbers of the analysis"),
+      head,
+      h(
+        "tbody",
+        {},
+        rows.map((cells) =>
+          h(
+            "tr",
+            {},
+            cells.map((cell, n) =>
+              n
+                ? h("td", { class: side(n) }, cell)
+                : h("th", { scope: "row", class: side(n) }, cell),
+            ),
+          ),
+        ),
+      ),
+    ),
+  );
 }

@@ -6,10 +6,15 @@ import { scrolled } from "./numbers.js";
 
 const ENDS = ["least", "greatest"];
 /** Heads of a table of the extremes of curves. */
-export const HEADS = ["Curve", ...ENDS.flatMap((end) => [end, "at crank angle", "at slider position"]), "Unit"];
+export const HEADS = [
+  "Curve",
+  ...ENDS.flatMap((end) => [end, "at crank angle", "at slider position"]),
+  "Unit",
+];
 const STROKES = /** @type {const} */ (["outward", "inward"]);
 /** @type {[string, string, string, string][]} */
-const ROWS = [ // of the strokes: title, key of a stroke, of the difference, of the ratio
+const ROWS = [
+  // of the strokes: title, key of a stroke, of the difference, of the ratio
   ["crank angle", "crank_angle", "", "angle_ratio"],
   ["duration", "duration", "duration_difference", "duration_ratio"],
   ["greatest slider speed", "greatest_speed", "greatest_speed_difference", "greatest_speed_ratio"],
@@ -19,9 +24,19 @@ const ROWS = [ // of the strokes: title, key of a stroke, of the difference, of 
 
 /** Put the tables into `place`. @param {HTMLElement} place @param {Api.Extremes} found @param {{ signal: AbortSignal }} given */
 export function extremes(place, found, { signal }) {
-  const draw = () => fill(place, h("h3", {}, "Every curve"), scrolled("Every curve", curves(found)),
-    h("h3", {}, "Strokes"), scrolled("Strokes", strokes(found)),
-    h("p", { class: "quiet hint" }, "Found between the crank angles of the curves above as well. Difference and ratio are those of the outward stroke against the inward one."));
+  const draw = () =>
+    fill(
+      place,
+      h("h3", {}, "Every curve"),
+      scrolled("Every curve", curves(found)),
+      h("h3", {}, "Strokes"),
+      scrolled("Strokes", strokes(found)),
+      h(
+        "p",
+        { class: "quiet hint" },
+        "Found between the crank angles of the curves above as well. Difference and ratio are those of the outward stroke against the inward one.",
+      ),
+    );
   draw();
   window.addEventListener("units", draw, { signal });
 }
@@ -37,14 +52,33 @@ export function endsOf(found, { curveColumns, sliderEnds: [inner], turns }) {
   const ends = {};
   for (const [name, curve] of Object.entries(found.curves)) {
     const { unit } = valueOf(curve, "least");
-    const column = curveColumns.find(({ key }) => key.startsWith(`${name}_`) && valueOf({ [key]: 0 }, name).value === 0);
-    const [low, high] = ENDS.map((end) => ({ value: valueOf(curve, end).value, angle: valueOf(curve, `${end}_at_crank_angle`).value }));
-    if (!column || column.unit !== unit || low.value === null || low.angle === null || high.value === null || high.angle === null) continue;
-    ends[column.key] = { low: { value: low.value, angle: low.angle / turns }, high: { value: high.value, angle: high.angle / turns } };
+    const column = curveColumns.find(
+      ({ key }) => key.startsWith(`${name}_`) && valueOf({ [key]: 0 }, name).value === 0,
+    );
+    const [low, high] = ENDS.map((end) => ({
+      value: valueOf(curve, end).value,
+      angle: valueOf(curve, `${end}_at_crank_angle`).value,
+    }));
+    if (
+      !column ||
+      column.unit !== unit ||
+      low.value === null ||
+      low.angle === null ||
+      high.value === null ||
+      high.angle === null
+    )
+      continue;
+    ends[column.key] = {
+      low: { value: low.value, angle: low.angle / turns },
+      high: { value: high.value, angle: high.angle / turns },
+    };
   }
   const { slider_position_mm: position } = ends;
   if (position) {
-    const [low, high] = [position.low, position.high].map(({ value, angle }) => ({ value: value - inner, angle }));
+    const [low, high] = [position.low, position.high].map(({ value, angle }) => ({
+      value: value - inner,
+      angle,
+    }));
     ends.way_mm = { low, high };
   }
   return ends;
@@ -58,8 +92,18 @@ function curves({ curves: every }) {
 /** Return a row for each curve. @param {Api.Extremes["curves"]} every */
 export function extremeRows(every) {
   return Object.values(every).map((curve) => {
-    const ends = ENDS.map((end) => [cell(curve, end), cell(curve, `${end}_at_crank_angle`, { withUnit: true }), cell(curve, `${end}_at_slider_position`, { withUnit: true })]);
-    return h("tr", {}, h("th", { scope: "row" }, curve.title), ends, h("td", { class: "quiet" }, unitOf(valueOf(curve, "least").unit)));
+    const ends = ENDS.map((end) => [
+      cell(curve, end),
+      cell(curve, `${end}_at_crank_angle`, { withUnit: true }),
+      cell(curve, `${end}_at_slider_position`, { withUnit: true }),
+    ]);
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, curve.title),
+      ends,
+      h("td", { class: "quiet" }, unitOf(valueOf(curve, "least").unit)),
+    );
   });
 }
 
@@ -67,7 +111,15 @@ export function extremeRows(every) {
 function strokes({ strokes: both }) {
   const known = ROWS.filter(([, key]) => valueOf(both.outward, key).value !== null); // no durations without a speed
   const rows = known.map(([title, key, difference, ratio]) =>
-    h("tr", {}, h("th", { scope: "row" }, title), STROKES.map((stroke) => cell(both[stroke], key, { withUnit: true })), cell(both, difference, { withUnit: true }), cell(both, ratio)));
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, title),
+      STROKES.map((stroke) => cell(both[stroke], key, { withUnit: true })),
+      cell(both, difference, { withUnit: true }),
+      cell(both, ratio),
+    ),
+  );
   return table("Outward and inward stroke", ["Stroke", ...STROKES, "difference", "ratio"], rows);
 }
 
@@ -76,11 +128,35 @@ function cell(record, name, { withUnit = false } = {}) {
   if (!name) return h("td", {});
   const { value, unit } = valueOf(record, name);
   const shown = withUnit && value !== null && unit ? unitOf(unit) : "";
-  return h("td", { class: "number", "data-key": name, "data-value": value === null ? "" : String(value) }, text(value, unit), shown && shown !== "°" ? `\u00a0${shown}` : shown);
+  return h(
+    "td",
+    { class: "number", "data-key": name, "data-value": value === null ? "" : String(value) },
+    text(value, unit),
+    shown && shown !== "°" ? `\u00a0${shown}` : shown,
+  );
 }
 
 /** Return a table of numbers. @param {string} caption @param {readonly string[]} heads @param {Node[]} rows */
 export function table(caption, heads, rows) {
-  return h("table", {}, h("caption", { class: "hidden" }, caption),
-    h("thead", {}, h("tr", {}, heads.map((head, n) => h("th", { scope: "col", class: n && !["Unit", "Where"].includes(head) ? "number" : null }, head)))), h("tbody", {}, rows));
+  return h(
+    "table",
+    {},
+    h("caption", { class: "hidden" }, caption),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        heads.map((head, n) =>
+          h(
+            "th",
+            { scope: "col", class: n && !["Unit", "Where"].includes(head) ? "number" : null },
+            head,
+          ),
+        ),
+      ),
+    ),
+    h("tbody", {}, rows),
+  );
 }

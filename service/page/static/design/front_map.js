@@ -14,12 +14,34 @@ const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
  */
 export function frontMap(place, { objectives, front }) {
   // The front is a picture of its own, so that thousands of points are not painted again as one moves.
-  const [cloud, moving] = ["", "moving"].map((kind) => svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }));
+  const [cloud, moving] = ["", "moving"].map((kind) =>
+    svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }),
+  );
   const picture = h("div", { class: "front-map", role: "img" }, cloud, moving);
   const chosen = [0, Math.min(1, objectives.length - 1)];
   /** @param {number} n @param {string} label */
-  const choice = (n, label) => h("label", {}, h("span", { class: "quiet" }, `${label} `), h("select", { onchange: (event) => { chosen[n] = Number(event.currentTarget.value); arrange(); } },
-    objectives.map((objective, at) => h("option", { value: at, selected: at === chosen[n] }, `${objective.title} (${sense(objective)})`))));
+  const choice = (n, label) =>
+    h(
+      "label",
+      {},
+      h("span", { class: "quiet" }, `${label} `),
+      h(
+        "select",
+        {
+          onchange: (event) => {
+            chosen[n] = Number(event.currentTarget.value);
+            arrange();
+          },
+        },
+        objectives.map((objective, at) =>
+          h(
+            "option",
+            { value: at, selected: at === chosen[n] },
+            `${objective.title} (${sense(objective)})`,
+          ),
+        ),
+      ),
+    );
   /** @type {Page.Scale} */
   let x; // nothing until it is drawn first, as y
   /** @type {Page.Scale} */
@@ -36,17 +58,46 @@ export function frontMap(place, { objectives, front }) {
 
   function arrange() {
     const [across, up] = chosen.map((n) => objectives[n]);
-    const points = front.map((row) => [value(row, across), value(row, up)]).filter((point) => point.every(Number.isFinite));
+    const points = front
+      .map((row) => [value(row, across), value(row, up)])
+      .filter((point) => point.every(Number.isFinite));
     const rows = shown.filter((row) => row !== null);
-    const wide = range([...points.map(([one]) => one), ...rows.map((row) => value(row, across))], 0.06);
-    const tall = range([...points.map(([, one]) => one), ...rows.map((row) => value(row, up))], 0.08);
+    const wide = range(
+      [...points.map(([one]) => one), ...rows.map((row) => value(row, across))],
+      0.06,
+    );
+    const tall = range(
+      [...points.map(([, one]) => one), ...rows.map((row) => value(row, up))],
+      0.08,
+    );
     x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
     y = scale(tall.low, tall.high, HEIGHT - ROOM.bottom, ROOM.top, 4);
-    fill(cloud,
-      svg("g", { class: "axes" },
-        y.ticks.map((tick) => [svg("line", { class: "grid", x1: ROOM.left, x2: WIDTH - ROOM.right, y1: y.at(tick), y2: y.at(tick) }), svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick))]),
-        x.ticks.map((tick) => svg("text", { x: x.at(tick), y: HEIGHT - 6, "text-anchor": "middle" }, x.text(tick)))),
-      svg("path", { class: "cloud", d: points.map(([one, other]) => `M${x.at(one).toFixed(1)} ${y.at(other).toFixed(1)}h0`).join("") }));
+    fill(
+      cloud,
+      svg(
+        "g",
+        { class: "axes" },
+        y.ticks.map((tick) => [
+          svg("line", {
+            class: "grid",
+            x1: ROOM.left,
+            x2: WIDTH - ROOM.right,
+            y1: y.at(tick),
+            y2: y.at(tick),
+          }),
+          svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
+        ]),
+        x.ticks.map((tick) =>
+          svg("text", { x: x.at(tick), y: HEIGHT - 6, "text-anchor": "middle" }, x.text(tick)),
+        ),
+      ),
+      svg("path", {
+        class: "cloud",
+        d: points
+          .map(([one, other]) => `M${x.at(one).toFixed(1)} ${y.at(other).toFixed(1)}h0`)
+          .join(""),
+      }),
+    );
     move();
   }
 
@@ -54,19 +105,39 @@ export function frontMap(place, { objectives, front }) {
     const [across, up] = chosen.map((n) => objectives[n]);
     const [from, to] = shown.map((row) => row && [x.at(value(row, across)), y.at(value(row, up))]);
     const drawn = [];
-    if (from && to && to.every(Number.isFinite)) drawn.push(svg("line", { class: "trail", x1: from[0], y1: from[1], x2: to[0], y2: to[1] }), svg("circle", { class: "changed", cx: to[0], cy: to[1], r: 6 }));
-    if (from && from.every(Number.isFinite)) drawn.push(svg("circle", { class: "own", cx: from[0], cy: from[1], r: 5 }));
+    if (from && to && to.every(Number.isFinite))
+      drawn.push(
+        svg("line", { class: "trail", x1: from[0], y1: from[1], x2: to[0], y2: to[1] }),
+        svg("circle", { class: "changed", cx: to[0], cy: to[1], r: 6 }),
+      );
+    if (from && from.every(Number.isFinite))
+      drawn.push(svg("circle", { class: "own", cx: from[0], cy: from[1], r: 5 }));
     fill(moving, drawn);
     /** @param {Api.Row | null} row */
-    const at = (row) => [across, up].map((objective) => `${objective.title} ${withUnit(row?.[objective.column], objective.unit, 4)}`).join(", ");
-    picture.setAttribute("aria-label", `The front, ${counted(front.length, "design")}. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`);
+    const at = (row) =>
+      [across, up]
+        .map(
+          (objective) =>
+            `${objective.title} ${withUnit(row?.[objective.column], objective.unit, 4)}`,
+        )
+        .join(", ");
+    picture.setAttribute(
+      "aria-label",
+      `The front, ${counted(front.length, "design")}. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`,
+    );
   }
 
   return {
     /** @param {Api.Row} row @param {Api.Row | null} changed */
     show(row, changed) {
       shown = [row, changed];
-      const inside = x && (!changed || [x, y].every((axis, n) => { const one = value(changed, objectives[chosen[n]]); return one >= axis.low && one <= axis.high; }));
+      const inside =
+        x &&
+        (!changed ||
+          [x, y].every((axis, n) => {
+            const one = value(changed, objectives[chosen[n]]);
+            return one >= axis.low && one <= axis.high;
+          }));
       if (inside) move();
       else arrange();
     },

@@ -9,7 +9,9 @@ const QUALITY = ["status", "residual"];
 export function groupsOf(columns) {
   /** @type {Map<string, { title: string, columns: Api.Column[] }>} */
   const groups = new Map();
-  for (const column of columns.filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key)).sort((a, b) => (a.group_place ?? 0) - (b.group_place ?? 0))) {
+  for (const column of columns
+    .filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key))
+    .sort((a, b) => (a.group_place ?? 0) - (b.group_place ?? 0))) {
     const title = column.group ?? "Further quantities";
     const { columns: found } = groups.get(title) ?? { columns: /** @type {Api.Column[]} */ ([]) };
     found.push(column);

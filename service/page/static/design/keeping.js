@@ -12,18 +12,46 @@ import { sentenceOf } from "../lib/refusals.js";
  * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} given
  */
 export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
-  const name = h("input", { type: "text", maxlength: 200, autocomplete: "off", placeholder: "Kept" });
+  const name = h("input", {
+    type: "text",
+    maxlength: 200,
+    autocomplete: "off",
+    placeholder: "Kept",
+  });
   const note = h("input", { type: "text", maxlength: 4000, autocomplete: "off" });
   const said = h("p", { class: "quiet", role: "status" });
   const button = h("button", {}, "Keep");
-  const form = h("form", { onsubmit: (event) => { event.preventDefault(); keep(); } }, h("label", {}, "Name", name), h("label", {}, "Note", note), h("div", { class: "row" }, button), said);
+  const form = h(
+    "form",
+    {
+      onsubmit: (event) => {
+        event.preventDefault();
+        keep();
+      },
+    },
+    h("label", {}, "Name", name),
+    h("label", {}, "Note", note),
+    h("div", { class: "row" }, button),
+    said,
+  );
 
   async function keep() {
     if (button.getAttribute("aria-busy")) return;
     button.setAttribute("aria-busy", "true"); // not disabled, which would take the focus away
     try {
-      const found = await post(`jobs/${job}/kept`, { design, dimensions: dimensions() ?? {}, name: name.value.trim(), note: note.value.trim() });
-      fill(said, `“${found.name}” is kept `, h("a", { href: link(["jobs", job]) }, "beside the front"), found.outside.length > 0 && "; it is outside the job", ".");
+      const found = await post(`jobs/${job}/kept`, {
+        design,
+        dimensions: dimensions() ?? {},
+        name: name.value.trim(),
+        note: note.value.trim(),
+      });
+      fill(
+        said,
+        `“${found.name}” is kept `,
+        h("a", { href: link(["jobs", job]) }, "beside the front"),
+        found.outside.length > 0 && "; it is outside the job",
+        ".",
+      );
       kept();
     } catch (error) {
       said.textContent = sentenceOf(error);
@@ -31,8 +59,12 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
       button.removeAttribute("aria-busy");
     }
   }
-  return h("div", { class: "row keep-or-search" }, h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
-    lengths && searching(job, lengths, { title: "Search near this" }));
+  return h(
+    "div",
+    { class: "row keep-or-search" },
+    h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
+    lengths && searching(job, lengths, { title: "Search near this" }),
+  );
 }
 
 /**
@@ -53,5 +85,15 @@ export function searching(job, lengths, { title, name, act }) {
       near.disabled = false;
     }
   };
-  return h("button", { type: "button", title: "A run of its own, whose lengths vary by a tenth around these", "aria-label": name, "data-act": act, onclick: ({ currentTarget }) => search(currentTarget) }, title);
+  return h(
+    "button",
+    {
+      type: "button",
+      title: "A run of its own, whose lengths vary by a tenth around these",
+      "aria-label": name,
+      "data-act": act,
+      onclick: ({ currentTarget }) => search(currentTarget),
+    },
+    title,
+  );
 }

@@ -10,13 +10,28 @@ import { withResultants } from "./panels.js";
  */
 export async function loadDesign(job, number, series, signal) {
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
-  const [{ design, columns, violations }, cycle] = await Promise.all([get(path, {}, signal), get(`${path}/curves`, {}, signal)]);
-  return { number, name: `Design ${number}`, series, row: design, columns, violations, ...cycleOf(cycle) };
+  const [{ design, columns, violations }, cycle] = await Promise.all([
+    get(path, {}, signal),
+    get(`${path}/curves`, {}, signal),
+  ]);
+  return {
+    number,
+    name: `Design ${number}`,
+    series,
+    row: design,
+    columns,
+    violations,
+    ...cycleOf(cycle),
+  };
 }
 
 /** Return the lengths of a design. @type {(row: Api.Row) => Page.Lengths} */
 export function lengthsOf(row) {
-  return { crank_mm: Number(row.crank_mm), rod_mm: Number(row.rod_mm), offset_mm: Number(row.offset_mm) };
+  return {
+    crank_mm: Number(row.crank_mm),
+    rod_mm: Number(row.rod_mm),
+    offset_mm: Number(row.offset_mm),
+  };
 }
 
 /**
@@ -25,8 +40,17 @@ export function lengthsOf(row) {
  * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "sliderEnds" | "turns" | "seconds" | "outlines">}
  */
 export function cycleOf(cycle) {
-  const { turns, seconds, outlines, slider_ends_mm: sliderEnds, inner_dead_centre_deg: inner, outer_dead_centre_deg: outer } = cycle;
-  const centres = /** @type {Page.Point} */ (inner === null || outer === null ? [0, 180] : [inner / turns, outer / turns]);
+  const {
+    turns,
+    seconds,
+    outlines,
+    slider_ends_mm: sliderEnds,
+    inner_dead_centre_deg: inner,
+    outer_dead_centre_deg: outer,
+  } = cycle;
+  const centres = /** @type {Page.Point} */ (
+    inner === null || outer === null ? [0, 180] : [inner / turns, outer / turns]
+  );
   const { curves, columns } = withResultants(cycle);
   return { curves, curveColumns: columns, centres, sliderEnds, turns, seconds, outlines };
 }
@@ -37,5 +61,7 @@ export function cycleOf(cycle) {
  */
 export function besideOf(query, number) {
   const asked = (query.get("beside") ?? "").split(",").map(Number);
-  return [...new Set(asked)].filter((one) => Number.isInteger(one) && one > 0 && one !== number).slice(0, 2);
+  return [...new Set(asked)]
+    .filter((one) => Number.isInteger(one) && one > 0 && one !== number)
+    .slice(0, 2);
 }

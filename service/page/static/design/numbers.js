@@ -19,15 +19,47 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
   /** @param {Api.Column} column */
   const known = ({ key }) => designs.some(({ row }) => row[key] !== null && row[key] !== undefined);
   const groups = groupsOf(columns);
-  const shown = groups.map(({ title, columns: own }) => ({ title, columns: own.filter(known) })).filter(({ columns: own }) => own.length > 0);
+  const shown = groups
+    .map(({ title, columns: own }) => ({ title, columns: own.filter(known) }))
+    .filter(({ columns: own }) => own.length > 0);
   const missing = groups.flatMap(({ columns: own }) => own.filter((column) => !known(column)));
   const several = designs.length > 1;
   const tables = several
     ? h("section", { class: "panel group together" }, table("All numbers", designs, shown, names))
-    : shown.map((group) => h("section", { class: "panel group" }, h("h3", {}, group.title), table(group.title, designs, [group], names)));
-  const without = missing.length > 0 && h("section", { class: "panel group" }, h("details", {}, h("summary", {}, `${missing.length} quantities that this machine does not have`),
-    table("Quantities without a value", designs, [{ title: "", columns: missing }], names)));
-  fill(place, h("h2", {}, "All numbers"), several && tables, several && limits(designs, requirements, slow, names), h("div", { class: "groups" }, !several && tables, !several && limits(designs, requirements, slow, names), quality(designs, columns), without));
+    : shown.map((group) =>
+        h(
+          "section",
+          { class: "panel group" },
+          h("h3", {}, group.title),
+          table(group.title, designs, [group], names),
+        ),
+      );
+  const without =
+    missing.length > 0 &&
+    h(
+      "section",
+      { class: "panel group" },
+      h(
+        "details",
+        {},
+        h("summary", {}, `${missing.length} quantities that this machine does not have`),
+        table("Quantities without a value", designs, [{ title: "", columns: missing }], names),
+      ),
+    );
+  fill(
+    place,
+    h("h2", {}, "All numbers"),
+    several && tables,
+    several && limits(designs, requirements, slow, names),
+    h(
+      "div",
+      { class: "groups" },
+      !several && tables,
+      !several && limits(designs, requirements, slow, names),
+      quality(designs, columns),
+      without,
+    ),
+  );
 }
 
 /** Return a link to the help of a column. @param {{ key: string, title: string }} column @param {Record<string, string>} names */
@@ -41,7 +73,16 @@ export function helpLink({ key, title }, names) {
  * @param {{ tag?: "td" | "strong", digits?: number, name?: string }} looks
  */
 export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
-  return h(tag, { class: typeof value === "number" ? "number" : "number word", "data-key": column.key, "data-design": name || null, "data-value": value === null || value === undefined ? "" : String(value) }, text(value, column.unit, digits));
+  return h(
+    tag,
+    {
+      class: typeof value === "number" ? "number" : "number word",
+      "data-key": column.key,
+      "data-design": name || null,
+      "data-value": value === null || value === undefined ? "" : String(value),
+    },
+    text(value, column.unit, digits),
+  );
 }
 
 /**
@@ -61,14 +102,50 @@ export function difference(value, from) {
  */
 function table(caption, designs, groups, names) {
   const [first, ...others] = designs;
-  const head = h("tr", {}, h("th", { scope: "col" }, "Quantity"), heading(first), others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]), h("th", { scope: "col" }, "Unit"));
+  const head = h(
+    "tr",
+    {},
+    h("th", { scope: "col" }, "Quantity"),
+    heading(first),
+    others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]),
+    h("th", { scope: "col" }, "Unit"),
+  );
   /** @param {Api.Column} column */
   const line = (column) =>
-    h("tr", {}, h("th", { scope: "row" }, helpLink(column, names)), cell(first.row[column.key], column, { name: first.name }),
-      others.map(({ row, name }) => [cell(row[column.key], column, { name }), h("td", { class: "number quiet" }, difference(row[column.key], first.row[column.key]))]),
-      h("td", { class: "quiet" }, unitOf(column.unit)));
-  const bodies = groups.map(({ title, columns }) => h("tbody", {}, groups.length > 1 && h("tr", { class: "group-title" }, h("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), columns.map(line)));
-  return scrolled(caption, h("table", {}, h("caption", { class: "hidden" }, caption), h("thead", { class: others.length ? null : "hidden" }, head), bodies));
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, helpLink(column, names)),
+      cell(first.row[column.key], column, { name: first.name }),
+      others.map(({ row, name }) => [
+        cell(row[column.key], column, { name }),
+        h("td", { class: "number quiet" }, difference(row[column.key], first.row[column.key])),
+      ]),
+      h("td", { class: "quiet" }, unitOf(column.unit)),
+    );
+  const bodies = groups.map(({ title, columns }) =>
+    h(
+      "tbody",
+      {},
+      groups.length > 1 &&
+        h(
+          "tr",
+          { class: "group-title" },
+          h("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title),
+        ),
+      columns.map(line),
+    ),
+  );
+  return scrolled(
+    caption,
+    h(
+      "table",
+      {},
+      h("caption", { class: "hidden" }, caption),
+      h("thead", { class: others.length ? null : "hidden" }, head),
+      bodies,
+    ),
+  );
 }
 
 /** @param {Shown} design */
@@ -83,18 +160,70 @@ export function scrolled(label, node) {
 
 /** @param {Shown[]} designs @param {Api.Requirement[]} requirements @param {string | null | undefined} slow @param {Record<string, string>} names */
 function limits(designs, requirements, slow, names) {
-  const ofStroke = slow && h("tr", {}, h("th", { scope: "row" }, helpLink({ key: "slow_stroke", title: "slow stroke" }, names), h("span", { class: "quiet asked" }, ` ${slow}`)),
-    designs.map(({ row, name }) => [cell(row.slow_stroke, { key: "slow_stroke", unit: "" }, { name }), h("td", {}, h("span", { class: row.slow_stroke === slow ? "good" : "bad" }, row.slow_stroke === slow ? "met" : "broken"))]));
+  const ofStroke =
+    slow &&
+    h(
+      "tr",
+      {},
+      h(
+        "th",
+        { scope: "row" },
+        helpLink({ key: "slow_stroke", title: "slow stroke" }, names),
+        h("span", { class: "quiet asked" }, ` ${slow}`),
+      ),
+      designs.map(({ row, name }) => [
+        cell(row.slow_stroke, { key: "slow_stroke", unit: "" }, { name }),
+        h(
+          "td",
+          {},
+          h(
+            "span",
+            { class: row.slow_stroke === slow ? "good" : "bad" },
+            row.slow_stroke === slow ? "met" : "broken",
+          ),
+        ),
+      ]),
+    );
   const rows = requirements.map((asked) => {
     const column = { key: asked.column, title: asked.title, unit: asked.unit };
-    return h("tr", {}, h("th", { scope: "row" }, helpLink(column, names), h("span", { class: "quiet asked" }, ` ${wanted(asked)}`)),
-      designs.map(({ row, name }) => [cell(row[asked.column], column, { name }), h("td", {}, met(row, asked))]));
+    return h(
+      "tr",
+      {},
+      h(
+        "th",
+        { scope: "row" },
+        helpLink(column, names),
+        h("span", { class: "quiet asked" }, ` ${wanted(asked)}`),
+      ),
+      designs.map(({ row, name }) => [
+        cell(row[asked.column], column, { name }),
+        h("td", {}, met(row, asked)),
+      ]),
+    );
   });
-  const head = h("tr", {}, h("th", { scope: "col" }, "Requirement"), designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]));
-  return h("section", { class: "panel group limits" }, h("h3", {}, "Requirements of the job"),
+  const head = h(
+    "tr",
+    {},
+    h("th", { scope: "col" }, "Requirement"),
+    designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]),
+  );
+  return h(
+    "section",
+    { class: "panel group limits" },
+    h("h3", {}, "Requirements of the job"),
     requirements.length || slow
-      ? scrolled("Requirements of the job", h("table", {}, h("caption", { class: "hidden" }, "Requirements of the job"), h("thead", {}, head), h("tbody", {}, ofStroke, rows)))
-      : h("p", { class: "quiet" }, "The job sets none."));
+      ? scrolled(
+          "Requirements of the job",
+          h(
+            "table",
+            {},
+            h("caption", { class: "hidden" }, "Requirements of the job"),
+            h("thead", {}, head),
+            h("tbody", {}, ofStroke, rows),
+          ),
+        )
+      : h("p", { class: "quiet" }, "The job sets none."),
+  );
 }
 
 /** Return what a requirement asks, in words. @param {Api.Requirement} requirement */
@@ -111,8 +240,10 @@ function met(row, { lower, upper, slack, unit }) {
   const size = Math.max(Math.abs(lower ?? 0), Math.abs(upper ?? 0), 1e-300);
   const data = { "data-key": slack, "data-value": left === null ? "" : String(left) };
   if (typeof left !== "number") return h("span", data, lower === upper ? "–" : "far from it");
-  if (left < -MET * size) return h("span", { ...data, class: "bad" }, `broken by ${withUnit(-left, unit, 3)}`);
-  if (left <= MET * size) return h("span", { ...data, class: "at-limit" }, lower === upper ? "met" : "at its limit");
+  if (left < -MET * size)
+    return h("span", { ...data, class: "bad" }, `broken by ${withUnit(-left, unit, 3)}`);
+  if (left <= MET * size)
+    return h("span", { ...data, class: "at-limit" }, lower === upper ? "met" : "at its limit");
   return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);
 }
 
@@ -120,13 +251,41 @@ function met(row, { lower, upper, slack, unit }) {
 function quality(designs, columns) {
   if (!columns.some(({ key }) => key === "status")) return null;
   /** @param {Api.Row} row */
-  const words = (row) => row.status === "stationary"
-    ? "A local optimum: no small change improves one objective without worsening another."
-    : "The best that was found; a small change might still improve it.";
-  return h("section", { class: "panel group" }, h("h3", {}, "Quality of the optimum"),
-    designs.filter(({ row }) => row.status).map(({ row, name }) =>
-      h("div", {}, designs.length > 1 ? h("h4", {}, name) : null, h("p", {}, words(row)),
-        h("dl", { class: "facts" }, h("dt", {}, "status"), h("dd", { "data-key": "status", "data-value": row.status }, String(row.status)),
-          h("dt", {}, "stationarity residual"), h("dd", { class: "number", "data-key": "residual", "data-value": row.residual === null ? "" : String(row.residual) },
-            row.residual === null ? "not known" : Number(row.residual).toExponential(1).replace("-", "−"))))));
+  const words = (row) =>
+    row.status === "stationary"
+      ? "A local optimum: no small change improves one objective without worsening another."
+      : "The best that was found; a small change might still improve it.";
+  return h(
+    "section",
+    { class: "panel group" },
+    h("h3", {}, "Quality of the optimum"),
+    designs
+      .filter(({ row }) => row.status)
+      .map(({ row, name }) =>
+        h(
+          "div",
+          {},
+          designs.length > 1 ? h("h4", {}, name) : null,
+          h("p", {}, words(row)),
+          h(
+            "dl",
+            { class: "facts" },
+            h("dt", {}, "status"),
+            h("dd", { "data-key": "status", "data-value": row.status }, String(row.status)),
+            h("dt", {}, "stationarity residual"),
+            h(
+              "dd",
+              {
+                class: "number",
+                "data-key": "residual",
+                "data-value": row.residual === null ? "" : String(row.residual),
+              },
+              row.residual === null
+                ? "not known"
+                : Number(row.residual).toExponential(1).replace("-", "−"),
+            ),
+          ),
+        ),
+      ),
+  );
 }

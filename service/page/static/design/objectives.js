@@ -20,14 +20,32 @@ export function sense({ sense: way, target, unit }) {
  * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} given
  */
 export function showObjectives(place, { objectives, front, row, changed, whose, names }) {
-  fill(place, whose && h("p", { class: "whose" }, whose), objectives.map((objective) => {
-    const value = row[objective.column];
-    const { share, words } = standing(objective, front, value, changed);
-    const part = h("span", {});
-    const bar = h("span", { class: "share" }, part);
-    part.style.width = `${100 * share}%`;
-    return h("div", { class: "panel objective" }, helpLink({ key: objective.column, title: objective.title }, names), h("span", { class: "quiet sense" }, sense(objective)),
-      h("strong", { "data-key": objective.column, "data-value": String(value), title: withUnit(value, objective.unit, ALL) }, withUnit(value, objective.unit, KEY)),
-      bar, h("span", { class: "quiet" }, words));
-  }));
+  fill(
+    place,
+    whose && h("p", { class: "whose" }, whose),
+    objectives.map((objective) => {
+      const value = row[objective.column];
+      const { share, words } = standing(objective, front, value, changed);
+      const part = h("span", {});
+      const bar = h("span", { class: "share" }, part);
+      part.style.width = `${100 * share}%`;
+      return h(
+        "div",
+        { class: "panel objective" },
+        helpLink({ key: objective.column, title: objective.title }, names),
+        h("span", { class: "quiet sense" }, sense(objective)),
+        h(
+          "strong",
+          {
+            "data-key": objective.column,
+            "data-value": String(value),
+            title: withUnit(value, objective.unit, ALL),
+          },
+          withUnit(value, objective.unit, KEY),
+        ),
+        bar,
+        h("span", { class: "quiet" }, words),
+      );
+    }),
+  );
 }

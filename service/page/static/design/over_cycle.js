@@ -24,17 +24,46 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
   const kept = turns ? KEPT : KEPT_OF_SWING;
   const choices = (turns ? OVER : OVER_SWING).filter(({ name }) => name !== "time" || rpm !== 0);
   let chosen = choices.some(({ name }) => name === over) ? over : "angle";
-  const choice = h("select", { name: "over", onchange: ({ currentTarget }) => {
-    chosen = currentTarget.value;
-    draw();
-    told(chosen === "angle" ? "" : chosen);
-  } }, choices.map(({ name, title }) => h("option", { value: name, selected: name === chosen }, title)));
-  const file = h("a", { class: "button", download: "", title: turns ? "A row for each degree, all curves" : "Both ways, all curves" }, "Curves as CSV");
-  place.append(h("div", { class: "row spread" }, h("h2", {}, turns ? "Over the cycle" : "Over the swing"), h("label", {}, "Over ", choice), file));
-  const charts = curveCharts(place, turned, { large: largeKept(kept, turns ? LARGE : LARGE_OF_SWING), told: (keys) => localStorage.setItem(kept, keys.join()) });
+  const choice = h(
+    "select",
+    {
+      name: "over",
+      onchange: ({ currentTarget }) => {
+        chosen = currentTarget.value;
+        draw();
+        told(chosen === "angle" ? "" : chosen);
+      },
+    },
+    choices.map(({ name, title }) =>
+      h("option", { value: name, selected: name === chosen }, title),
+    ),
+  );
+  const file = h(
+    "a",
+    {
+      class: "button",
+      download: "",
+      title: turns ? "A row for each degree, all curves" : "Both ways, all curves",
+    },
+    "Curves as CSV",
+  );
+  place.append(
+    h(
+      "div",
+      { class: "row spread" },
+      h("h2", {}, turns ? "Over the cycle" : "Over the swing"),
+      h("label", {}, "Over ", choice),
+      file,
+    ),
+  );
+  const charts = curveCharts(place, turned, {
+    large: largeKept(kept, turns ? LARGE : LARGE_OF_SWING),
+    told: (keys) => localStorage.setItem(kept, keys.join()),
+  });
   /** @type {Page.Machine[]} */
   let shown = [];
-  const draw = () => charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm, turns)); // in the units of now
+  const draw = () =>
+    charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm, turns)); // in the units of now
   /** @type {Page.Numbers | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));

@@ -5,7 +5,25 @@ const RESULTANTS = [
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
   ["slider_pin_N", "Slider pin force", "slider_pin_x_N", "slider_pin_y_N"],
 ];
-const ORDER = ["way_mm", "slider_position", "slider_velocity", "slider_acceleration", "drive_", "power_W", "torque", "transmission_angle", "load_N", "pivot_N", "crank_pin_N", "slider_pin_N", "guide_N", "position_error_mm", "position_error_rss_mm", "slider_position_error", "crank_position_error"];
+const ORDER = [
+  "way_mm",
+  "slider_position",
+  "slider_velocity",
+  "slider_acceleration",
+  "drive_",
+  "power_W",
+  "torque",
+  "transmission_angle",
+  "load_N",
+  "pivot_N",
+  "crank_pin_N",
+  "slider_pin_N",
+  "guide_N",
+  "position_error_mm",
+  "position_error_rss_mm",
+  "slider_position_error",
+  "crank_position_error",
+];
 
 /**
  * Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre, where
@@ -19,7 +37,9 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
   const known = [...columns];
   for (const [key, title, x, y] of RESULTANTS) {
     if (!curves[x] || !curves[y]) continue;
-    more[key] = curves[x].map((value, n) => (value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n])));
+    more[key] = curves[x].map((value, n) =>
+      value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n]),
+    );
     known.push({ key, title, unit: "N" });
   }
   if (!turns) return { curves: more, columns: known };
@@ -34,7 +54,14 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
  */
 export function panelsOf(columns, designs) {
   /** @param {Api.Column} column */
-  const some = ({ key }) => designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
-  const found = ORDER.flatMap((start) => columns.find(({ key }) => key.startsWith(start)) ?? []).filter(some);
-  return found.map(({ key, title, unit }) => ({ key, title: title.charAt(0).toUpperCase() + title.slice(1), unit }));
+  const some = ({ key }) =>
+    designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
+  const found = ORDER.flatMap(
+    (start) => columns.find(({ key }) => key.startsWith(start)) ?? [],
+  ).filter(some);
+  return found.map(({ key, title, unit }) => ({
+    key,
+    title: title.charAt(0).toUpperCase() + title.slice(1),
+    unit,
+  }));
 }

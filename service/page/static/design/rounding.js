@@ -24,7 +24,10 @@ const COUNT = 5;
  *   applied: (row: Api.Row) => void, signal: AbortSignal,
  * }} given
  */
-export function rounding(place, { job, number, base, columns, requirements, objectives, applied, signal }) {
+export function rounding(
+  place,
+  { job, number, base, columns, requirements, objectives, applied, signal },
+) {
   const { ranges } = requirements;
   const numbers = columns.filter(({ key }) => key in ranges);
   const free = numbers.filter(({ key }) => ranges[key][0] < ranges[key][1]);
@@ -34,12 +37,36 @@ export function rounding(place, { job, number, base, columns, requirements, obje
   const wrong = h("p", { class: "bad", role: "alert", hidden: true });
   const answer = h("div", { "aria-live": "polite" });
   const button = h("button", {}, "Find round numbers");
-  const exact = requirements.requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
+  const exact = requirements.requirements.filter(
+    ({ lower, upper }) => lower !== null && lower === upper,
+  );
   const bounds = requirements.requirements.filter((one) => !exact.includes(one));
-  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, steps, misses,
-    bounds.length > 0 && h("details", {}, h("summary", {}, "Allow misses of bounds"), others), button, wrong);
-  fill(place, h("h2", {}, "Round it"),
-    h("p", { class: "quiet hint" }, "The best designs of round numbers near this one that keep every requirement, or miss it by no more than you allow. Without a step a number stays as it is."), form, answer);
+  const form = h(
+    "form",
+    {
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        ask();
+      },
+    },
+    steps,
+    misses,
+    bounds.length > 0 && h("details", {}, h("summary", {}, "Allow misses of bounds"), others),
+    button,
+    wrong,
+  );
+  fill(
+    place,
+    h("h2", {}, "Round it"),
+    h(
+      "p",
+      { class: "quiet hint" },
+      "The best designs of round numbers near this one that keep every requirement, or miss it by no more than you allow. Without a step a number stays as it is.",
+    ),
+    form,
+    answer,
+  );
   place.hidden = free.length === 0;
   /** @type {{ steps: Field[], misses: Field[] }} */
   let fields = { steps: [], misses: [] };
@@ -52,11 +79,27 @@ export function rounding(place, { job, number, base, columns, requirements, obje
     fields = {
       steps: free.map(({ key, title, unit }) => {
         const kind = unit === "mm" ? "a length" : "a value";
-        return field({ id: `step-${key}`, name: key, label: `${capital(title)}, step`, unit, value: unit === "mm" ? USUAL[system()] : "", wrong: () => `The step of the ${title} is ${kind} above 0${unit === "mm" ? `, such as ${USUAL[system()]}` : ""}; leave it empty to keep the ${kind.slice(2)}.` });
+        return field({
+          id: `step-${key}`,
+          name: key,
+          label: `${capital(title)}, step`,
+          unit,
+          value: unit === "mm" ? USUAL[system()] : "",
+          wrong: () =>
+            `The step of the ${title} is ${kind} above 0${unit === "mm" ? `, such as ${USUAL[system()]}` : ""}; leave it empty to keep the ${kind.slice(2)}.`,
+        });
       }),
-      misses: [...exact, ...bounds].map(({ quantity, column, title, unit }) => field({
-        id: `miss-${column}`, name: quantity, label: `${capital(title)}, allowed miss`, unit, value: "", wrong: () => `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
-      })),
+      misses: [...exact, ...bounds].map(({ quantity, column, title, unit }) =>
+        field({
+          id: `miss-${column}`,
+          name: quantity,
+          label: `${capital(title)}, allowed miss`,
+          unit,
+          value: "",
+          wrong: () =>
+            `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
+        }),
+      ),
     };
     fill(steps, fields.steps.map(shown));
     fill(misses, fields.misses.slice(0, exact.length).map(shown));
@@ -93,7 +136,11 @@ export function rounding(place, { job, number, base, columns, requirements, obje
       at.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
     };
     try {
-      const found = await postFollowed(`jobs/${job}/designs/${number}/rounded`, { to, allow, count: COUNT }, { signal: own.signal, told });
+      const found = await postFollowed(
+        `jobs/${job}/designs/${number}/rounded`,
+        { to, allow, count: COUNT },
+        { signal: own.signal, told },
+      );
       tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
     } catch (error) {
       if (own !== search || signal.aborted) return;
@@ -106,16 +153,70 @@ export function rounding(place, { job, number, base, columns, requirements, obje
 
   /** @param {Api.Rounded} found */
   function tell(found) {
-    const heads = ["", ...numbers.map(({ title }) => capital(title)), ...objectives.map(({ title }) => title), "Requirements"];
-    const lines = found.designs.map((row, n) => h("tr", {},
-      h("td", {}, h("button", { type: "button", "aria-label": `Apply round numbers ${n + 1}`, onclick: () => applied(row) }, "Apply")),
-      numbers.map(({ key, unit }) => h("td", { class: "number", "data-key": key, "data-value": String(row[key]) }, withUnit(row[key], unit, 7))),
-      objectives.map((objective) => cost(row, objective)),
-      h("td", {}, judged(row))));
-    fill(answer, h("p", { class: found.met ? null : "bad" }, `${inShownUnits(capital(found.message))}.`),
-      found.designs.length > 0 && scrolled("Round numbers and what they cost", h("table", {}, h("caption", { class: "hidden" }, "Round numbers and what they cost"),
-        h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n && n < heads.length - 1 ? "number" : null }, title || h("span", { class: "hidden" }, "Apply"))))), h("tbody", {}, lines))),
-      found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)));
+    const heads = [
+      "",
+      ...numbers.map(({ title }) => capital(title)),
+      ...objectives.map(({ title }) => title),
+      "Requirements",
+    ];
+    const lines = found.designs.map((row, n) =>
+      h(
+        "tr",
+        {},
+        h(
+          "td",
+          {},
+          h(
+            "button",
+            {
+              type: "button",
+              "aria-label": `Apply round numbers ${n + 1}`,
+              onclick: () => applied(row),
+            },
+            "Apply",
+          ),
+        ),
+        numbers.map(({ key, unit }) =>
+          h(
+            "td",
+            { class: "number", "data-key": key, "data-value": String(row[key]) },
+            withUnit(row[key], unit, 7),
+          ),
+        ),
+        objectives.map((objective) => cost(row, objective)),
+        h("td", {}, judged(row)),
+      ),
+    );
+    fill(
+      answer,
+      h("p", { class: found.met ? null : "bad" }, `${inShownUnits(capital(found.message))}.`),
+      found.designs.length > 0 &&
+        scrolled(
+          "Round numbers and what they cost",
+          h(
+            "table",
+            {},
+            h("caption", { class: "hidden" }, "Round numbers and what they cost"),
+            h(
+              "thead",
+              {},
+              h(
+                "tr",
+                {},
+                heads.map((title, n) =>
+                  h(
+                    "th",
+                    { scope: "col", class: n && n < heads.length - 1 ? "number" : null },
+                    title || h("span", { class: "hidden" }, "Apply"),
+                  ),
+                ),
+              ),
+            ),
+            h("tbody", {}, lines),
+          ),
+        ),
+      found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)),
+    );
   }
 
   /** @param {Api.RoundedRow} row @param {Api.Objective} objective */
@@ -123,7 +224,12 @@ export function rounding(place, { job, number, base, columns, requirements, obje
     const [before, after] = [base[objective.column], row[objective.column]];
     const gain = rankOf(before, objective) - rankOf(after, objective);
     const by = difference(after, before);
-    return h("td", { class: "number", "data-key": objective.column, "data-value": String(after) }, withUnit(after, objective.unit), h("div", { class: by === "=" || !gain ? "quiet" : gain > 0 ? "good" : "bad" }, by));
+    return h(
+      "td",
+      { class: "number", "data-key": objective.column, "data-value": String(after) },
+      withUnit(after, objective.unit),
+      h("div", { class: by === "=" || !gain ? "quiet" : gain > 0 ? "good" : "bad" }, by),
+    );
   }
 
   /** @param {Api.RoundedRow} row */
@@ -139,21 +245,44 @@ export function rounding(place, { job, number, base, columns, requirements, obje
 
 /** @param {Api.Miss} miss */
 function missed({ quantity, title, amount, unit, side, allowed }) {
-  return h("div", { class: amount > allowed ? "bad" : "at-limit", "data-miss": quantity, "data-value": String(amount) },
-    `${title} ${withUnit(amount, unit, 4)} ${side === "above" ? "too high" : "too low"}${allowed ? `, ${withUnit(allowed, unit, 4)} allowed` : ""}`);
+  return h(
+    "div",
+    {
+      class: amount > allowed ? "bad" : "at-limit",
+      "data-miss": quantity,
+      "data-value": String(amount),
+    },
+    `${title} ${withUnit(amount, unit, 4)} ${side === "above" ? "too high" : "too low"}${allowed ? `, ${withUnit(allowed, unit, 4)} allowed` : ""}`,
+  );
 }
 
 /** @param {{ id: string, name: string, label: string, unit: string, value: string, wrong: () => string }} of @returns {Field} */
 function field({ id, name, label, unit, value, wrong }) {
   const said = h("p", { class: "bad", id: `${id}-wrong` });
   /** @type {HTMLInputElement} */
-  const input = h("input", { id, type: "text", inputmode: "decimal", class: "number", autocomplete: "off", value, "aria-describedby": `${id}-wrong`, oninput: () => say(input, said, "") });
+  const input = h("input", {
+    id,
+    type: "text",
+    inputmode: "decimal",
+    class: "number",
+    autocomplete: "off",
+    value,
+    "aria-describedby": `${id}-wrong`,
+    oninput: () => say(input, said, ""),
+  });
   return { name, label, unit, input, said, wrong };
 }
 
 /** @param {Field} of */
 function shown({ input, said, unit, label }) {
-  return h("div", { class: "step" }, h("label", { for: input.id }, label), input, h("span", { class: "quiet" }, unitOf(unit)), said);
+  return h(
+    "div",
+    { class: "step" },
+    h("label", { for: input.id }, label),
+    input,
+    h("span", { class: "quiet" }, unitOf(unit)),
+    said,
+  );
 }
 
 /** @param {HTMLInputElement} input @param {HTMLElement} place @param {string} sentence */
@@ -170,7 +299,9 @@ function textsOf(fields) {
     const plain = plainUnitOf(unit);
     const typed = read(input.value, { unit: plain, ...measureOf(kindOf(plain)) });
     if (typed.empty) return [];
-    const sentence = typed.wrong ?? (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)) ? "" : wrong());
+    const sentence =
+      typed.wrong ??
+      (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)) ? "" : wrong());
     say(input, said, sentence);
     if (sentence && fine) input.focus();
     fine &&= !sentence;

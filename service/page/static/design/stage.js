@@ -14,8 +14,14 @@ const EVERY = 100; // ms between two readouts while it moves
 /** What sets the place in the cycle, and how, by the turns in it. */
 const WORDS = [
   ["Forth and back", "Drag the crank, or use the arrow and page keys on the way forth and back."],
-  ["Crank angle", "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle."],
-  ["Crank angle", "Drag the crank, or use the arrow keys (2°) and the page keys (20°) on the crank angle; a cycle is two turns."],
+  [
+    "Crank angle",
+    "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle.",
+  ],
+  [
+    "Crank angle",
+    "Drag the crank, or use the arrow keys (2°) and the page keys (20°) on the crank angle; a cycle is two turns.",
+  ],
 ];
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
@@ -33,25 +39,62 @@ export function stage(place, strip, turning, turns) {
   let machines = [];
   /** @type {ReturnType<typeof drawing>[]} */
   let drawings = [];
-  const toggle = h("button", { type: "button", class: "primary play", onclick: () => (turning.playing ? turning.pause() : turning.play()) }, "Play");
-  const angle = h("input", { type: "range", min: 0, max: 360, step: 1, "aria-label": named, onkeydown: byKey, oninput: (event) => hold(Number(event.currentTarget.value)) });
+  const toggle = h(
+    "button",
+    {
+      type: "button",
+      class: "primary play",
+      onclick: () => (turning.playing ? turning.pause() : turning.play()),
+    },
+    "Play",
+  );
+  const angle = h("input", {
+    type: "range",
+    min: 0,
+    max: 360,
+    step: 1,
+    "aria-label": named,
+    onkeydown: byKey,
+    oninput: (event) => hold(Number(event.currentTarget.value)),
+  });
   const told = h("output", { class: "number angle" });
   const where = h("output", { class: "number where" });
-  const pace = h("select", { onchange: (event) => turning.choose(turning.paces[Number(event.currentTarget.value)]) },
-    turning.paces.map((one, n) => h("option", { value: n, selected: one === turning.pace }, one.title)));
+  const pace = h(
+    "select",
+    { onchange: (event) => turning.choose(turning.paces[Number(event.currentTarget.value)]) },
+    turning.paces.map((one, n) =>
+      h("option", { value: n, selected: one === turning.pace }, one.title),
+    ),
+  );
   const forces = h("input", { type: "checkbox", onchange: showForces });
   const sizes = ARROWS.map(() => h("span", { class: "number" }));
-  const legend = h("ul", { class: "legend forces", hidden: true }, ARROWS.map(({ name, title }, n) => h("li", { class: name }, `${title} `, sizes[n])));
+  const legend = h(
+    "ul",
+    { class: "legend forces", hidden: true },
+    ARROWS.map(({ name, title }, n) => h("li", { class: name }, `${title} `, sizes[n])),
+  );
   const largest = h("span", { class: "quiet" });
   fill(
     place,
     drawn,
-    h("div", { class: "row controls" }, h("label", {}, "Speed ", pace), h("label", {}, forces, " Forces"), largest),
+    h(
+      "div",
+      { class: "row controls" },
+      h("label", {}, "Speed ", pace),
+      h("label", {}, forces, " Forces"),
+      largest,
+    ),
     legend,
     h("p", { class: "quiet hint" }, hint),
   );
 
-  fill(strip, toggle, h("label", { class: "crank-angle" }, h("span", {}, named), angle), told, where);
+  fill(
+    strip,
+    toggle,
+    h("label", { class: "crank-angle" }, h("span", {}, named), angle),
+    told,
+    where,
+  );
 
   /** @param {number} to */
   function hold(to) {
@@ -78,7 +121,10 @@ export function stage(place, strip, turning, turns) {
   /** Write the forces of the first mechanism; those too small for an arrow are dots, and have a number all the same. @param {number} at */
   function showSizes(at) {
     if (!forces.checked || !machines.length) return;
-    ARROWS.forEach((arrow, n) => (sizes[n].textContent = withUnit(forceAt(arrow, machines[0].curves, at), "N", 4)));
+    ARROWS.forEach(
+      (arrow, n) =>
+        (sizes[n].textContent = withUnit(forceAt(arrow, machines[0].curves, at), "N", 4)),
+    );
   }
 
   /** @param {Page.Machine[]} shown */
@@ -89,20 +135,39 @@ export function stage(place, strip, turning, turns) {
       drawings.forEach((one) => one.close());
       const places = machines.map(() => h("div", { class: "machine" }));
       fill(drawn, places);
-      drawings = places.map((each, n) => draggable(drawing(each, { label: "" }), (at) => hold(placeOf(machines[n], at, turning.angle))));
+      drawings = places.map((each, n) =>
+        draggable(drawing(each, { label: "" }), (at) =>
+          hold(placeOf(machines[n], at, turning.angle)),
+        ),
+      );
     }
-    const frame = around(machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)));
+    const frame = around(
+      machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)),
+    );
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
     machines.forEach(({ name, series, row, curves, centres, sliderEnds, outlines }, n) => {
       const one = drawings[n];
       const holder = /** @type {HTMLElement} */ (one.node.parentElement);
       holder.dataset.series = String(series);
-      one.node.setAttribute("aria-label", `${name}: crank ${withUnit(row.crank_mm, "mm", 4)}, rod ${withUnit(row.rod_mm, "mm", 4)}, offset ${withUnit(row.offset_mm, "mm", 4)}`);
+      one.node.setAttribute(
+        "aria-label",
+        `${name}: crank ${withUnit(row.crank_mm, "mm", 4)}, rod ${withUnit(row.rod_mm, "mm", 4)}, offset ${withUnit(row.offset_mm, "mm", 4)}`,
+      );
       if (machines.length > 1) {
-        const title = holder.querySelector(".machine-name") ?? holder.insertBefore(h("p", { class: "machine-name" }), one.node);
+        const title =
+          holder.querySelector(".machine-name") ??
+          holder.insertBefore(h("p", { class: "machine-name" }), one.node);
         title.textContent = name;
       }
-      one.show(lengthsOf(row), curves, { frame: machines.length > 1 ? frame : undefined, direction: turning.direction, dead_centres_deg: centres, slider_ends_mm: sliderEnds, largest_force: greatest, turns, outlines });
+      one.show(lengthsOf(row), curves, {
+        frame: machines.length > 1 ? frame : undefined,
+        direction: turning.direction,
+        dead_centres_deg: centres,
+        slider_ends_mm: sliderEnds,
+        largest_force: greatest,
+        turns,
+        outlines,
+      });
       one.turn(turning.angle);
     });
     showForces();
@@ -116,7 +181,10 @@ export function stage(place, strip, turning, turns) {
     if (!machines.length || (playing && now - since < EVERY)) return;
     since = now;
     angle.value = String(at);
-    const words = `${Math.round(crankAt(machines[0], at)) % (turns === 2 ? 720 : 360)}°`.replace("-", "−");
+    const words = `${Math.round(crankAt(machines[0], at)) % (turns === 2 ? 720 : 360)}°`.replace(
+      "-",
+      "−",
+    );
     if (told.textContent !== words) told.textContent = words;
     const position = between(machines[0].curves.slider_position_mm, at);
     where.textContent = `slider at ${withUnit(position, "mm", 4)}`;
@@ -134,7 +202,11 @@ export function stage(place, strip, turning, turns) {
     was = state.playing;
     toggle.textContent = was ? "Pause" : "Play";
   });
-  return { show, fade: (/** @type {boolean} */ yes) => drawings.forEach((one) => one.fade(yes)), close: () => drawings.forEach((one) => one.close()) };
+  return {
+    show,
+    fade: (/** @type {boolean} */ yes) => drawings.forEach((one) => one.fade(yes)),
+    close: () => drawings.forEach((one) => one.close()),
+  };
 }
 
 /** Let the crank of a drawing be dragged; hold(angle) is told. @param {ReturnType<typeof drawing>} one @param {(angle: number) => void} hold */
@@ -149,7 +221,11 @@ function draggable(one, hold) {
     held = true;
     hold(one.angleAt(event.clientX, event.clientY));
   });
-  handle.addEventListener("pointermove", (event) => held && hold(one.angleAt(event.clientX, event.clientY)));
-  for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => (held = false));
+  handle.addEventListener(
+    "pointermove",
+    (event) => held && hold(one.angleAt(event.clientX, event.clientY)),
+  );
+  for (const end of ["pointerup", "pointercancel"])
+    handle.addEventListener(end, () => (held = false));
   return one;
 }

@@ -23,8 +23,17 @@ export function standing(objective, front, value, changed) {
   const [best, worst] = [Math.min(...ranks), Math.max(...ranks)];
   const size = objective.target ?? 0;
   const better = ranks.filter((rank) => rank < own && !isConstant(rank, own, size)).length;
-  const share = isConstant(best, worst, size) ? Number(!better) : Math.min(Math.max((worst - own) / (worst - best), 0), 1);
+  const share = isConstant(best, worst, size)
+    ? Number(!better)
+    : Math.min(Math.max((worst - own) / (worst - best), 0), 1);
   if (changed?.broken) return { share, words: "misses a requirement" };
-  if (!better) return { share, words: changed ? "no design of the front is better" : "best of the front" };
-  return { share, words: front.length === 1 ? "the only design of the front is better" : `${better} of ${front.length} designs are better` };
+  if (!better)
+    return { share, words: changed ? "no design of the front is better" : "best of the front" };
+  return {
+    share,
+    words:
+      front.length === 1
+        ? "the only design of the front is better"
+        : `${better} of ${front.length} designs are better`,
+  };
 }

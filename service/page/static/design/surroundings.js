@@ -9,5 +9,7 @@ import { get } from "../lib/api.js";
 export async function loadFront(job, front, signal) {
   const keys = front.objectives.map(({ column }) => column);
   const { values, count } = await get(`jobs/${job}/columns`, { columns: keys.join(",") }, signal);
-  return Array.from({ length: count }, (_, n) => Object.fromEntries(keys.map((key) => [key, values[key][n]])));
+  return Array.from({ length: count }, (_, n) =>
+    Object.fromEntries(keys.map((key) => [key, values[key][n]])),
+  );
 }

@@ -29,33 +29,65 @@ export function takeAway(job, number, { signal } = {}) {
   /** @param {string} path @param {string} title @param {string} words */
   const anchor = (path, title, words) => ({ path, node: h("a", { download: "" }, title), words });
   const links = [
-    ...FILES.map(([file, title, words]) => anchor(`jobs/${job}/designs/${number}/${file}`, title, words)),
-    ...["png", "svg"].map((kind) => anchor(`jobs/${job}/figures/design_${number}.${kind}`, `Sheet ${kind.toUpperCase()}`, "All curves on one sheet")),
+    ...FILES.map(([file, title, words]) =>
+      anchor(`jobs/${job}/designs/${number}/${file}`, title, words),
+    ),
+    ...["png", "svg"].map((kind) =>
+      anchor(
+        `jobs/${job}/figures/design_${number}.${kind}`,
+        `Sheet ${kind.toUpperCase()}`,
+        "All curves on one sheet",
+      ),
+    ),
   ];
   const said = h("span", { class: "quiet", role: "status" });
-  const print = h("button", { type: "button", title: "The whole view on paper or as PDF, all of its parts computed", onclick: async ({ currentTarget }) => {
-    currentTarget.setAttribute("aria-busy", "true");
-    try {
-      await printWhole();
-    } finally {
-      currentTarget.removeAttribute("aria-busy");
-    }
-  } }, "Print");
+  const print = h(
+    "button",
+    {
+      type: "button",
+      title: "The whole view on paper or as PDF, all of its parts computed",
+      onclick: async ({ currentTarget }) => {
+        currentTarget.setAttribute("aria-busy", "true");
+        try {
+          await printWhole();
+        } finally {
+          currentTarget.removeAttribute("aria-busy");
+        }
+      },
+    },
+    "Print",
+  );
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
   /** @param {Page.Numbers | null} other */
   const show = (other) => {
     lengths = other;
     for (const { path, node } of links) {
-      const units = WITH_UNITS.test(path.slice(path.lastIndexOf("/") + 1)) ? { units: apiSystem() } : {};
+      const units = WITH_UNITS.test(path.slice(path.lastIndexOf("/") + 1))
+        ? { units: apiSystem() }
+        : {};
       node.href = address(path, { ...lengths, ...units });
     }
     said.textContent = lengths ? `of design ${number}, changed` : "";
   };
   show(null);
   window.addEventListener("units", () => show(lengths), { signal });
-  const list = h("ul", { class: "files" }, links.map(({ node, words: about }) => h("li", {}, node, h("span", { class: "quiet" }, about))));
+  const list = h(
+    "ul",
+    { class: "files" },
+    links.map(({ node, words: about }) => h("li", {}, node, h("span", { class: "quiet" }, about))),
+  );
   const button = menu("Export", h("div", { class: "chooser-list panel at-left" }, list));
-  return { node: h("nav", { class: "take-away row", "aria-label": "Take away" }, button, print, copy, said), show };
+  return {
+    node: h(
+      "nav",
+      { class: "take-away row", "aria-label": "Take away" },
+      button,
+      print,
+      copy,
+      said,
+    ),
+    show,
+  };
 }
 
 async function copyLink() {

@@ -28,18 +28,42 @@ export function top({ job, number, front, others }) {
   /** @param {number | null} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
     to !== null
-      ? h("a", { class: "button", href: link(["jobs", job, "designs", to], { beside }), "aria-label": words, title: words, onclick: ({ currentTarget }) => {
-        stepped = words;
-        currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() });
-      } }, sign)
+      ? h(
+          "a",
+          {
+            class: "button",
+            href: link(["jobs", job, "designs", to], { beside }),
+            "aria-label": words,
+            title: words,
+            onclick: ({ currentTarget }) => {
+              stepped = words;
+              currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() });
+            },
+          },
+          sign,
+        )
       : h("span", { class: "button off", "aria-hidden": "true" }, sign);
   return h(
     "header",
     { class: "design-head" },
     h("p", { class: "back" }, h("a", { href: left(["jobs", job]) }, `← ${front.name}`)),
-    h("div", { class: "row" },
-      h("h1", {}, `Design ${number}`, h("span", { class: "quiet" }, ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`)),
-      step(before, "Previous design", "‹"), step(after, "Next design", "›"), compare({ job, number, front, others })),
+    h(
+      "div",
+      { class: "row" },
+      h(
+        "h1",
+        {},
+        `Design ${number}`,
+        h(
+          "span",
+          { class: "quiet" },
+          ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
+        ),
+      ),
+      step(before, "Previous design", "‹"),
+      step(after, "Next design", "›"),
+      compare({ job, number, front, others }),
+    ),
   );
 }
 
@@ -48,18 +72,47 @@ function compare({ job, number, front, others }) {
   const numbers = others.map((one) => one.number);
   /** @param {number[]} list */
   const to = (list) => link(["jobs", job, "designs", number], { beside: list.join(",") || null });
-  const field = h("input", { type: "number", min: 1, max: front.count, required: true, id: "beside", class: "beside-number" });
+  const field = h("input", {
+    type: "number",
+    min: 1,
+    max: front.count,
+    required: true,
+    id: "beside",
+    class: "beside-number",
+  });
   /** @param {Event} event */
   const add = (event) => {
     event.preventDefault();
     const other = Number(field.value);
     if (other !== number && !numbers.includes(other)) location.hash = to([...numbers, other]);
   };
-  return h("div", { class: "row beside" },
-    others.map((one) => h("span", { class: "chip", "data-series": one.series },
-      h("a", { href: link(["jobs", job, "designs", one.number]) }, one.name),
-      h("a", { href: to(numbers.filter((other) => other !== one.number)), "aria-label": `Take design ${one.number} away`, class: "chip-close" }, "×"))),
+  return h(
+    "div",
+    { class: "row beside" },
+    others.map((one) =>
+      h(
+        "span",
+        { class: "chip", "data-series": one.series },
+        h("a", { href: link(["jobs", job, "designs", one.number]) }, one.name),
+        h(
+          "a",
+          {
+            href: to(numbers.filter((other) => other !== one.number)),
+            "aria-label": `Take design ${one.number} away`,
+            class: "chip-close",
+          },
+          "×",
+        ),
+      ),
+    ),
     numbers.length < 2 && front.count > 1
-      ? h("form", { class: "row", onsubmit: add }, h("label", { for: "beside" }, "Beside design"), field, h("button", {}, "Compare"))
-      : null);
+      ? h(
+          "form",
+          { class: "row", onsubmit: add },
+          h("label", { for: "beside" }, "Beside design"),
+          field,
+          h("button", {}, "Compare"),
+        )
+      : null,
+  );
 }

@@ -14,9 +14,22 @@ import { sentenceOf } from "../lib/refusals.js";
  * @type {{ name: string, title: string, show: (place: HTMLElement, found: unknown, given: { objectives: Api.Objective[], signal: AbortSignal }) => void }[]}
  */
 const TOPICS = [
-  { name: "extremes", title: "Extremes over the turn", show: (place, found, given) => extremes(place, /** @type {Api.Extremes} */ (found), given) },
-  { name: "sensitivity", title: "What it is sensitive to", show: (place, found, given) => sensitivity(place, /** @type {Api.Sensitivity} */ (found), given) },
-  { name: "tolerances", title: "What tolerances do to the slider's position", show: (place, found, given) => tolerances(place, /** @type {Api.Tolerances} */ (found), given) },
+  {
+    name: "extremes",
+    title: "Extremes over the turn",
+    show: (place, found, given) => extremes(place, /** @type {Api.Extremes} */ (found), given),
+  },
+  {
+    name: "sensitivity",
+    title: "What it is sensitive to",
+    show: (place, found, given) =>
+      sensitivity(place, /** @type {Api.Sensitivity} */ (found), given),
+  },
+  {
+    name: "tolerances",
+    title: "What tolerances do to the slider's position",
+    show: (place, found, given) => tolerances(place, /** @type {Api.Tolerances} */ (found), given),
+  },
 ];
 const NEAR = "300px"; // before it is in sight
 /** Names of the topics that are drawn here. */
@@ -30,10 +43,21 @@ export const DRAWN = TOPICS.map(({ name }) => name);
  */
 export function topics(place, { analysis, objectives, requirements, signal }) {
   const sections = TOPICS.map(({ name, title, show }) => {
-    const body = h("div", { class: "panel" }, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
+    const body = h(
+      "div",
+      { class: "panel" },
+      h("p", { class: "quiet busy", role: "status" }, "Computing …"),
+    );
     const section = h("section", { class: name }, h("h2", {}, title), body);
     if (name === "tolerances" && !requirements.tolerances) {
-      fill(body, h("p", { class: "quiet" }, "The job gives no tolerances, so that nothing comes of them; give it some."));
+      fill(
+        body,
+        h(
+          "p",
+          { class: "quiet" },
+          "The job gives no tolerances, so that nothing comes of them; give it some.",
+        ),
+      );
       return section;
     }
     /** @type {Promise<void> | null} */
@@ -45,12 +69,18 @@ export function topics(place, { analysis, objectives, requirements, signal }) {
         show(body, found[name], { objectives, signal });
       } catch (error) {
         if (isAbort(error)) return;
-        fill(body, h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${sentenceOf(error)}.`));
+        fill(
+          body,
+          h("p", { class: statusOf(error) === 422 ? "quiet" : "error" }, `${sentenceOf(error)}.`),
+        );
       }
     };
-    const watcher = new IntersectionObserver((seen) => {
-      if (seen.some((one) => one.isIntersecting)) asked ??= ask();
-    }, { rootMargin: NEAR });
+    const watcher = new IntersectionObserver(
+      (seen) => {
+        if (seen.some((one) => one.isIntersecting)) asked ??= ask();
+      },
+      { rootMargin: NEAR },
+    );
     watcher.observe(section);
     beforePrinting(() => (asked ??= ask()), signal);
     signal.addEventListener("abort", () => watcher.disconnect(), { once: true });

@@ -14,10 +14,33 @@ export async function tradeOffs(place, { job, number, signal }) {
   fill(place, h("h2", {}, "What it would cost"), body);
   const draw = async () => {
     try {
-      const { trade_offs: sentences, note } = await get(`jobs/${job}/designs/${number}/trade-offs`, { units: apiSystem() }, signal);
-      fill(body, sentences.length
-        ? [h("p", { class: "quiet" }, "Next to this design, along the front, with the requirements that are at their limit held:"), h("ul", {}, sentences.map((one) => h("li", {}, `${one.replaceAll("^2", "²")}.`)))]
-        : h("p", {}, note || "At this design nothing can be gained in one objective for a loss in the others."));
+      const { trade_offs: sentences, note } = await get(
+        `jobs/${job}/designs/${number}/trade-offs`,
+        { units: apiSystem() },
+        signal,
+      );
+      fill(
+        body,
+        sentences.length
+          ? [
+              h(
+                "p",
+                { class: "quiet" },
+                "Next to this design, along the front, with the requirements that are at their limit held:",
+              ),
+              h(
+                "ul",
+                {},
+                sentences.map((one) => h("li", {}, `${one.replaceAll("^2", "²")}.`)),
+              ),
+            ]
+          : h(
+              "p",
+              {},
+              note ||
+                "At this design nothing can be gained in one objective for a loss in the others.",
+            ),
+      );
     } catch (error) {
       if (!isAbort(error)) fill(body, h("p", { class: "error" }, sentenceOf(error)));
     }

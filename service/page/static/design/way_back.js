@@ -32,17 +32,47 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   const wrong = new Map(); // why what was typed is no value
   const fields = h("div", { class: "row" });
   const answer = h("div", { "aria-live": "polite" });
-  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); ask(); } }, fields);
-  fill(place, h("h2", {}, "From the slider back to the crank"), h("div", { class: "panel" }, form, answer));
+  const form = h(
+    "form",
+    {
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        ask();
+      },
+    },
+    fields,
+  );
+  fill(
+    place,
+    h("h2", {}, "From the slider back to the crank"),
+    h("div", { class: "panel" }, form, answer),
+  );
 
   function drawFields() {
     wrong.clear();
-    fill(fields, FIELDS.map(([key, title, unit]) => {
-      const id = `way-back-${key}`;
-      const value = asked[key];
-      const input = h("input", { id, type: "text", inputmode: "decimal", autocomplete: "off", value: value === undefined ? "" : String(Number(inShown(value, unit).toPrecision(8))), oninput: ({ currentTarget }) => take(currentTarget, key, unit) });
-      return h("div", { class: "asked-for" }, h("label", { for: id }, title), h("div", {}, input, h("span", { class: "quiet" }, ` ${unitOf(unit)}`)));
-    }), h("button", { type: "submit" }, "Find crank angles"));
+    fill(
+      fields,
+      FIELDS.map(([key, title, unit]) => {
+        const id = `way-back-${key}`;
+        const value = asked[key];
+        const input = h("input", {
+          id,
+          type: "text",
+          inputmode: "decimal",
+          autocomplete: "off",
+          value: value === undefined ? "" : String(Number(inShown(value, unit).toPrecision(8))),
+          oninput: ({ currentTarget }) => take(currentTarget, key, unit),
+        });
+        return h(
+          "div",
+          { class: "asked-for" },
+          h("label", { for: id }, title),
+          h("div", {}, input, h("span", { class: "quiet" }, ` ${unitOf(unit)}`)),
+        );
+      }),
+      h("button", { type: "submit" }, "Find crank angles"),
+    );
   }
 
   /** Keep what was typed, in the unit of the API. @param {HTMLInputElement} input @param {Key} key @param {string} unit */
@@ -58,7 +88,8 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   async function ask() {
     const [sentence] = wrong.values();
     if (sentence) return refuse(sentence);
-    if (asked.slider_position_mm === undefined) return refuse(`A slider position is needed; it is ${reach()}.`);
+    if (asked.slider_position_mm === undefined)
+      return refuse(`A slider position is needed; it is ${reach()}.`);
     try {
       const { inverse } = await get(`${path}/inverse`, { ...asked }, signal);
       found = /** @type {Api.Inverse} */ (/** @type {unknown} */ (inverse));
@@ -71,27 +102,112 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   /** @param {string} sentence */
   function refuse(sentence) {
     found = null;
-    fill(answer, h("p", { class: "bad", role: "alert" }, sentence.charAt(0).toUpperCase() + sentence.slice(1)));
+    fill(
+      answer,
+      h("p", { class: "bad", role: "alert" }, sentence.charAt(0).toUpperCase() + sentence.slice(1)),
+    );
   }
 
   const reach = () => `between ${text(ends[0], "mm")} and ${withUnit(ends[1], "mm")}`;
 
   function tell() {
     if (!found) {
-      fill(answer, h("p", { class: "quiet hint" }, `The slider of this design is ${reach()} from the crank pivot. Its velocity gives the crank speed; with its acceleration, too, the crank's acceleration. The slider's are positive along +x, as in the curves above, the crank's counter-clockwise.`));
+      fill(
+        answer,
+        h(
+          "p",
+          { class: "quiet hint" },
+          `The slider of this design is ${reach()} from the crank pivot. Its velocity gives the crank speed; with its acceleration, too, the crank's acceleration. The slider's are positive along +x, as in the curves above, the crank's counter-clockwise.`,
+        ),
+      );
       return;
     }
-    const { solutions, note, slider_velocity_m_s: velocity, slider_acceleration_m_s2: further } = found;
-    const heads = ["Crank angle", "Stroke", ...(velocity === null ? [] : ["Crank speed"]), ...(further === null ? [] : ["Crank acceleration"]), ""];
+    const {
+      solutions,
+      note,
+      slider_velocity_m_s: velocity,
+      slider_acceleration_m_s2: further,
+    } = found;
+    const heads = [
+      "Crank angle",
+      "Stroke",
+      ...(velocity === null ? [] : ["Crank speed"]),
+      ...(further === null ? [] : ["Crank acceleration"]),
+      "",
+    ];
     /** @param {number | null} value @param {string} unit */
-    const cell = (value, unit) => h("td", { class: "number", "data-value": value === null ? "" : String(value) }, withUnit(value, unit, 6));
-    const rows = solutions.map(({ crank_angle_deg: at, stroke, crank_speed_rpm: speed, crank_acceleration_rad_s2: acceleration }) => h("tr", {},
-      h("th", { scope: "row", class: "number", "data-value": String(at) }, withUnit(at, "deg", 6)), h("td", {}, stroke ?? "dead centre"),
-      velocity === null ? null : cell(speed, "rpm"), further === null ? null : cell(acceleration, "rad/s^2"),
-      h("td", {}, h("button", { type: "button", onclick: () => turnTo(at), "aria-label": `Turn the crank to ${withUnit(at, "deg", 6)}` }, "Turn there"))));
-    fill(answer, scrolled("Crank angles found",
-      h("table", {}, h("caption", { class: "hidden" }, "Crank angles found"), h("thead", {}, h("tr", {}, heads.map((head, n) => h(head ? "th" : "td", { scope: head ? "col" : null, class: n !== 1 && head ? "number" : null }, head)))), h("tbody", {}, rows))),
-      h("p", { class: "quiet hint" }, "Strokes are those of a crank that turns counter-clockwise.", note ? ` ${note.charAt(0).toUpperCase()}${note.slice(1)}.` : null));
+    const cell = (value, unit) =>
+      h(
+        "td",
+        { class: "number", "data-value": value === null ? "" : String(value) },
+        withUnit(value, unit, 6),
+      );
+    const rows = solutions.map(
+      ({
+        crank_angle_deg: at,
+        stroke,
+        crank_speed_rpm: speed,
+        crank_acceleration_rad_s2: acceleration,
+      }) =>
+        h(
+          "tr",
+          {},
+          h(
+            "th",
+            { scope: "row", class: "number", "data-value": String(at) },
+            withUnit(at, "deg", 6),
+          ),
+          h("td", {}, stroke ?? "dead centre"),
+          velocity === null ? null : cell(speed, "rpm"),
+          further === null ? null : cell(acceleration, "rad/s^2"),
+          h(
+            "td",
+            {},
+            h(
+              "button",
+              {
+                type: "button",
+                onclick: () => turnTo(at),
+                "aria-label": `Turn the crank to ${withUnit(at, "deg", 6)}`,
+              },
+              "Turn there",
+            ),
+          ),
+        ),
+    );
+    fill(
+      answer,
+      scrolled(
+        "Crank angles found",
+        h(
+          "table",
+          {},
+          h("caption", { class: "hidden" }, "Crank angles found"),
+          h(
+            "thead",
+            {},
+            h(
+              "tr",
+              {},
+              heads.map((head, n) =>
+                h(
+                  head ? "th" : "td",
+                  { scope: head ? "col" : null, class: n !== 1 && head ? "number" : null },
+                  head,
+                ),
+              ),
+            ),
+          ),
+          h("tbody", {}, rows),
+        ),
+      ),
+      h(
+        "p",
+        { class: "quiet hint" },
+        "Strokes are those of a crank that turns counter-clockwise.",
+        note ? ` ${note.charAt(0).toUpperCase()}${note.slice(1)}.` : null,
+      ),
+    );
   }
 
   const draw = () => [drawFields, tell].forEach((each) => each());

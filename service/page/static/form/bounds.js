@@ -8,7 +8,12 @@ import { drawnFrom, entered } from "./typed_field.js";
 import { convert, split, spread } from "../lib/units.js";
 
 const ANY = ["any", "any"];
-const MODES = [["equals", "exactly"], ["min", "at least"], ["max", "at most"], ["between", "between"]];
+const MODES = [
+  ["equals", "exactly"],
+  ["min", "at least"],
+  ["max", "at most"],
+  ["between", "between"],
+];
 /** @type {Record<string, string[]>} */
 const KEYS = { any: [], equals: ["equals"], min: ["min"], max: ["max"], between: ["min", "max"] };
 /** What is asked of a bound, in words. @type {Record<string, string>} */
@@ -23,12 +28,30 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
   const ends = spread(at(stated, ["equals"]), kind);
   const given = ends ? { min: ends[0], max: ends[1] } : stated;
   const mode = modeOf(given);
-  const select = h("select", { id: idOf(spot.id, any ? "c" : "m"), class: "mode", "aria-label": any ? null : `${label}: what must hold` }, (any ? [ANY, ...MODES] : MODES).map(([value, text]) => h("option", { value, selected: value === mode }, text)));
+  const select = h(
+    "select",
+    {
+      id: idOf(spot.id, any ? "c" : "m"),
+      class: "mode",
+      "aria-label": any ? null : `${label}: what must hold`,
+    },
+    (any ? [ANY, ...MODES] : MODES).map(([value, text]) =>
+      h("option", { value, selected: value === mode }, text),
+    ),
+  );
   const keys = KEYS[mode];
   const parts = keys.map((key) => split(at(given, [key]), kind));
-  const unit = parts.find((one) => one.number !== "")?.unit ?? (kind ? split(undefined, kind).unit : "");
-  const units = keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
-  const inputs = keys.map((key, place) => numberInput(idOf(spot.id, key), convert(parts[place].number, parts[place].unit, unit, kind), `${label}, ${SAID[key]}`));
+  const unit =
+    parts.find((one) => one.number !== "")?.unit ?? (kind ? split(undefined, kind).unit : "");
+  const units =
+    keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
+  const inputs = keys.map((key, place) =>
+    numberInput(
+      idOf(spot.id, key),
+      convert(parts[place].number, parts[place].unit, unit, kind),
+      `${label}, ${SAID[key]}`,
+    ),
+  );
   inputs.forEach((input, place) => drawnFrom(input, at(given, [keys[place]]), units));
   const ranges = mode === "equals" || mode === "between";
   /** @param {HTMLInputElement} input */
@@ -41,7 +64,11 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
     const both = between();
     (both && names.length ? KEYS.between : names).forEach((key, place) => {
       const input = inputs[Math.min(place, inputs.length - 1)];
-      const typed = both ? (kind ? both[place] : Number(both[place])) : input && (kind ? typedIn(input).value : number(input));
+      const typed = both
+        ? kind
+          ? both[place]
+          : Number(both[place])
+        : input && (kind ? typedIn(input).value : number(input));
       found[key] = typed ?? ""; // the service says that it is missing
     });
     form.put(spot.path, names.length ? found : undefined);
@@ -62,7 +89,9 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
     again();
   });
   const [low, high] = inputs.map((input) => completing(input, form, { number: true }));
-  const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter((one) => one instanceof HTMLElement);
+  const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter(
+    (one) => one instanceof HTMLElement,
+  );
   return { mode, keys, inputs, controls };
 }
 

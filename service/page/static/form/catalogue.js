@@ -7,13 +7,18 @@ import { at, idOf, isTable } from "./path.js";
 
 const SHOWN = 6; // names of options
 const EXAMPLE = "name,peak_torque max (N m),price (EUR),maker\nGM 40,40,310,A\nGM 90,90,450,B";
-const WHY = "One row an option, the first line its columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and what is to be kept with each design, such as “price (EUR)” or a maker; what is kept and a number may be an objective or a requirement. A blank limit is none. Columns that begin with # are passed over.";
+const WHY =
+  "One row an option, the first line its columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and what is to be kept with each design, such as “price (EUR)” or a maker; what is kept and a number may be an objective or a requirement. A blank limit is none. Columns that begin with # are passed over.";
 
 /** Return the fields of the choices, and a button for another one. @param {Form.Whole} form */
 export function choices(form) {
   const given = form.at(["choice"]);
   const all = Array.isArray(given) ? given : [];
-  const add = h("button", { type: "button", id: "add-choice" }, all.length ? "Add another catalogue" : "Add a catalogue");
+  const add = h(
+    "button",
+    { type: "button", id: "add-choice" },
+    all.length ? "Add another catalogue" : "Add a catalogue",
+  );
   add.addEventListener("click", () => {
     form.put(["choice", all.length], { name: `catalogue ${all.length + 1}`, table: "" });
     form.redraw(idOf(["choice", all.length, "table"], "c"));
@@ -24,13 +29,16 @@ export function choices(form) {
 /** Return what there is to choose from, in a line. @param {Form.Whole} form */
 export function choicesGiven(form) {
   const given = form.at(["choice"]);
-  return (Array.isArray(given) ? given : []).map((one) => `${at(one, ["name"])}: ${counted(one)}`).join(", ");
+  return (Array.isArray(given) ? given : [])
+    .map((one) => `${at(one, ["name"])}: ${counted(one)}`)
+    .join(", ");
 }
 
 /** Return how many rows or options a choice has, in words. @param {unknown} one */
 function counted(one) {
   const table = at(one, ["table"]);
-  const lines = typeof table === "string" ? table.split("\n").filter((line) => line.trim()).length - 1 : 0;
+  const lines =
+    typeof table === "string" ? table.split("\n").filter((line) => line.trim()).length - 1 : 0;
   const options = optionsOf(one).length;
   const [count, word] = options ? [options, "option"] : [Math.max(lines, 0), "row"];
   return `${count} ${word}${count === 1 ? "" : "s"}`;
@@ -49,25 +57,66 @@ function row(form, one, place, all) {
   const more = names.length > SHOWN ? ` and ${names.length - SHOWN} more` : "";
   const has = h("p", { class: "quiet wide", role: "status" });
   /** @param {unknown} given */
-  const say = (given) => has.replaceChildren(`${counted(given)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`);
+  const say = (given) =>
+    has.replaceChildren(
+      `${counted(given)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`,
+    );
   say(one);
-  const text = h("textarea", { id: idOf([...path, "table"], "c"), rows: 5, class: "points", spellcheck: "false", placeholder: EXAMPLE });
+  const text = h("textarea", {
+    id: idOf([...path, "table"], "c"),
+    rows: 5,
+    class: "points",
+    spellcheck: "false",
+    placeholder: EXAMPLE,
+  });
   text.value = String(at(one, ["table"]) ?? "");
-  const made = field(form, [...path, "table"], names.length ? "a table in place of these" : "table", [text], WHY, { wide: true });
+  const made = field(
+    form,
+    [...path, "table"],
+    names.length ? "a table in place of these" : "table",
+    [text],
+    WHY,
+    { wide: true },
+  );
   const begun = text.value; // as browsers have its ends of lines
   text.addEventListener("input", () => {
     const now = form.at(path);
     if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: it still is the table of its file
     names.length = 0;
-    const { option: _, rows: __, file: ___, ...rest } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
+    const {
+      option: _,
+      rows: __,
+      file: ___,
+      ...rest
+    } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
     const given = { ...rest, table: text.value };
     form.put(path, given);
     say(given);
   });
-  const drop = h("button", { type: "button", "aria-label": `Remove catalogue ${place + 1}` }, "Remove");
+  const drop = h(
+    "button",
+    { type: "button", "aria-label": `Remove catalogue ${place + 1}` },
+    "Remove",
+  );
   drop.addEventListener("click", () => {
     form.put(["choice"], all.length > 1 ? all.filter((_, other) => other !== place) : undefined);
     form.redraw("add-choice");
   });
-  return h("fieldset", { class: "inner" }, h("legend", {}, `Catalogue ${place + 1}`), h("div", { class: "fields" }, plain(form, [...path, "name"], { control: "text", label: "what is chosen", why: "Letters, digits, spaces, - and _; the table of designs has it." }), has, made), h("p", {}, drop));
+  return h(
+    "fieldset",
+    { class: "inner" },
+    h("legend", {}, `Catalogue ${place + 1}`),
+    h(
+      "div",
+      { class: "fields" },
+      plain(form, [...path, "name"], {
+        control: "text",
+        label: "what is chosen",
+        why: "Letters, digits, spaces, - and _; the table of designs has it.",
+      }),
+      has,
+      made,
+    ),
+    h("p", {}, drop),
+  );
 }

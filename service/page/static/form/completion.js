@@ -11,9 +11,23 @@ const BEHIND_NUMBER = /[\d.]\s*$/; // what stands there is a unit
  * @param {HTMLInputElement} input @param {Form.Whole} form @param {{ number?: boolean }} given
  */
 export function completing(input, form, { number = false } = {}) {
-  const list = h("ul", { role: "listbox", id: `${input.id}-names`, class: "names", "aria-label": "Names of formulas", hidden: true });
+  const list = h("ul", {
+    role: "listbox",
+    id: `${input.id}-names`,
+    class: "names",
+    "aria-label": "Names of formulas",
+    hidden: true,
+  });
   const node = h("span", { class: number ? "completed" : "completed wide" }, input, list);
-  for (const [name, value] of [["role", "combobox"], ["aria-autocomplete", "list"], ["aria-expanded", "false"], ["aria-controls", list.id], ["spellcheck", "false"], ["autocapitalize", "none"]]) input.setAttribute(name, value);
+  for (const [name, value] of [
+    ["role", "combobox"],
+    ["aria-autocomplete", "list"],
+    ["aria-expanded", "false"],
+    ["aria-controls", list.id],
+    ["spellcheck", "false"],
+    ["autocapitalize", "none"],
+  ])
+    input.setAttribute(name, value);
   /** @type {Form.Name[]} */
   let shown = [];
   let active = -1;
@@ -37,14 +51,28 @@ export function completing(input, form, { number = false } = {}) {
   };
   const open = ({ all = false } = {}) => {
     const word = wordAt(input);
-    shown = word === null || (word === "" && !all) ? [] : matching(word, form.names()).slice(0, all && word === "" ? undefined : MOST);
+    shown =
+      word === null || (word === "" && !all)
+        ? []
+        : matching(word, form.names()).slice(0, all && word === "" ? undefined : MOST);
     if (shown.length === 1 && shown[0].name === word) shown = [];
     if (!shown.length) {
       close();
       typing = true;
       return;
     }
-    fill(list, shown.map(({ name, title, unit }, n) => h("li", { role: "option", id: `${list.id}-${n}`, "aria-selected": "false", "data-name": name }, h("code", {}, name), " ", h("span", { class: "quiet" }, [title, unit].filter(Boolean).join(", ")))));
+    fill(
+      list,
+      shown.map(({ name, title, unit }, n) =>
+        h(
+          "li",
+          { role: "option", id: `${list.id}-${n}`, "aria-selected": "false", "data-name": name },
+          h("code", {}, name),
+          " ",
+          h("span", { class: "quiet" }, [title, unit].filter(Boolean).join(", ")),
+        ),
+      ),
+    );
     list.hidden = false;
     input.setAttribute("aria-expanded", "true");
     point(-1);
@@ -89,7 +117,9 @@ export function completing(input, form, { number = false } = {}) {
   });
   list.addEventListener("mousedown", (event) => event.preventDefault()); // the input keeps the focus
   list.addEventListener("click", (event) => {
-    const place = [...list.children].findIndex((one) => event.target instanceof Node && one.contains(event.target));
+    const place = [...list.children].findIndex(
+      (one) => event.target instanceof Node && one.contains(event.target),
+    );
     if (place >= 0) take(shown[place]);
   });
   node.classList.toggle("long", number && /[A-Za-z_]{3}|\(/.test(input.value));
@@ -114,5 +144,9 @@ export function matching(word, names) {
     if (own.split(/[_.]/).some((part) => part.startsWith(sought))) return 1;
     return own.includes(sought) || title.toLowerCase().includes(sought) ? 2 : 3;
   };
-  return names.map((one) => ({ one, at: rank(one) })).filter(({ at }) => at < 3).sort((a, b) => a.at - b.at).map(({ one }) => one);
+  return names
+    .map((one) => ({ one, at: rank(one) }))
+    .filter(({ at }) => at < 3)
+    .sort((a, b) => a.at - b.at)
+    .map(({ one }) => one);
 }

@@ -21,9 +21,16 @@ export function byschema(form, path, options = {}) {
   const label = options.label ?? words(path[path.length - 1]);
   const why = options.why ?? found.description;
   if (found.control === "table") {
-    const keys = (found.keys ?? []).filter((key) => key !== "file" || form.at([...path, key]) !== undefined); // a service opens no files
+    const keys = (found.keys ?? []).filter(
+      (key) => key !== "file" || form.at([...path, key]) !== undefined,
+    ); // a service opens no files
     const inner = keys.map((key) => byschema(form, [...path, key]));
-    return h("fieldset", { class: "inner" }, h("legend", {}, label), h("div", { class: "fields" }, inner));
+    return h(
+      "fieldset",
+      { class: "inner" },
+      h("legend", {}, label),
+      h("div", { class: "fields" }, inner),
+    );
   }
   const make = MAKE[found.control];
   return make ? make(form, path, { ...found, ...options, label, why }) : null;
@@ -45,14 +52,32 @@ export function quantity(form, path, { kind, percent = false, label, why, wide }
 }
 
 /** Return a field of one of several words. Left out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
-export function choice(form, path, { options = [], fallback, label, why, required = false, changed = () => {} }) {
+export function choice(
+  form,
+  path,
+  { options = [], fallback, label, why, required = false, changed = () => {} },
+) {
   const given = form.at(path);
   const known = given === undefined || options.some((one) => one === given);
-  const shown = [...(required ? [] : [["", fallback === undefined ? "not given" : `${fallback} (usual)`]]), ...options.map((one) => [String(one), words(one)])];
+  const shown = [
+    ...(required ? [] : [["", fallback === undefined ? "not given" : `${fallback} (usual)`]]),
+    ...options.map((one) => [String(one), words(one)]),
+  ];
   if (!known) shown.push([String(given), String(given)]);
-  const select = h("select", { id: idOf(path, "c") }, shown.map(([value, text]) => h("option", { value, selected: value === String(given ?? "") }, text)));
+  const select = h(
+    "select",
+    { id: idOf(path, "c") },
+    shown.map(([value, text]) =>
+      h("option", { value, selected: value === String(given ?? "") }, text),
+    ),
+  );
   select.addEventListener("change", () => {
-    form.put(path, select.value === "" ? undefined : options.find((one) => String(one) === select.value) ?? select.value);
+    form.put(
+      path,
+      select.value === ""
+        ? undefined
+        : (options.find((one) => String(one) === select.value) ?? select.value),
+    );
     changed(select.value);
   });
   return field(form, path, label, [select], why);
@@ -65,26 +90,53 @@ export function choice(form, path, { options = [], fallback, label, why, require
 export function plain(form, path, { control, label, why, wide = false, long = false, fallback }) {
   const given = form.at(path);
   const text = given === undefined ? "" : typeof given === "string" ? given : JSON.stringify(given);
-  const input = long ? h("textarea", { rows: 2, id: idOf(path, "c"), value: text }) : h("input", { type: "text", id: idOf(path, "c"), value: text, autocomplete: "off" });
+  const input = long
+    ? h("textarea", { rows: 2, id: idOf(path, "c"), value: text })
+    : h("input", { type: "text", id: idOf(path, "c"), value: text, autocomplete: "off" });
   if (fallback !== undefined && fallback !== null) input.placeholder = String(fallback);
   if (control !== "text") {
     input.inputMode = "decimal";
     input.classList.add("short");
   }
-  const write = () => form.put(path, input instanceof HTMLTextAreaElement || control === "text" ? input.value || undefined : number(input));
+  const write = () =>
+    form.put(
+      path,
+      input instanceof HTMLTextAreaElement || control === "text"
+        ? input.value || undefined
+        : number(input),
+    );
   input.addEventListener("input", write);
-  if (input instanceof HTMLInputElement && control !== "text") input.addEventListener("change", () => ordered(input));
+  if (input instanceof HTMLInputElement && control !== "text")
+    input.addEventListener("change", () => ordered(input));
   return field(form, path, label, [input], why, { wide });
 }
 
 /** Return a field of a list, its entries separated by commas. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function list(form, path, { label, why, example }) {
   const given = form.at(path);
-  const text = Array.isArray(given) ? given.join(", ") : given === undefined ? "" : JSON.stringify(given);
-  const input = h("input", { type: "text", id: idOf(path, "c"), value: text, autocomplete: "off", placeholder: Array.isArray(example) ? example.join(", ") : null });
+  const text = Array.isArray(given)
+    ? given.join(", ")
+    : given === undefined
+      ? ""
+      : JSON.stringify(given);
+  const input = h("input", {
+    type: "text",
+    id: idOf(path, "c"),
+    value: text,
+    autocomplete: "off",
+    placeholder: Array.isArray(example) ? example.join(", ") : null,
+  });
   input.addEventListener("input", () => {
-    const entries = input.value.split(",").map((one) => one.trim()).filter(Boolean);
-    form.put(path, entries.length ? entries.map((one) => (Number.isFinite(Number(one)) ? Number(one) : one)) : undefined);
+    const entries = input.value
+      .split(",")
+      .map((one) => one.trim())
+      .filter(Boolean);
+    form.put(
+      path,
+      entries.length
+        ? entries.map((one) => (Number.isFinite(Number(one)) ? Number(one) : one))
+        : undefined,
+    );
   });
   return field(form, path, label, [input], `${why}; separated by commas`, { wide: true });
 }
@@ -94,7 +146,16 @@ export function list(form, path, { label, why, example }) {
  * @param {string} id @param {string} value @param {string | null} label
  */
 export function numberInput(id, value, label = null) {
-  return h("input", { type: "text", inputmode: "decimal", autocomplete: "off", class: "short number", id, value, "aria-label": label, onchange: (event) => ordered(event.currentTarget) });
+  return h("input", {
+    type: "text",
+    inputmode: "decimal",
+    autocomplete: "off",
+    class: "short number",
+    id,
+    value,
+    "aria-label": label,
+    onchange: (event) => ordered(event.currentTarget),
+  });
 }
 
 /**
@@ -104,7 +165,17 @@ export function numberInput(id, value, label = null) {
 export function unitSelect(label, kind, unit, percent = false, id = null) {
   const units = unitsOf(kind, { percent });
   const chosen = unit || usual(kind);
-  const select = h("select", { class: "unit", id, "aria-label": `Unit of ${label}`, "data-from": chosen }, units.map((one) => h("option", { value: one, selected: one === chosen }, one.replace("^2", "²").replace("^3", "³"))));
+  const select = h(
+    "select",
+    { class: "unit", id, "aria-label": `Unit of ${label}`, "data-from": chosen },
+    units.map((one) =>
+      h(
+        "option",
+        { value: one, selected: one === chosen },
+        one.replace("^2", "²").replace("^3", "³"),
+      ),
+    ),
+  );
   return select;
 }
 

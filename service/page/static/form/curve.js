@@ -23,7 +23,17 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDow
  */
 export function curve({ read, write, titles, centres, steps }) {
   const picture = svg("svg", { class: "curve-drawn", viewBox: `0 0 ${WIDTH} ${HEIGHT}` });
-  const node = h("figure", { class: "drawn-points" }, picture, h("figcaption", { class: "quiet" }, "Drag a point, or move it by the arrow keys. A double click on the curve adds one, Delete takes one away." + (steps ? " Two points at one place are a step." : "")));
+  const node = h(
+    "figure",
+    { class: "drawn-points" },
+    picture,
+    h(
+      "figcaption",
+      { class: "quiet" },
+      "Drag a point, or move it by the arrow keys. A double click on the curve adds one, Delete takes one away." +
+        (steps ? " Two points at one place are a step." : ""),
+    ),
+  );
   /** @type {{ x: Page.Scale, y: Page.Scale } | null} */
   let scales = null; // kept while a point is dragged
   let dragged = -1;
@@ -38,14 +48,50 @@ export function curve({ read, write, titles, centres, steps }) {
     const bottom = HEIGHT - AREA.bottom;
     const names = titles();
     const places = points.map((point) => [x.at(point[0]).toFixed(1), y.at(point[1]).toFixed(1)]);
-    fill(picture,
-      y.ticks.map((tick) => [svg("path", { class: "grid", d: `M${AREA.left} ${y.at(tick)}H${WIDTH - AREA.right}` }), svg("text", { x: AREA.left - 8, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick))]),
-      x.ticks.map((tick) => svg("text", { x: x.at(tick), y: bottom + 18, "text-anchor": "middle" }, x.text(tick))),
-      svg("text", { class: "title", x: (AREA.left + WIDTH - AREA.right) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, names[0]),
+    fill(
+      picture,
+      y.ticks.map((tick) => [
+        svg("path", { class: "grid", d: `M${AREA.left} ${y.at(tick)}H${WIDTH - AREA.right}` }),
+        svg("text", { x: AREA.left - 8, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
+      ]),
+      x.ticks.map((tick) =>
+        svg("text", { x: x.at(tick), y: bottom + 18, "text-anchor": "middle" }, x.text(tick)),
+      ),
+      svg(
+        "text",
+        {
+          class: "title",
+          x: (AREA.left + WIDTH - AREA.right) / 2,
+          y: HEIGHT - 4,
+          "text-anchor": "middle",
+        },
+        names[0],
+      ),
       svg("text", { class: "title", x: 4, y: 12 }, names[1]),
-      marks.map(({ at, name }, n) => [svg("path", { class: "centre", d: `M${x.at(at)} ${AREA.top}V${bottom}` }), svg("text", { x: x.at(at) + (n ? -5 : 5), y: bottom - 5, "text-anchor": n ? "end" : "start" }, name)]),
+      marks.map(({ at, name }, n) => [
+        svg("path", { class: "centre", d: `M${x.at(at)} ${AREA.top}V${bottom}` }),
+        svg(
+          "text",
+          { x: x.at(at) + (n ? -5 : 5), y: bottom - 5, "text-anchor": n ? "end" : "start" },
+          name,
+        ),
+      ]),
       svg("path", { class: "line", d: `M${places.map((place) => place.join(" ")).join("L")}` }),
-      places.map(([cx, cy], n) => svg("circle", { class: "point", cx, cy, r: 6, tabindex: 0, role: "slider", "data-n": n, "aria-label": `Point ${n + 1} of ${points.length}`, "aria-valuenow": points[n][1], "aria-valuetext": `${names[0]} ${points[n][0]}, ${names[1]} ${points[n][1]}` })));
+      places.map(([cx, cy], n) =>
+        svg("circle", {
+          class: "point",
+          cx,
+          cy,
+          r: 6,
+          tabindex: 0,
+          role: "slider",
+          "data-n": n,
+          "aria-label": `Point ${n + 1} of ${points.length}`,
+          "aria-valuenow": points[n][1],
+          "aria-valuetext": `${names[0]} ${points[n][0]}, ${names[1]} ${points[n][1]}`,
+        }),
+      ),
+    );
     const held = focus < 0 ? null : picture.querySelector(`[data-n="${focus}"]`);
     if (held instanceof SVGElement) held.focus();
   }
@@ -66,10 +112,14 @@ export function curve({ read, write, titles, centres, steps }) {
   const valuesAt = ({ clientX, clientY }) => {
     const box = picture.getBoundingClientRect();
     const { x, y } = /** @type {NonNullable<typeof scales>} */ (scales);
-    return [x.value(((clientX - box.left) / box.width) * WIDTH), y.value(((clientY - box.top) / box.height) * HEIGHT)];
+    return [
+      x.value(((clientX - box.left) / box.width) * WIDTH),
+      y.value(((clientY - box.top) / box.height) * HEIGHT),
+    ];
   };
   /** @param {Event} event */
-  const numberOf = ({ target }) => (target instanceof SVGElement && target.dataset.n !== undefined ? Number(target.dataset.n) : -1);
+  const numberOf = ({ target }) =>
+    target instanceof SVGElement && target.dataset.n !== undefined ? Number(target.dataset.n) : -1;
   picture.addEventListener("pointerdown", (event) => {
     dragged = numberOf(event);
     if (dragged < 0) return;
@@ -117,7 +167,10 @@ export function curve({ read, write, titles, centres, steps }) {
 function scalesOf(points, marks) {
   const across = range([...points.map(([x]) => x), ...marks.map(({ at }) => at)], 0.03);
   const up = range([0, ...points.map(([, y]) => y)], 0.12);
-  return { x: scale(across.low, across.high, AREA.left, WIDTH - AREA.right, 6), y: scale(up.low, up.high, HEIGHT - AREA.bottom, AREA.top, 4) };
+  return {
+    x: scale(across.low, across.high, AREA.left, WIDTH - AREA.right, 6),
+    y: scale(up.low, up.high, HEIGHT - AREA.bottom, AREA.top, 4),
+  };
 }
 
 /** Return a value to a digit that one can still see. @param {number} value @param {Page.Range} axis */
@@ -136,7 +189,8 @@ export function centresOf(said, { kind }, datum, unit) {
   const found = example ? extremes(example.motion.slider_position_mm) : null;
   if (!example || !found) return [];
   const [inner, outer] = example.slider_ends_mm.map((end) => {
-    const { angle } = Math.abs(found.low.value - end) < Math.abs(found.high.value - end) ? found.low : found.high;
+    const { angle } =
+      Math.abs(found.low.value - end) < Math.abs(found.high.value - end) ? found.low : found.high;
     return { angle, value: Math.abs(end) }; // a table has distances, also on the crossed branch
   });
   /** @type {(value: number) => number} */
@@ -148,8 +202,16 @@ export function centresOf(said, { kind }, datum, unit) {
     const zero = datum === "inner dead centre" ? inner.angle : outer.angle;
     counted = (angle) => ((example.clockwise ? zero - angle : angle - zero) + 720) % 360;
   }
-  const [mine, key] = kind === "length" ? ["mm", /** @type {const} */ ("value")] : ["deg", /** @type {const} */ ("angle")];
+  const [mine, key] =
+    kind === "length"
+      ? ["mm", /** @type {const} */ ("value")]
+      : ["deg", /** @type {const} */ ("angle")];
   /** @param {string} name @param {typeof inner} end @returns {Centre} */
-  const shown = (name, end) => ({ name, at: Number(convert(String(counted(end[key])), mine, unit, kind)) });
-  return [shown("inner dead centre", inner), shown("outer dead centre", outer)].sort((one, other) => one.at - other.at);
+  const shown = (name, end) => ({
+    name,
+    at: Number(convert(String(counted(end[key])), mine, unit, kind)),
+  });
+  return [shown("inner dead centre", inner), shown("outer dead centre", outer)].sort(
+    (one, other) => one.at - other.at,
+  );
 }

@@ -7,13 +7,29 @@ import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, understood, swing }) {
-  const warnings = (understood?.warnings ?? []).map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`));
+  const warnings = (understood?.warnings ?? []).map((sentence) =>
+    h("p", { class: "warning" }, `${capital(inWords(sentence))}.`),
+  );
   if (swing) {
-    fill(place, warnings, h("dl", { class: "terms" }, row("makes the swing", share(swing.closing_share), "of the ranges"), row("travel of the slider", between(swing.travel_mm, "mm")), row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`)), told(swing.unchecked, understood));
+    fill(
+      place,
+      warnings,
+      h(
+        "dl",
+        { class: "terms" },
+        row("makes the swing", share(swing.closing_share), "of the ranges"),
+        row("travel of the slider", between(swing.travel_mm, "mm")),
+        row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`),
+      ),
+      told(swing.unchecked, understood),
+    );
     return;
   }
   if (!allowed) {
-    fill(place, h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."));
+    fill(
+      place,
+      h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."),
+    );
     return;
   }
   fill(
@@ -35,24 +51,58 @@ export function showFacts(place, { allowed, understood, swing }) {
 
 /** @param {string} title @param {Dom.Child} value @param {string | null} note */
 function row(title, value, note = null) {
-  return [h("dt", {}, title), h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null)];
+  return [
+    h("dt", {}, title),
+    h("dd", {}, value, note ? h("span", { class: "quiet" }, ` ${note}`) : null),
+  ];
 }
 
 /** @param {string[]} unchecked @param {Api.Understood | null} understood @param {string[]} said */
 function told(unchecked, understood, said = []) {
   return [
-    unchecked.length ? h("p", { class: "quiet" }, `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`) : null,
-    (understood?.notes ?? []).map((sentence) => h("p", { class: "note" }, `${capital(inWords(sentence))}.`)),
+    unchecked.length
+      ? h(
+          "p",
+          { class: "quiet" },
+          `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`,
+        )
+      : null,
+    (understood?.notes ?? []).map((sentence) =>
+      h("p", { class: "note" }, `${capital(inWords(sentence))}.`),
+    ),
     said.map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
-    understood ? h("details", { class: "more" }, h("summary", {}, "What was understood"), understanding(understood)) : null,
+    understood
+      ? h(
+          "details",
+          { class: "more" },
+          h("summary", {}, "What was understood"),
+          understanding(understood),
+        )
+      : null,
   ];
 }
 
 /** @param {Api.Understood} understood */
 function understanding(understood) {
   /** @type {[string, string[]][]} */
-  const parts = [["Given", understood.given], ["Tolerances", understood.tolerances], ["Variables", understood.variables], ["Requirements", understood.rules], ["Objectives", understood.objectives], ["Search", [understood.search]]];
-  return parts.filter(([, lines]) => lines.length).map(([title, lines]) => [h("h3", {}, title), h("ul", {}, lines.map((line) => h("li", {}, inShownUnits(line))))]);
+  const parts = [
+    ["Given", understood.given],
+    ["Tolerances", understood.tolerances],
+    ["Variables", understood.variables],
+    ["Requirements", understood.rules],
+    ["Objectives", understood.objectives],
+    ["Search", [understood.search]],
+  ];
+  return parts
+    .filter(([, lines]) => lines.length)
+    .map(([title, lines]) => [
+      h("h3", {}, title),
+      h(
+        "ul",
+        {},
+        lines.map((line) => h("li", {}, inShownUnits(line))),
+      ),
+    ]);
 }
 
 /** @param {number} value */

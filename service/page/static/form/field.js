@@ -12,8 +12,19 @@ const CONTROLS = "input, select, textarea";
  * @param {Form.Whole} form @param {Form.Path} path @param {string} label @param {HTMLElement[]} controls @param {Form.Why | undefined} why
  * @param {{ wide?: boolean, labelled?: boolean, register?: boolean, tell?: () => void }} looks
  */
-export function field(form, path, label, controls, why = "", { wide = false, labelled = true, register = true, tell = undefined } = {}) {
-  const inputs = controls.flatMap((one) => (one.matches(CONTROLS) ? [one] : /** @type {HTMLElement[]} */ ([...one.querySelectorAll(CONTROLS)])));
+export function field(
+  form,
+  path,
+  label,
+  controls,
+  why = "",
+  { wide = false, labelled = true, register = true, tell = undefined } = {},
+) {
+  const inputs = controls.flatMap((one) =>
+    one.matches(CONTROLS)
+      ? [one]
+      : /** @type {HTMLElement[]} */ ([...one.querySelectorAll(CONTROLS)]),
+  );
   const id = (inputs[0].id ||= idOf(path, "c"));
   const understood = h("p", { class: "understood", role: "status", hidden: true });
   const error = h("p", { class: "error", id: `${id}-error`, hidden: true });
@@ -21,7 +32,12 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   const node = h(
     "div",
     { class: wide ? "field wide" : "field" },
-    h("div", { class: "field-label" }, labelled ? h("label", { for: inputs[0].id }, label) : h("span", {}, label), explained?.button),
+    h(
+      "div",
+      { class: "field-label" },
+      labelled ? h("label", { for: inputs[0].id }, label) : h("span", {}, label),
+      explained?.button,
+    ),
     h("div", { class: "field-controls" }, controls),
     understood,
     explained?.text,
@@ -30,7 +46,15 @@ export function field(form, path, label, controls, why = "", { wide = false, lab
   node.addEventListener("input", ({ target }) => {
     if (target instanceof HTMLElement) target.dataset.touched = "yes";
   });
-  if (register) form.register({ path, key: written(path), node, controls: inputs.filter((one) => !one.classList.contains("unit")), error, tell });
+  if (register)
+    form.register({
+      path,
+      key: written(path),
+      node,
+      controls: inputs.filter((one) => !one.classList.contains("unit")),
+      error,
+      tell,
+    });
   return node;
 }
 
@@ -50,10 +74,25 @@ export function replace(form, node, make) {
  * @param {string} id @param {string} label @param {Form.Why | undefined} why
  */
 export function explanation(id, label, why) {
-  const { sentence, name } = typeof why === "string" ? { sentence: why, name: null } : why ?? {};
+  const { sentence, name } = typeof why === "string" ? { sentence: why, name: null } : (why ?? {});
   if (!sentence) return null;
-  const text = h("p", { class: "why", id, hidden: true }, capital(sentence), name ? [" ", h("a", { href: `#/help/${name}` }, `More about ${label}`)] : null);
-  const button = h("button", { type: "button", class: "ask", "aria-label": `What is ${label}?`, "aria-expanded": "false", "aria-controls": id }, "?");
+  const text = h(
+    "p",
+    { class: "why", id, hidden: true },
+    capital(sentence),
+    name ? [" ", h("a", { href: `#/help/${name}` }, `More about ${label}`)] : null,
+  );
+  const button = h(
+    "button",
+    {
+      type: "button",
+      class: "ask",
+      "aria-label": `What is ${label}?`,
+      "aria-expanded": "false",
+      "aria-controls": id,
+    },
+    "?",
+  );
   button.addEventListener("click", () => {
     text.hidden = !text.hidden;
     button.setAttribute("aria-expanded", String(!text.hidden));
@@ -95,7 +134,15 @@ export function showWrong(fields, wrong, { missing = false } = {}) {
 function say(one, found) {
   const unread = one.controls.flatMap(({ dataset }) => dataset.wrong ?? []);
   const sentences = unread.length ? unread : found;
-  const asked = !unread.length && one.controls.some((control) => control instanceof HTMLInputElement && control.type === "text" && control.value.trim() === "" && !control.dataset.touched);
+  const asked =
+    !unread.length &&
+    one.controls.some(
+      (control) =>
+        control instanceof HTMLInputElement &&
+        control.type === "text" &&
+        control.value.trim() === "" &&
+        !control.dataset.touched,
+    );
   const bad = sentences.length > 0 && !asked;
   one.error.hidden = !sentences.length;
   one.error.classList.toggle("needed", asked);
@@ -109,14 +156,23 @@ function say(one, found) {
       control.removeAttribute("aria-describedby");
     }
   }
-  if (bad) for (let fold = one.node.closest("details"); fold; fold = fold.parentElement?.closest("details") ?? null) fold.open = true;
+  if (bad)
+    for (
+      let fold = one.node.closest("details");
+      fold;
+      fold = fold.parentElement?.closest("details") ?? null
+    )
+      fold.open = true;
 }
 
 /** @param {Form.Field[]} fields @param {string} path */
 function nearest(fields, path) {
   /** @param {string} outer @param {string} inner */
-  const within = (outer, inner) => inner === outer || inner.startsWith(`${outer}.`) || inner.startsWith(`${outer} #`);
-  const above = fields.filter((one) => within(one.key, path)).sort((a, b) => b.key.length - a.key.length);
+  const within = (outer, inner) =>
+    inner === outer || inner.startsWith(`${outer}.`) || inner.startsWith(`${outer} #`);
+  const above = fields
+    .filter((one) => within(one.key, path))
+    .sort((a, b) => b.key.length - a.key.length);
   return above[0] ?? fields.find((one) => within(path, one.key)) ?? null;
 }
 
@@ -129,5 +185,7 @@ function below(one, path) {
   if (!path.startsWith(one.key)) return `${path}: `;
   const key = path.slice(one.key.length).replace(/^[. ]/, "");
   const numbers = one.controls.filter((control) => control instanceof HTMLInputElement);
-  return key in WORDS && numbers.length < 2 ? "" : `${WORDS[key] ?? key.replaceAll("_", " ").replaceAll(".", ", ")}: `;
+  return key in WORDS && numbers.length < 2
+    ? ""
+    : `${WORDS[key] ?? key.replaceAll("_", " ").replaceAll(".", ", ")}: `;
 }

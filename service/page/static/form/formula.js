@@ -10,12 +10,20 @@ import { at, idOf, isTable, put, renamed, written } from "./path.js";
 import { say } from "./typed_field.js";
 import { join, kinds, usual } from "../lib/units.js";
 
-const WHY = "A formula of names, such as offset - 2 * crank or max(peak_torque, 3 N m): quantities, crank, rod, offset, numbers that vary; with + - * / **, brackets and functions. Names are offered while you type.";
+const WHY =
+  "A formula of names, such as offset - 2 * crank or max(peak_torque, 3 N m): quantities, crank, rod, offset, numbers that vary; with + - * / **, brackets and functions. Names are offered while you type.";
 const NAME = /^[a-z][a-z0-9_]*$/;
 
 /** Return the formulas among the keys of a table of the job. @param {Form.Whole} form @param {string} table */
 export function formulasOf(form, table) {
-  return Object.keys(form.at([table]) ?? {}).filter((key) => key !== "slow_stroke" && !(form.quantities.has(key) && (table === "constraints" || form.schema.property([table, key]))));
+  return Object.keys(form.at([table]) ?? {}).filter(
+    (key) =>
+      key !== "slow_stroke" &&
+      !(
+        form.quantities.has(key) &&
+        (table === "constraints" || form.schema.property([table, key]))
+      ),
+  );
 }
 
 /** Return the rows of the formulas that requirements are about, and a button for another one. @param {Form.Whole} form */
@@ -44,12 +52,25 @@ export function formulaObjectives(form) {
 function rows(form, table, first, asked) {
   const keys = formulasOf(form, table);
   const what = table === "constraints" ? "requirement" : "objective";
-  const add = h("button", { type: "button", id: `add-${what}-formula` }, `Add a formula as ${what === "objective" ? "an" : "a"} ${what}`);
+  const add = h(
+    "button",
+    { type: "button", id: `add-${what}-formula` },
+    `Add a formula as ${what === "objective" ? "an" : "a"} ${what}`,
+  );
   add.addEventListener("click", () => {
     if (!keys.includes("")) form.put([table, ""], structuredClone(first));
     form.redraw(idOf([table, "formula", formulasOf(form, table).indexOf("")], "c"));
   });
-  return [keys.length ? h("div", { class: "fields formulas" }, keys.map((key, place) => row(form, table, key, place, asked, what))) : null, h("p", {}, add)];
+  return [
+    keys.length
+      ? h(
+          "div",
+          { class: "fields formulas" },
+          keys.map((key, place) => row(form, table, key, place, asked, what)),
+        )
+      : null,
+    h("p", {}, add),
+  ];
 }
 
 /**
@@ -61,7 +82,14 @@ function row(form, table, key, place, asked, what) {
   /** @type {Form.Spot} */
   const spot = { path: [table, key], id };
   const label = `formula ${place + 1}, ${what}`;
-  const input = h("input", { type: "text", id: idOf(id, "c"), value: key, autocomplete: "off", class: "formula", placeholder: "offset - 2 * crank" });
+  const input = h("input", {
+    type: "text",
+    id: idOf(id, "c"),
+    value: key,
+    autocomplete: "off",
+    class: "formula",
+    placeholder: "offset - 2 * crank",
+  });
   const below = h("div", { class: "field-controls asked" });
   let kind = kindAt(form, spot.path);
   /** @type {Set<string>} */
@@ -75,15 +103,23 @@ function row(form, table, key, place, asked, what) {
     const focus = focused(below)?.id;
     form.forget((one) => below.contains(one.node));
     const begun = form.at(spot.path);
-    const changed = () => Object.entries(form.at(spot.path) ?? {}).forEach(([bound, value]) => value !== at(begun, [bound]) && early.add(bound));
+    const changed = () =>
+      Object.entries(form.at(spot.path) ?? {}).forEach(
+        ([bound, value]) => value !== at(begun, [bound]) && early.add(bound),
+      );
     const { controls, parts } = asked(spot, kind, label, draw);
-    fill(below, controls, parts.map(({ key: part, input: of }) => {
-      const error = h("p", { class: "error", id: `${of.id}-error`, hidden: true });
-      const path = [...spot.path, part];
-      form.register({ path, key: written(path), node: of, controls: [of], error });
-      if (kind === null) of.addEventListener("input", changed);
-      return error;
-    }), drop);
+    fill(
+      below,
+      controls,
+      parts.map(({ key: part, input: of }) => {
+        const error = h("p", { class: "error", id: `${of.id}-error`, hidden: true });
+        const path = [...spot.path, part];
+        form.register({ path, key: written(path), node: of, controls: [of], error });
+        if (kind === null) of.addEventListener("input", changed);
+        return error;
+      }),
+      drop,
+    );
     if (focus) byId(focus)?.focus();
   };
   const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
@@ -97,8 +133,10 @@ function row(form, table, key, place, asked, what) {
     const typed = input.value.trim().replace(/^=\s*/, "");
     const before = String(spot.path[1]);
     if (typed === before) return form.put(spot.path, form.at(spot.path));
-    if (/^\d*$/.test(typed) && typed) input.dataset.wrong = "A formula has a name in it, such as crank.";
-    else if (typed in /** @type {object} */ (form.at([table]) ?? {})) input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
+    if (/^\d*$/.test(typed) && typed)
+      input.dataset.wrong = "A formula has a name in it, such as crank.";
+    else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
+      input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
     else {
       form.rename([table], before, typed, made);
       spot.path = [table, typed];
@@ -109,13 +147,19 @@ function row(form, table, key, place, asked, what) {
   const made = field(form, spot.path, label, [completing(input, form)], WHY, { wide: true });
   made.querySelector(".field-controls")?.after(below);
   draw();
-  watch(form, made, input, () => spot.path, (now) => {
-    if (now === kind) return;
-    if (kind === null && now !== null) for (const key of early) withUnit(key, now);
-    kind = now;
-    early.clear();
-    draw();
-  });
+  watch(
+    form,
+    made,
+    input,
+    () => spot.path,
+    (now) => {
+      if (now === kind) return;
+      if (kind === null && now !== null) for (const key of early) withUnit(key, now);
+      kind = now;
+      early.clear();
+      draw();
+    },
+  );
   return made;
 }
 
@@ -126,7 +170,12 @@ function row(form, table, key, place, asked, what) {
 function watch(form, made, input, path, changed) {
   const tell = () => {
     const found = form.said?.formulas.find((one) => one.path === written(path()));
-    if (found?.kind) input.dataset.said = !found.unit ? "a number without a unit" : kinds().includes(found.kind) ? `${found.kind}, in ${found.unit}` : found.kind;
+    if (found?.kind)
+      input.dataset.said = !found.unit
+        ? "a number without a unit"
+        : kinds().includes(found.kind)
+          ? `${found.kind}, in ${found.unit}`
+          : found.kind;
     else delete input.dataset.said;
     say(input);
     if (found) changed(kindAt(form, path()));
@@ -144,11 +193,16 @@ function kindAt(form, path) {
 
 /** Return the fields of the formulas that have names, and a button for another one. @param {Form.Whole} form */
 export function namedFormulas(form) {
-  const all = Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => isTable(part) && "formula" in part).map(([name]) => name);
+  const all = Object.entries(form.at(["quantity"]) ?? {})
+    .filter(([, part]) => isTable(part) && "formula" in part)
+    .map(([name]) => name);
   const add = h("button", { type: "button", id: "add-named-formula" }, "Add a formula with a name");
   add.addEventListener("click", () => {
     const taken = Object.keys(form.at(["quantity"]) ?? {});
-    const name = Array.from({ length: taken.length + 1 }, (_, n) => `formula_${n + 1}`).find((one) => !taken.includes(one)) ?? "formula";
+    const name =
+      Array.from({ length: taken.length + 1 }, (_, n) => `formula_${n + 1}`).find(
+        (one) => !taken.includes(one),
+      ) ?? "formula";
     form.put(["quantity", name], { formula: "" });
     form.redraw(idOf(["quantity", all.length, "name"], "c"));
   });
@@ -157,52 +211,124 @@ export function namedFormulas(form) {
 
 /** Return the names of the formulas that have one. @param {Form.Whole} form */
 export function namesGiven(form) {
-  return Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => isTable(part) && "formula" in part).map(([name, part]) => String(at(part, ["title"]) ?? name));
+  return Object.entries(form.at(["quantity"]) ?? {})
+    .filter(([, part]) => isTable(part) && "formula" in part)
+    .map(([name, part]) => String(at(part, ["title"]) ?? name));
 }
 
 /** @param {Form.Whole} form @param {string} name @param {number} place */
 function named(form, name, place) {
   const path = ["quantity", name];
   const label = `formula with a name ${place + 1}`;
-  const called = h("input", { type: "text", id: idOf(["quantity", place, "name"], "c"), value: name, autocomplete: "off", spellcheck: "false" });
+  const called = h("input", {
+    type: "text",
+    id: idOf(["quantity", place, "name"], "c"),
+    value: name,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
   called.addEventListener("change", () => {
     const typed = called.value.trim();
     delete called.dataset.wrong;
-    if (!NAME.test(typed)) called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
-    else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {})) called.dataset.wrong = `Another formula is called “${typed}” already.`;
+    if (!NAME.test(typed))
+      called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
+    else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {}))
+      called.dataset.wrong = `Another formula is called “${typed}” already.`;
     if (called.dataset.wrong) return form.put(path, form.at(path));
     if (typed === name) return;
-    setTimeout(() => { // once whatever has the focus next has it, and is not drawn anew before it is clicked
+    setTimeout(() => {
+      // once whatever has the focus next has it, and is not drawn anew before it is clicked
       callIt(form, name, typed);
       form.redraw();
     });
   });
-  const input = h("input", { type: "text", id: idOf(["quantity", place, "formula"], "c"), value: String(form.at([...path, "formula"]) ?? ""), autocomplete: "off", class: "formula", placeholder: "offset - crank" });
-  input.addEventListener("input", () => form.put([...path, "formula"], input.value.trim().replace(/^=\s*/, "")));
-  const made = field(form, [...path, "formula"], "formula", [completing(input, form)], WHY, { wide: true });
-  watch(form, made, input, () => [...path, "formula"], () => {});
+  const input = h("input", {
+    type: "text",
+    id: idOf(["quantity", place, "formula"], "c"),
+    value: String(form.at([...path, "formula"]) ?? ""),
+    autocomplete: "off",
+    class: "formula",
+    placeholder: "offset - crank",
+  });
+  input.addEventListener("input", () =>
+    form.put([...path, "formula"], input.value.trim().replace(/^=\s*/, "")),
+  );
+  const made = field(form, [...path, "formula"], "formula", [completing(input, form)], WHY, {
+    wide: true,
+  });
+  watch(
+    form,
+    made,
+    input,
+    () => [...path, "formula"],
+    () => {},
+  );
   const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
   drop.addEventListener("click", () => {
     form.put(path, undefined);
     form.redraw("add-named-formula");
   });
-  return h("fieldset", { class: "inner" }, h("legend", {}, label), h("div", { class: "fields" },
-    field(form, path, "name", [called], "By which objectives, requirements and other formulas call it."),
-    plain(form, [...path, "title"], { control: "text", label: "title", why: "For people; the name if left out." }),
-    plain(form, [...path, "unit"], { control: "text", label: "shown in", why: "A unit such as mm; the usual one of its kind if left out." }),
-    made), h("p", {}, drop));
+  return h(
+    "fieldset",
+    { class: "inner" },
+    h("legend", {}, label),
+    h(
+      "div",
+      { class: "fields" },
+      field(
+        form,
+        path,
+        "name",
+        [called],
+        "By which objectives, requirements and other formulas call it.",
+      ),
+      plain(form, [...path, "title"], {
+        control: "text",
+        label: "title",
+        why: "For people; the name if left out.",
+      }),
+      plain(form, [...path, "unit"], {
+        control: "text",
+        label: "shown in",
+        why: "A unit such as mm; the usual one of its kind if left out.",
+      }),
+      made,
+    ),
+    h("p", {}, drop),
+  );
 }
 
 /** Give a formula another name, wherever the job has it. @param {Form.Whole} form @param {string} before @param {string} after */
 function callIt(form, before, after) {
   const word = new RegExp(`(?<![\\w.])${before}(?![\\w.(])`, "g");
   /** @param {unknown} part @returns {unknown} */
-  const inside = (part) => (typeof part === "string" ? part.replace(word, after) : isTable(part) && !Array.isArray(part) ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, inside(value)])) : part);
+  const inside = (part) =>
+    typeof part === "string"
+      ? part.replace(word, after)
+      : isTable(part) && !Array.isArray(part)
+        ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, inside(value)]))
+        : part;
   for (const table of ["constraints", "objectives"]) {
     const given = form.at([table]);
-    if (isTable(given)) put(form.job, [table], Object.fromEntries(Object.entries(given).map(([key, value]) => [form.quantities.has(key) ? key : key.replace(word, after), inside(value)])));
+    if (isTable(given))
+      put(
+        form.job,
+        [table],
+        Object.fromEntries(
+          Object.entries(given).map(([key, value]) => [
+            form.quantities.has(key) ? key : key.replace(word, after),
+            inside(value),
+          ]),
+        ),
+      );
   }
-  for (const [name, part] of Object.entries(form.at(["quantity"]) ?? {})) if (isTable(part) && typeof part.formula === "string") put(form.job, ["quantity", name, "formula"], part.formula.replace(word, after));
-  put(form.job, ["quantity"], renamed(/** @type {Record<string, unknown>} */ (form.at(["quantity"])), before, after));
+  for (const [name, part] of Object.entries(form.at(["quantity"]) ?? {}))
+    if (isTable(part) && typeof part.formula === "string")
+      put(form.job, ["quantity", name, "formula"], part.formula.replace(word, after));
+  put(
+    form.job,
+    ["quantity"],
+    renamed(/** @type {Record<string, unknown>} */ (form.at(["quantity"])), before, after),
+  );
   form.put(["quantity", after], form.at(["quantity", after]));
 }

@@ -14,7 +14,12 @@ const WAIT = 300; // ms after the last letter until the text is taken into the f
  */
 export function jobFile(form, taken) {
   const wrong = h("p", { class: "error", id: "job-text-error", hidden: true });
-  const text = h("textarea", { id: "job-text", rows: 16, spellcheck: "false", "aria-describedby": "job-text-error" });
+  const text = h("textarea", {
+    id: "job-text",
+    rows: 16,
+    spellcheck: "false",
+    "aria-describedby": "job-text-error",
+  });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   text.addEventListener("input", () => {
@@ -26,7 +31,8 @@ export function jobFile(form, taken) {
     let problem = "";
     try {
       job = JSON.parse(text.value);
-      if (job === null || typeof job !== "object" || Array.isArray(job)) problem = "A job is a JSON object; put it in braces.";
+      if (job === null || typeof job !== "object" || Array.isArray(job))
+        problem = "A job is a JSON object; put it in braces.";
     } catch (error) {
       problem = `This is not valid JSON yet: ${sentenceOf(error)}`;
     }
@@ -37,7 +43,14 @@ export function jobFile(form, taken) {
     if (!problem) taken(job, null);
   }
 
-  const file = h("input", { type: "file", id: "job-import", accept: ".toml,.json,application/json,application/toml", class: "hidden", tabindex: "-1", "aria-label": "Job file to import" });
+  const file = h("input", {
+    type: "file",
+    id: "job-import",
+    accept: ".toml,.json,application/json,application/toml",
+    class: "hidden",
+    tabindex: "-1",
+    "aria-label": "Job file to import",
+  });
   file.addEventListener("change", () => {
     const [given] = file.files ?? [];
     if (given) load(given);
@@ -56,8 +69,13 @@ export function jobFile(form, taken) {
   /** @param {"json" | "toml"} kind */
   const save = async (kind) => {
     try {
-      const content = kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job);
-      download(content, kind === "json" ? "application/json" : "application/toml", `${slug(form.job.name)}.${kind}`);
+      const content =
+        kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job);
+      download(
+        content,
+        kind === "json" ? "application/json" : "application/toml",
+        `${slug(form.job.name)}.${kind}`,
+      );
     } catch (error) {
       sayProblem(error);
     }
@@ -66,8 +84,28 @@ export function jobFile(form, taken) {
     "section",
     { class: "panel", "aria-labelledby": "s-file" },
     h("h2", { id: "s-file" }, "Job file"),
-    h("p", { class: "row" }, h("button", { type: "button", onclick: () => file.click() }, "Import a file …"), h("button", { type: "button", onclick: () => save("toml") }, "Download TOML"), h("button", { type: "button", onclick: () => save("json") }, "Download JSON"), file, h("span", { class: "quiet" }, "or drop a .toml or .json file on the page")),
-    h("details", { class: "more" }, h("summary", {}, "The job as text"), h("p", { class: "quiet" }, "In step with the form; parts that the form has no fields for are written here."), h("label", { class: "hidden", for: "job-text" }, "Job as JSON"), text, wrong),
+    h(
+      "p",
+      { class: "row" },
+      h("button", { type: "button", onclick: () => file.click() }, "Import a file …"),
+      h("button", { type: "button", onclick: () => save("toml") }, "Download TOML"),
+      h("button", { type: "button", onclick: () => save("json") }, "Download JSON"),
+      file,
+      h("span", { class: "quiet" }, "or drop a .toml or .json file on the page"),
+    ),
+    h(
+      "details",
+      { class: "more" },
+      h("summary", {}, "The job as text"),
+      h(
+        "p",
+        { class: "quiet" },
+        "In step with the form; parts that the form has no fields for are written here.",
+      ),
+      h("label", { class: "hidden", for: "job-text" }, "Job as JSON"),
+      text,
+      wrong,
+    ),
   );
   return {
     node,
@@ -85,27 +123,37 @@ export function jobFile(form, taken) {
 async function jobOf(file) {
   if (file.size > 1e6) throw new Problem(0, "A job file has at most 1 MB; is it the right file?");
   const content = await file.text();
-  if (!/\.json$/i.test(file.name)) return (await post("parse", content, { headers: { "Content-Type": "application/toml" } })).job;
+  if (!/\.json$/i.test(file.name))
+    return (await post("parse", content, { headers: { "Content-Type": "application/toml" } })).job;
   let job = null;
   try {
     job = JSON.parse(content);
   } catch (error) {
     throw new Problem(0, `${file.name} is not valid JSON: ${sentenceOf(error)}`);
   }
-  if (job === null || typeof job !== "object" || Array.isArray(job)) throw new Problem(0, "A job is a JSON object; put it in braces.");
+  if (job === null || typeof job !== "object" || Array.isArray(job))
+    throw new Problem(0, "A job is a JSON object; put it in braces.");
   return job;
 }
 
 /** @param {Form.Job} job */
 async function toml(job) {
-  const response = await answered("POST", address("toml"), { headers: { "Content-Type": "application/json" }, body: JSON.stringify({ job }) });
+  const response = await answered("POST", address("toml"), {
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ job }),
+  });
   if (!response.ok) throw new Problem(response.status, (await response.json()).detail);
   return response.text();
 }
 
 /** @param {unknown} name */
 function slug(name) {
-  return String(name ?? "").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "job";
+  return (
+    String(name ?? "")
+      .toLowerCase()
+      .replace(/[^a-z0-9]+/g, "-")
+      .replace(/^-|-$/g, "") || "job"
+  );
 }
 
 /** Return the shipped jobs. @param {AbortSignal} signal */

@@ -9,7 +9,12 @@ import { held } from "./strength.js";
 /** @type {Record<string, { title: string, first: Form.Job | undefined, keys: string[], more: string[] }>} */
 const WAYS = {
   none: { title: "without mass", first: undefined, keys: [], more: [] },
-  mass: { title: "by its mass", first: { mass: "0.5 kg" }, keys: ["mass"], more: ["inertia", "centre", "centre_across"] },
+  mass: {
+    title: "by its mass",
+    first: { mass: "0.5 kg" },
+    keys: ["mass"],
+    more: ["inertia", "centre", "centre_across"],
+  },
   section: {
     title: "bar of rectangular section",
     first: { width: "30 mm", depth: "20 mm", density: "7800 kg/m^3" },
@@ -23,8 +28,19 @@ const VARY = ["width", "depth"]; // of a bar
 /** Return the fields of crank or rod. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
 export function link(form, path, label) {
   const given = form.at(path);
-  const way = given === undefined ? "none" : isTable(given) && ("width" in given || "depth" in given || "density" in given) ? "section" : "mass";
-  const select = h("select", { id: idOf(path, "c") }, Object.entries(WAYS).map(([key, { title }]) => h("option", { value: key, selected: key === way }, title)));
+  const way =
+    given === undefined
+      ? "none"
+      : isTable(given) && ("width" in given || "depth" in given || "density" in given)
+        ? "section"
+        : "mass";
+  const select = h(
+    "select",
+    { id: idOf(path, "c") },
+    Object.entries(WAYS).map(([key, { title }]) =>
+      h("option", { value: key, selected: key === way }, title),
+    ),
+  );
   select.addEventListener("change", () => {
     form.put(["variables", ...path], undefined);
     form.put(path, structuredClone(WAYS[select.value].first));
@@ -32,10 +48,33 @@ export function link(form, path, label) {
   });
   const { keys, more } = WAYS[way];
   /** @param {string[]} names */
-  const fields = (names) => names.map((key) => byschema(form, [...path, key], { label: `${label}, ${key.replace("_", " ")}`, required: true }));
+  const fields = (names) =>
+    names.map((key) =>
+      byschema(form, [...path, key], {
+        label: `${label}, ${key.replace("_", " ")}`,
+        required: true,
+      }),
+    );
   return [
-    field(form, path, `mass of the ${label}`, [select], "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length."),
-    way === "section" ? keys.map((key) => (VARY.includes(key) ? held(form, [...path, key], `${label}, ${key}`) : fields([key]))) : fields(keys),
-    more.length ? h("details", { class: "more" }, h("summary", {}, `Mass centre and inertia of the ${label}`), h("div", { class: "fields" }, fields(more))) : null,
+    field(
+      form,
+      path,
+      `mass of the ${label}`,
+      [select],
+      "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length.",
+    ),
+    way === "section"
+      ? keys.map((key) =>
+          VARY.includes(key) ? held(form, [...path, key], `${label}, ${key}`) : fields([key]),
+        )
+      : fields(keys),
+    more.length
+      ? h(
+          "details",
+          { class: "more" },
+          h("summary", {}, `Mass centre and inertia of the ${label}`),
+          h("div", { class: "fields" }, fields(more)),
+        )
+      : null,
   ];
 }

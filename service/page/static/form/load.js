@@ -17,9 +17,16 @@ import { capital } from "../lib/words.js";
 export function loads(form) {
   const given = form.at(["load"]);
   const all = Array.isArray(given) ? given : [];
-  const add = h("button", { type: "button", id: "add-load" }, all.length ? "Add another load" : "Add a load");
+  const add = h(
+    "button",
+    { type: "button", id: "add-load" },
+    all.length ? "Add another load" : "Add a load",
+  );
   add.addEventListener("click", () => {
-    form.put(["load"], [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)]);
+    form.put(
+      ["load"],
+      [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)],
+    );
     form.redraw(idOf(["load", all.length, "kind"]));
   });
   return [all.map((load, place) => one(form, load, place, all)), h("p", {}, add)];
@@ -31,9 +38,16 @@ function one(form, load, place, all) {
   const every = kinds(form);
   const kind = every.find(({ key }) => isTable(load) && key in load) ?? every[0];
   const known = every.filter((one) => one === kind || fits(form, one));
-  const select = h("select", { id: idOf([...path, "kind"]) }, known.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)));
+  const select = h(
+    "select",
+    { id: idOf([...path, "kind"]) },
+    known.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)),
+  );
   select.addEventListener("change", () => {
-    form.put(path, structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first));
+    form.put(
+      path,
+      structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first),
+    );
     form.redraw();
   });
   const drop = h("button", { type: "button", "aria-label": `Remove load ${place + 1}` }, "Remove");
@@ -42,10 +56,27 @@ function one(form, load, place, all) {
     form.redraw("add-load");
   });
   const { properties, required } = kind.table;
-  const columns = Object.entries(properties ?? {}).filter(([, node]) => node.type === "array").map(([key, node]) => ({ key, label: words(key), kind: describe(form.schema.resolve(node.items ?? {})).kind ?? null }));
+  const columns = Object.entries(properties ?? {})
+    .filter(([, node]) => node.type === "array")
+    .map(([key, node]) => ({
+      key,
+      label: words(key),
+      kind: describe(form.schema.resolve(node.items ?? {})).kind ?? null,
+    }));
   const [first, second] = columns;
-  const table = first && second ? points(form, path, [first, second], form.schema.property([...path, first.key])?.description ?? "", { steps: true }) : null;
-  const rest = Object.keys(properties ?? {}).filter((key) => key !== "source").filter((key) => !table || !columns.some((one) => one.key === key));
+  const table =
+    first && second
+      ? points(
+          form,
+          path,
+          [first, second],
+          form.schema.property([...path, first.key])?.description ?? "",
+          { steps: true },
+        )
+      : null;
+  const rest = Object.keys(properties ?? {})
+    .filter((key) => key !== "source")
+    .filter((key) => !table || !columns.some((one) => one.key === key));
   const chosen = field(form, path, "kind of load", [select], "", { tell: () => say() });
   /** Say below the kind what the service understood of the load. */
   function say() {
@@ -56,7 +87,10 @@ function one(form, load, place, all) {
     line.textContent = line.hidden ? "" : capital(inShownUnits(loads[place]));
   }
   say();
-  const fields = [table, rest.map((key) => byschema(form, [...path, key], { required: required?.includes(key) }))];
+  const fields = [
+    table,
+    rest.map((key) => byschema(form, [...path, key], { required: required?.includes(key) })),
+  ];
   return h(
     "fieldset",
     { class: "inner" },
@@ -72,5 +106,8 @@ function one(form, load, place, all) {
  */
 function kinds(form) {
   const tables = form.schema.property(["load"])?.items?.oneOf ?? [];
-  return tables.map(form.schema.resolve).map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table })).filter(({ key }) => key); // one from a file has none: its points are read into one of the others
+  return tables
+    .map(form.schema.resolve)
+    .map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table }))
+    .filter(({ key }) => key); // one from a file has none: its points are read into one of the others
 }

@@ -17,9 +17,19 @@ const ENDS = {
   "two slider positions": { slider_from: "300 mm", slider_to: "200 mm" },
   "slider position and travel": { slider_from: "300 mm", slider_travel: "-100 mm" },
 };
-const LABELS = { from: "from crank angle", to: "to crank angle", swing: "swing", slider_from: "from slider position", slider_to: "to slider position", slider_travel: "travel of the slider" };
+const LABELS = {
+  from: "from crank angle",
+  to: "to crank angle",
+  swing: "swing",
+  slider_from: "from slider position",
+  slider_to: "to slider position",
+  slider_travel: "travel of the slider",
+};
 /** @type {[Column, Column]} */
-const LAW = [{ key: "law_times", label: "share of the time", kind: null }, { key: "law_shares", label: "share of the way", kind: null }];
+const LAW = [
+  { key: "law_times", label: "share of the time", kind: null },
+  { key: "law_shares", label: "share of the way", kind: null },
+];
 const FIRST = { kind: "swing", from: "0 deg", to: "60 deg", driver: "slider" };
 
 /** Return whether the crank of a job swings. @param {Form.Whole} form */
@@ -43,15 +53,30 @@ function stated(form) {
 /** State the ends of the swing in another way; a start of the same kind stays. @param {Form.Whole} form @param {string} how */
 function state(form, how) {
   const before = { .../** @type {Record<string, unknown>} */ (form.at(PATH)) };
-  const kept = Object.fromEntries(Object.entries(before).filter(([key]) => !(key in LABELS) && (key !== "crank_side" || how.includes("slider"))));
+  const kept = Object.fromEntries(
+    Object.entries(before).filter(
+      ([key]) => !(key in LABELS) && (key !== "crank_side" || how.includes("slider")),
+    ),
+  );
   const wanted = ENDS[how] ?? {};
-  form.put(PATH, { ...kept, ...Object.fromEntries(Object.entries(wanted).map(([key, first]) => [key, before[key] ?? first])) });
+  form.put(PATH, {
+    ...kept,
+    ...Object.fromEntries(
+      Object.entries(wanted).map(([key, first]) => [key, before[key] ?? first]),
+    ),
+  });
   form.redraw();
 }
 
 /** Return the fields of the motion; turning: those that only a crank that turns through has. @param {Form.Whole} form @param {Dom.Child} turning */
 export function motion(form, turning) {
-  const kind = choice({ ...form, put: (_, value) => change(form, value) }, [...PATH, "kind"], { options: ["swing"], fallback: "turns through", label: "the crank", why: "It turns through, at a speed; or it swings forth and back between two angles, and need not be able to turn.", changed: () => form.redraw() });
+  const kind = choice({ ...form, put: (_, value) => change(form, value) }, [...PATH, "kind"], {
+    options: ["swing"],
+    fallback: "turns through",
+    label: "the crank",
+    why: "It turns through, at a speed; or it swings forth and back between two angles, and need not be able to turn.",
+    changed: () => form.redraw(),
+  });
   if (!swings(form)) return [kind, speed(form), turning];
   /** @param {string} key @param {string} label */
   const own = (key, label) => byschema(form, [...PATH, key], { label });
@@ -60,27 +85,61 @@ export function motion(form, turning) {
   const choosing = (key, label, gone) => {
     const made = own(key, label);
     made?.querySelector("select")?.addEventListener("change", ({ currentTarget }) => {
-      for (const other of gone(/** @type {HTMLSelectElement} */ (currentTarget).value)) form.put([...PATH, other], undefined);
+      for (const other of gone(/** @type {HTMLSelectElement} */ (currentTarget).value))
+        form.put([...PATH, other], undefined);
       form.redraw();
     });
     return made;
   };
   const how = stated(form);
   const [usual, ...others] = Object.keys(ENDS);
-  const ways = choice({ ...form, at: () => (how === usual ? undefined : how), put: (_, value) => state(form, String(value ?? usual)) }, [...PATH, "ends"], { options: others, fallback: usual, label: "stated by", why: "Two crank angles; one and how far the crank turns, so that the start may vary; or positions of the slider, so that the angle follows from the lengths." });
+  const ways = choice(
+    {
+      ...form,
+      at: () => (how === usual ? undefined : how),
+      put: (_, value) => state(form, String(value ?? usual)),
+    },
+    [...PATH, "ends"],
+    {
+      options: others,
+      fallback: usual,
+      label: "stated by",
+      why: "Two crank angles; one and how far the crank turns, so that the start may vary; or positions of the slider, so that the angle follows from the lengths.",
+    },
+  );
   return [
     kind,
     ways,
-    ...Object.keys(ENDS[how] ?? {}).map((key) => own(key, LABELS[/** @type {keyof typeof LABELS} */ (key)])),
+    ...Object.keys(ENDS[how] ?? {}).map((key) =>
+      own(key, LABELS[/** @type {keyof typeof LABELS} */ (key)]),
+    ),
     how.includes("slider") ? own("crank_side", "side of the crank pin") : null,
-    choosing("driver", "driven end", (driver) => (driver === "slider" ? [] : ["actuator_tolerance"])),
+    choosing("driver", "driven end", (driver) =>
+      driver === "slider" ? [] : ["actuator_tolerance"],
+    ),
     own("margin", "margin from dead points"),
-    choosing("law", "motion over time", (law) => [...(law === "" || law === "slow" ? ["duration"] : []), ...(law === "table" ? [] : ["law_times", "law_shares"])]),
+    choosing("law", "motion over time", (law) => [
+      ...(law === "" || law === "slow" ? ["duration"] : []),
+      ...(law === "table" ? [] : ["law_times", "law_shares"]),
+    ]),
     slow ? null : own("duration", "duration of one way"),
-    form.at([...PATH, "law"]) === "table" ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", { optional: true, title: "points of the motion, one a line", files: false }) : null,
-    form.at([...PATH, "driver"]) === "slider" ? own("actuator_tolerance", "tolerance of the actuator") : null,
+    form.at([...PATH, "law"]) === "table"
+      ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", {
+          optional: true,
+          title: "points of the motion, one a line",
+          files: false,
+        })
+      : null,
+    form.at([...PATH, "driver"]) === "slider"
+      ? own("actuator_tolerance", "tolerance of the actuator")
+      : null,
     turning,
-    h("details", { class: "more" }, h("summary", {}, "Crank speed, of no matter to a swing"), h("div", { class: "fields" }, speed(form))),
+    h(
+      "details",
+      { class: "more" },
+      h("summary", {}, "Crank speed, of no matter to a swing"),
+      h("div", { class: "fields" }, speed(form)),
+    ),
   ];
 }
 
@@ -99,8 +158,16 @@ function change(form, kind) {
     }
   }
   if (!isTable(form.at(["objectives"]))) {
-    const first = form.judging().find((one) => swings(form) && one.motion === "swing" && one.kind === "force") ?? form.judging().find((one) => fits(form, one) && one.offered.includes("objective"));
-    if (first) form.put(["objectives", first.name], first.better === "high" ? "maximise" : "minimise");
+    const first =
+      form
+        .judging()
+        .find((one) => swings(form) && one.motion === "swing" && one.kind === "force") ??
+      form.judging().find((one) => fits(form, one) && one.offered.includes("objective"));
+    if (first)
+      form.put(["objectives", first.name], first.better === "high" ? "maximise" : "minimise");
   }
-  if (gone.length) say(`Taken out, as they are of a crank that ${kind === undefined ? "swings" : "turns through"}: ${[...new Set(gone)].join(", ")}.`);
+  if (gone.length)
+    say(
+      `Taken out, as they are of a crank that ${kind === undefined ? "swings" : "turns through"}: ${[...new Set(gone)].join(", ")}.`,
+    );
 }

@@ -30,14 +30,23 @@ export function put(job, path, value) {
     inner = job[key] = typeof rest[0] === "number" ? [] : {};
   }
   put(/** @type {Record<string | number, unknown>} */ (inner), rest, value);
-  if (value === undefined && !Object.keys(/** @type {object} */ (inner)).length && !Array.isArray(job)) delete job[key];
+  if (
+    value === undefined &&
+    !Object.keys(/** @type {object} */ (inner)).length &&
+    !Array.isArray(job)
+  )
+    delete job[key];
 }
 
 const LONGEST = 60; // of a key that the service writes whole
 
 /** Return a path as the service writes it: "load #1.force"; keys that are formulas in quotes. @param {Form.Path} path @returns {string} */
 export function written(path) {
-  return path.map((key, place) => (typeof key === "number" ? ` #${key + 1}` : (place ? "." : "") + quoted(key))).join("");
+  return path
+    .map((key, place) =>
+      typeof key === "number" ? ` #${key + 1}` : (place ? "." : "") + quoted(key),
+    )
+    .join("");
 }
 
 /** @param {string} key */
@@ -51,12 +60,17 @@ function quoted(key) {
  * @param {Record<string, unknown>} table @param {string} before @param {string} after
  */
 export function renamed(table, before, after) {
-  return Object.fromEntries(Object.entries(table).map(([key, value]) => [key === before ? after : key, value]));
+  return Object.fromEntries(
+    Object.entries(table).map(([key, value]) => [key === before ? after : key, value]),
+  );
 }
 
 /** Return an id for the control of a path, the same each time that the form is drawn. @param {Form.Path} path @param {string | number} part */
 export function idOf(path, part = "") {
-  return `f-${[...path, part].filter((key) => key !== "").join("-").replace(/[^\w-]/g, "_")}`;
+  return `f-${[...path, part]
+    .filter((key) => key !== "")
+    .join("-")
+    .replace(/[^\w-]/g, "_")}`;
 }
 
 /** Whether a part of a job is a table, or a list. @type {(part: unknown) => part is Record<string | number, unknown>} */
@@ -69,6 +83,8 @@ export function isTable(part) {
  * @param {{ at: (path: Form.Path) => unknown }} form @param {string} name @returns {string | number | null}
  */
 export function valueOf(form, name) {
-  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find((one) => typeof one === "number" || (typeof one === "string" && one !== "" && !isRange(one)));
+  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find(
+    (one) => typeof one === "number" || (typeof one === "string" && one !== "" && !isRange(one)),
+  );
   return typeof found === "string" || typeof found === "number" ? found : null;
 }

@@ -10,7 +10,14 @@ import { convert, join, split, spread } from "../lib/units.js";
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
 
 /** @type {[Mode, string][]} */
-const MODES = [["range", "from – to"], ["fixed", "fixed at"], ["step", "in steps"], ["series", "in a series"], ["values", "only these"], ["choices", "one of"]];
+const MODES = [
+  ["range", "from – to"],
+  ["fixed", "fixed at"],
+  ["step", "in steps"],
+  ["series", "in a series"],
+  ["values", "only these"],
+  ["choices", "one of"],
+];
 const LISTS = ["values", "choices"];
 const STEPS = 20; // at least, of the step that is begun with
 
@@ -18,39 +25,76 @@ const STEPS = 20; // at least, of the step that is begun with
  * Return the field of the values that a number may take; why: {sentence, name}; fixed: whether it may have one value only.
  * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, drop?: string, removed?: () => void }} looks drop: what the button says that calls removed
  */
-export function range(form, path, { label, why, kind = "length", fixed = true, drop: text = "Remove", removed }) {
+export function range(
+  form,
+  path,
+  { label, why, kind = "length", fixed = true, drop: text = "Remove", removed },
+) {
   const given = spread(form.at(path), kind) ?? form.at(path);
   const mode = modeOf(given);
   const begun = endsOf(given, mode);
   const parts = begun.map((end) => split(end, kind));
   const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, kind).unit;
   const numbers = parts.map((one) => convert(one.number, one.unit, unit, kind));
-  const select = h("select", { id: idOf(path, "c"), class: "mode" }, MODES.filter(([value]) => fixed || value !== "fixed").map(([value, text]) => h("option", { value, selected: value === mode }, text)));
+  const select = h(
+    "select",
+    { id: idOf(path, "c"), class: "mode" },
+    MODES.filter(([value]) => fixed || value !== "fixed").map(([value, text]) =>
+      h("option", { value, selected: value === mode }, text),
+    ),
+  );
   const units = kind ? unitSelect(label, kind, unit, false, idOf(path, "u")) : null;
   const list = LISTS.includes(mode);
   const titles = mode === "fixed" ? ["fixed at"] : ["from", "to", "step"];
   const inputs = list
-    ? [h("input", { type: "text", id: idOf(path, "of"), value: numbers.join(", "), "aria-label": `${label}, values, separated by commas` })]
-    : numbers.map((value, place) => numberInput(idOf(path, place), value, `${label}, ${titles[place]}`));
-  const series = mode === "series" ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"])) : null;
+    ? [
+        h("input", {
+          type: "text",
+          id: idOf(path, "of"),
+          value: numbers.join(", "),
+          "aria-label": `${label}, values, separated by commas`,
+        }),
+      ]
+    : numbers.map((value, place) =>
+        numberInput(idOf(path, place), value, `${label}, ${titles[place]}`),
+      );
+  const series =
+    mode === "series"
+      ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"]))
+      : null;
   if (!list) inputs.forEach((input, place) => drawnFrom(input, begun[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
   /** What was typed in an input; only an end of the range can become a range. @param {HTMLInputElement} one @param {number} place */
   const read = (one, place) => entered(one, { kind, select: units, range: place < 2 });
-  const ends = () => (list ? undefined : inputs.map((one, place) => read(one, place).ends).find(Boolean));
+  const ends = () =>
+    list ? undefined : inputs.map((one, place) => read(one, place).ends).find(Boolean);
   /** @returns {unknown[]} */
-  const values = () => (list ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined))) : inputs.map((one, place) => (units ? read(one, place).value : plain(read(one, place).value))));
+  const values = () =>
+    list
+      ? typed().map((text) => (units ? join(text, units.value) : plain(text.trim() || undefined)))
+      : inputs.map((one, place) =>
+          units ? read(one, place).value : plain(read(one, place).value),
+        );
   /** @param {Mode} to */
   const write = (to = mode) => {
     const found = values();
     const both = ends();
     if (both) found.splice(0, 2, ...(units ? both : both.map(plain)));
     const some = found.filter((one) => one !== undefined);
-    const between = { min: found[0] ?? "", max: (list ? found.at(-1) : found[1] ?? found[0]) ?? "" };
-    if (to === "range" || (to === "fixed" && both)) form.put(path, some.length ? [between.min, between.max] : undefined);
+    const between = {
+      min: found[0] ?? "",
+      max: (list ? found.at(-1) : (found[1] ?? found[0])) ?? "",
+    };
+    if (to === "range" || (to === "fixed" && both))
+      form.put(path, some.length ? [between.min, between.max] : undefined);
     else if (to === "fixed") form.put(path, some[0]);
-    else if (to === "step") form.put(path, { ...between, step: mode === "step" ? found[2] ?? "" : firstStep(inputs, units?.value ?? "") });
-    else if (to === "series") form.put(path, { ...between, series: series?.value ?? seriesOf(form)[0] });
+    else if (to === "step")
+      form.put(path, {
+        ...between,
+        step: mode === "step" ? (found[2] ?? "") : firstStep(inputs, units?.value ?? ""),
+      });
+    else if (to === "series")
+      form.put(path, { ...between, series: series?.value ?? seriesOf(form)[0] });
     else form.put(path, { [to]: mode === "step" ? some.slice(0, 2) : some });
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
@@ -63,7 +107,10 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
   series?.addEventListener("change", () => write());
   units?.addEventListener("change", () => {
     const from = units.dataset.from ?? units.value;
-    if (list) inputs[0].value = typed().map((text) => convert(text.trim(), from, units.value, kind)).join(", ");
+    if (list)
+      inputs[0].value = typed()
+        .map((text) => convert(text.trim(), from, units.value, kind))
+        .join(", ");
     changeUnit(units, list ? [] : inputs, kind);
     write();
   });
@@ -74,8 +121,17 @@ export function range(form, path, { label, why, kind = "length", fixed = true, d
   const [first, second, third] = inputs;
   /** @param {string} text */
   const word = (text) => h("span", { class: "to" }, text);
-  const controls = [select, first, ...(second ? [word("to"), second] : []), ...(third ? [word("by"), third] : []), series, units].filter((one) => one instanceof HTMLElement);
-  const drop = removed && h("button", { type: "button", "aria-label": `${text} ${label}`, onclick: removed }, text);
+  const controls = [
+    select,
+    first,
+    ...(second ? [word("to"), second] : []),
+    ...(third ? [word("by"), third] : []),
+    series,
+    units,
+  ].filter((one) => one instanceof HTMLElement);
+  const drop =
+    removed &&
+    h("button", { type: "button", "aria-label": `${text} ${label}`, onclick: removed }, text);
   const made = field(form, path, label, drop ? [...controls, drop] : controls, why);
   made.classList.add("range");
   made.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
@@ -93,7 +149,8 @@ function modeOf(given) {
 function endsOf(given, mode) {
   if (mode === "range") return [at(given, [0]), at(given, [1])];
   if (mode === "fixed") return [given];
-  if (mode === "step" || mode === "series") return ["min", "max", ...(mode === "step" ? ["step"] : [])].map((key) => at(given, [key]));
+  if (mode === "step" || mode === "series")
+    return ["min", "max", ...(mode === "step" ? ["step"] : [])].map((key) => at(given, [key]));
   return [at(given, [mode]) ?? []].flat();
 }
 
@@ -105,14 +162,22 @@ function seriesOf(form) {
 /** @param {Form.Whole} form @param {string} label @param {string} id @param {unknown} given */
 function seriesSelect(form, label, id, given) {
   const known = seriesOf(form);
-  const names = given === undefined || known.includes(String(given)) ? known : [...known, String(given)];
-  return h("select", { id, "aria-label": `${label}, series of preferred numbers` }, names.map((one) => h("option", { value: one, selected: one === given }, one)));
+  const names =
+    given === undefined || known.includes(String(given)) ? known : [...known, String(given)];
+  return h(
+    "select",
+    { id, "aria-label": `${label}, series of preferred numbers` },
+    names.map((one) => h("option", { value: one, selected: one === given }, one)),
+  );
 }
 
 /** Return the step to begin with, a power of ten that divides the range well. @param {HTMLInputElement[]} inputs @param {string} unit */
 function firstStep(inputs, unit) {
   const span = Math.abs(Number(inputs[1]?.value) - Number(inputs[0].value));
-  const step = span > 0 && Number.isFinite(span) ? Number((10 ** Math.floor(Math.log10(span / STEPS))).toPrecision(1)) : 1;
+  const step =
+    span > 0 && Number.isFinite(span)
+      ? Number((10 ** Math.floor(Math.log10(span / STEPS))).toPrecision(1))
+      : 1;
   return unit ? `${step} ${unit}` : step;
 }
 

@@ -5,7 +5,8 @@ import { kindOf } from "../lib/units.js";
 /** Return a reader of a JSON Schema: property(path) and resolve(node). @param {Form.Schema} schema */
 export function reader(schema) {
   /** @param {Form.Schema} node @returns {Form.Schema} */
-  const resolve = ({ $ref, ...node }) => ($ref ? { ...schema.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)], ...node } : node);
+  const resolve = ({ $ref, ...node }) =>
+    $ref ? { ...schema.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)], ...node } : node;
 
   /**
    * Return what belongs at a path of the job; for a choice between tables, the one that has the next key.
@@ -15,7 +16,10 @@ export function reader(schema) {
     let node = resolve(schema);
     for (const key of path) {
       const tables = (node.oneOf ?? node.anyOf ?? [node]).map(resolve);
-      const inner = typeof key === "number" ? node.items : tables.map((table) => table.properties?.[key]).find(Boolean);
+      const inner =
+        typeof key === "number"
+          ? node.items
+          : tables.map((table) => table.properties?.[key]).find(Boolean);
       if (!inner) return null;
       node = resolve(inner);
     }
@@ -40,9 +44,17 @@ export function describe(node) {
   if (node.type === "string") return { ...common, control: "text" };
   if (node.type === "array") return { ...common, control: "list" };
   const texts = (node.anyOf ?? []).filter((one) => one.type === "string");
-  if (texts.length && (node.anyOf ?? []).every((one) => one.type === "string" || one.type === "number")) {
+  if (
+    texts.length &&
+    (node.anyOf ?? []).every((one) => one.type === "string" || one.type === "number")
+  ) {
     const unit = String(common.example ?? "").replace(/^[^a-zA-Zµ%]*/, "");
-    return { ...common, control: "quantity", kind: kindOf(unit), percent: texts.some((one) => one.pattern?.includes("%")) };
+    return {
+      ...common,
+      control: "quantity",
+      kind: kindOf(unit),
+      percent: texts.some((one) => one.pattern?.includes("%")),
+    };
   }
   return { ...common, control: "other" };
 }

@@ -19,27 +19,140 @@ import { targetMotion, wantedGiven } from "./target_motion.js";
 import { varying, varyingNames } from "./varying.js";
 
 const LINE = 90; // characters of what a group has
-const SHOWN = new Set(["name", "description", "mechanism", "load", "friction", "tolerances", "variables", "constraints", "objectives", "optimiser", "robust", "clearance", "quantity", "sections", "motion", "choice", "target_motion", "drive", "costs"]);
+const SHOWN = new Set([
+  "name",
+  "description",
+  "mechanism",
+  "load",
+  "friction",
+  "tolerances",
+  "variables",
+  "constraints",
+  "objectives",
+  "optimiser",
+  "robust",
+  "clearance",
+  "quantity",
+  "sections",
+  "motion",
+  "choice",
+  "target_motion",
+  "drive",
+  "costs",
+]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
 export function sections(form) {
   form.fields.length = 0;
   return [
-    section("Machine", fields(byschema(form, ["name"], { label: "name" }), byschema(form, ["description"], { label: "description", wide: true, long: true }))),
-    section("Motion", fields(motion(form, [requirements(form, offered(form, "motion")), swings(form) && form.at(["constraints", "slow_stroke"]) === undefined ? null : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" })])), more([swings(form) ? "Crossed branch" : "Acceleration of the crank, uneven speed, crossed branch", has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch")], turning(form, "mechanism.acceleration", () => byschema(form, ["mechanism", "acceleration"])), turning(form, "mechanism.speed_profile", () => speedProfile(form)), byschema(form, ["mechanism", "branch"])), turning(form, "target_motion", () => more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)))),
+    section(
+      "Machine",
+      fields(
+        byschema(form, ["name"], { label: "name" }),
+        byschema(form, ["description"], { label: "description", wide: true, long: true }),
+      ),
+    ),
+    section(
+      "Motion",
+      fields(
+        motion(form, [
+          requirements(form, offered(form, "motion")),
+          swings(form) && form.at(["constraints", "slow_stroke"]) === undefined
+            ? null
+            : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" }),
+        ]),
+      ),
+      more(
+        [
+          swings(form)
+            ? "Crossed branch"
+            : "Acceleration of the crank, uneven speed, crossed branch",
+          has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch"),
+        ],
+        turning(form, "mechanism.acceleration", () =>
+          byschema(form, ["mechanism", "acceleration"]),
+        ),
+        turning(form, "mechanism.speed_profile", () => speedProfile(form)),
+        byschema(form, ["mechanism", "branch"]),
+      ),
+      turning(form, "target_motion", () =>
+        more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)),
+      ),
+    ),
     section(
       "Dimensions",
-      h("div", { class: "fields ranges" }, ["crank", "rod", "offset"].map((name) => range(form, ["variables", name], { label: name, why: form.why(name) }))),
+      h(
+        "div",
+        { class: "fields ranges" },
+        ["crank", "rod", "offset"].map((name) =>
+          range(form, ["variables", name], { label: name, why: form.why(name) }),
+        ),
+      ),
       more(["Further numbers that vary", varyingNames(form).join(", ")], varying(form)),
       more(["Catalogues to choose from", choicesGiven(form)], choices(form)),
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
     ),
-    section("Masses and loads", fields(masses(form)), more(["Material and pins", strengthGiven(form)], strength(form)), loads(form), more(["Counterweight", has(form, "mechanism.counterweight")], byschema(form, ["mechanism", "counterweight"])), turning(form, "mechanism.cylinders", () => more(["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")], byschema(form, ["mechanism", "cylinders"]))), more(["Friction", has(form, "friction")], byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }), pins(form)), turning(form, "drive", () => more(["Motor and flywheel, for the start and the running", has(form, "drive")], byschema(form, ["drive"], { label: "drive" })))),
-    section("Requirements", fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))), adding(form), formulaRequirements(form), more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form))),
-    section("Objectives", h("p", { class: "quiet" }, "The search finds the best compromises between all that are ticked."), wishes(form), formulaObjectives(form)),
-    section("Tolerances", h("p", { class: "quiet" }, "The position error comes from these."), tolerances(form)),
-    section("Search", solving(form), turning(form, "robust", () => more(["Robust designs", has(form, "robust")], robust(form))), turning(form, "clearance", () => more(["Loose joint, for the simulation of its impacts", has(form, "clearance")], byschema(form, ["clearance"], { label: "clearance" })))),
+    section(
+      "Masses and loads",
+      fields(masses(form)),
+      more(["Material and pins", strengthGiven(form)], strength(form)),
+      loads(form),
+      more(
+        ["Counterweight", has(form, "mechanism.counterweight")],
+        byschema(form, ["mechanism", "counterweight"]),
+      ),
+      turning(form, "mechanism.cylinders", () =>
+        more(
+          ["Several cylinders on one crankshaft", has(form, "mechanism.cylinders")],
+          byschema(form, ["mechanism", "cylinders"]),
+        ),
+      ),
+      more(
+        ["Friction", has(form, "friction")],
+        byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }),
+        pins(form),
+      ),
+      turning(form, "drive", () =>
+        more(
+          ["Motor and flywheel, for the start and the running", has(form, "drive")],
+          byschema(form, ["drive"], { label: "drive" }),
+        ),
+      ),
+    ),
+    section(
+      "Requirements",
+      fields(requirements(form, offered(form, "requirement")), requirements(form, others(form))),
+      adding(form),
+      formulaRequirements(form),
+      more(["Formulas with names", namesGiven(form).join(", ")], namedFormulas(form)),
+    ),
+    section(
+      "Objectives",
+      h(
+        "p",
+        { class: "quiet" },
+        "The search finds the best compromises between all that are ticked.",
+      ),
+      wishes(form),
+      formulaObjectives(form),
+    ),
+    section(
+      "Tolerances",
+      h("p", { class: "quiet" }, "The position error comes from these."),
+      tolerances(form),
+    ),
+    section(
+      "Search",
+      solving(form),
+      turning(form, "robust", () => more(["Robust designs", has(form, "robust")], robust(form))),
+      turning(form, "clearance", () =>
+        more(
+          ["Loose joint, for the simulation of its impacts", has(form, "clearance")],
+          byschema(form, ["clearance"], { label: "clearance" }),
+        ),
+      ),
+    ),
     kept(form),
   ].filter(Boolean);
 }
@@ -58,7 +171,12 @@ function fields(...content) {
 /** @param {string | [string, string]} title of the part, and what it has, in a line @param {...Dom.Child} content */
 function more(title, ...content) {
   const [name, has] = [title].flat();
-  return h("details", { class: "more" }, h("summary", {}, name, has ? h("span", { class: "has" }, has) : null), h("div", { class: "fields" }, content));
+  return h(
+    "details",
+    { class: "more" },
+    h("summary", {}, name, has ? h("span", { class: "has" }, has) : null),
+    h("div", { class: "fields" }, content),
+  );
 }
 
 /**
@@ -75,9 +193,13 @@ function has(form, ...places) {
   const said = (part, key) => {
     if (part === undefined) return [];
     if (Array.isArray(part)) return [`${key} ${part.join(", ")}`];
-    return isTable(part) ? Object.entries(part).flatMap(([inner, value]) => said(value, words(inner))) : [`${key} ${part}`];
+    return isTable(part)
+      ? Object.entries(part).flatMap(([inner, value]) => said(value, words(inner)))
+      : [`${key} ${part}`];
   };
-  const text = places.flatMap((place) => said(form.at(place.split(".")), words(place.split(".").at(-1) ?? ""))).join("; ");
+  const text = places
+    .flatMap((place) => said(form.at(place.split(".")), words(place.split(".").at(-1) ?? "")))
+    .join("; ");
   return text.length > LINE ? `${text.slice(0, LINE)} …` : text;
 }
 
@@ -87,7 +209,13 @@ function has(form, ...places) {
  * @param {string} part
  */
 function offered(form, part) {
-  return [...form.quantities.values()].filter((one) => one.offered.includes(part) && (fits(form, one) || form.at(["constraints", one.name]) !== undefined)).map(({ name }) => name);
+  return [...form.quantities.values()]
+    .filter(
+      (one) =>
+        one.offered.includes(part) &&
+        (fits(form, one) || form.at(["constraints", one.name]) !== undefined),
+    )
+    .map(({ name }) => name);
 }
 
 /** @param {Form.Whole} form */
@@ -106,14 +234,21 @@ function requirements(form, names) {
 /** Return the quantities besides the usual ones that the job has requirements on. @param {Form.Whole} form */
 function others(form) {
   const usual = new Set(asked(form));
-  return Object.keys(form.at(["constraints"]) ?? {}).filter((name) => !usual.has(name) && form.quantities.has(name));
+  return Object.keys(form.at(["constraints"]) ?? {}).filter(
+    (name) => !usual.has(name) && form.quantities.has(name),
+  );
 }
 
 /** @param {Form.Whole} form */
 function adding(form) {
   const taken = new Set([...asked(form), ...Object.keys(form.at(["constraints"]) ?? {})]);
   const left = form.judging().filter((one) => !taken.has(one.name) && fits(form, one));
-  const select = h("select", { id: "add-requirement" }, h("option", { value: "" }, "choose a quantity …"), left.map(({ name, title }) => h("option", { value: name }, title)));
+  const select = h(
+    "select",
+    { id: "add-requirement" },
+    h("option", { value: "" }, "choose a quantity …"),
+    left.map(({ name, title }) => h("option", { value: name }, title)),
+  );
   select.addEventListener("change", () => {
     if (!select.value) return;
     const name = select.value;
@@ -121,12 +256,21 @@ function adding(form) {
     form.put(["constraints", name], { [side]: "" });
     form.redraw(`f-constraints-${name}-${side}`);
   });
-  return h("p", { class: "row" }, h("label", { for: "add-requirement" }, "Another requirement"), select);
+  return h(
+    "p",
+    { class: "row" },
+    h("label", { for: "add-requirement" }, "Another requirement"),
+    select,
+  );
 }
 
 /** @param {Form.Whole} form */
 function masses(form) {
-  const slider = { kind: "mass", label: "slider mass", why: form.schema.property(["mechanism", "slider", "mass"])?.description };
+  const slider = {
+    kind: "mass",
+    label: "slider mass",
+    why: form.schema.property(["mechanism", "slider", "mass"])?.description,
+  };
   return [
     link(form, ["mechanism", "crank"], "crank"),
     link(form, ["mechanism", "rod"], "rod"),
@@ -138,7 +282,9 @@ function masses(form) {
 
 /** @param {Form.Whole} form */
 function pins(form) {
-  return ["crank_pivot", "crank_pin", "slider_pin"].map((name) => byschema(form, ["friction", name]));
+  return ["crank_pivot", "crank_pin", "slider_pin"].map((name) =>
+    byschema(form, ["friction", name]),
+  );
 }
 
 /** @param {Form.Whole} form */
@@ -147,19 +293,46 @@ function wishes(form) {
   const main = new Set([...offered(form, "objective"), ...given]);
   const all = form.judging().filter((one) => fits(form, one) || given.includes(one.name));
   return [
-    h("div", { class: "fields" }, all.filter(({ name }) => main.has(name)).map((one) => objective(form, one))),
-    h("details", { class: "more" }, h("summary", {}, "More quantities"), h("div", { class: "fields" }, all.filter(({ name }) => !main.has(name)).map((one) => objective(form, one)))),
+    h(
+      "div",
+      { class: "fields" },
+      all.filter(({ name }) => main.has(name)).map((one) => objective(form, one)),
+    ),
+    h(
+      "details",
+      { class: "more" },
+      h("summary", {}, "More quantities"),
+      h(
+        "div",
+        { class: "fields" },
+        all.filter(({ name }) => !main.has(name)).map((one) => objective(form, one)),
+      ),
+    ),
   ];
 }
 
 /** @param {Form.Whole} form */
 function tolerances(form) {
   /** @param {string} key */
-  const dimension = (key) => byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
+  const dimension = (key) =>
+    byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
-    more(["Clearances, and where the position matters", has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke")], byschema(form, ["tolerances", "clearances"]), byschema(form, ["tolerances", "during"]), byschema(form, ["tolerances", "part_of_stroke"])),
-    turning(form, "costs", () => more(["Costs of tolerances, for those of least cost", has(form, "costs")], byschema(form, ["costs"], { label: "costs" }))),
+    more(
+      [
+        "Clearances, and where the position matters",
+        has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke"),
+      ],
+      byschema(form, ["tolerances", "clearances"]),
+      byschema(form, ["tolerances", "during"]),
+      byschema(form, ["tolerances", "part_of_stroke"]),
+    ),
+    turning(form, "costs", () =>
+      more(
+        ["Costs of tolerances, for those of least cost", has(form, "costs")],
+        byschema(form, ["costs"], { label: "costs" }),
+      ),
+    ),
   ];
 }
 
@@ -167,9 +340,20 @@ function tolerances(form) {
 function robust(form) {
   const on = form.at(["robust"]) !== undefined;
   const select = choice(
-    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => form.put(["robust"], value ? { kind: "percentile" } : undefined), register: () => {} },
+    {
+      ...form,
+      at: () => (on ? "yes" : undefined),
+      put: (_, value) => form.put(["robust"], value ? { kind: "percentile" } : undefined),
+      register: () => {},
+    },
     ["robust", "on"],
-    { options: ["yes"], label: "within the tolerances", fallback: "no", why: "Objectives and requirements as they are within the tolerances, instead of at the nominal dimensions.", changed: () => form.redraw() },
+    {
+      options: ["yes"],
+      label: "within the tolerances",
+      fallback: "no",
+      why: "Objectives and requirements as they are within the tolerances, instead of at the nominal dimensions.",
+      changed: () => form.redraw(),
+    },
   );
   return [select, on ? byschema(form, ["robust"], { label: "robust" }) : null];
 }
@@ -177,8 +361,17 @@ function robust(form) {
 /** Return which parts of the job have no fields. @param {Form.Whole} form */
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
-  const functions = Object.entries(form.at(["quantity"]) ?? {}).filter(([, part]) => !(isTable(part) && "formula" in part)).map(([name]) => `the function ${name}`);
+  const functions = Object.entries(form.at(["quantity"]) ?? {})
+    .filter(([, part]) => !(isTable(part) && "formula" in part))
+    .map(([name]) => `the function ${name}`);
   const names = [...parts, ...functions];
   if (!names.length) return null;
-  return section("Other parts of the job", h("p", {}, `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`));
+  return section(
+    "Other parts of the job",
+    h(
+      "p",
+      {},
+      `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`,
+    ),
+  );
 }

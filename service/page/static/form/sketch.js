@@ -61,9 +61,15 @@ export function sketch(signal) {
         return;
       }
       way = example.clockwise ? -1 : 1;
-      caption.textContent = example.feasible ? "One that meets all that was checked" : "One that turns, but does not meet every requirement";
+      caption.textContent = example.feasible
+        ? "One that meets all that was checked"
+        : "One that turns, but does not meet every requirement";
       const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm } = example;
-      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, { direction: way, slider_ends_mm, angle });
+      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
+        direction: way,
+        slider_ends_mm,
+        angle,
+      });
       drawn.fade(!example.feasible);
       drawn.turn(angle);
       if (moving) start();
@@ -81,7 +87,12 @@ export function sketch(signal) {
       node.classList.add("swinging");
       const { crank_mm, rod_mm, offset_mm, motion, feasible, travel_mm, slider_ends_mm } = example;
       caption.textContent = `${feasible ? "One that meets all that was checked" : "One that makes the swing, but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`;
-      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, { direction: 0, dead_centres_deg: [from_deg, to_deg], slider_ends_mm, angle });
+      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
+        direction: 0,
+        dead_centres_deg: [from_deg, to_deg],
+        slider_ends_mm,
+        angle,
+      });
       drawn.fade(!feasible);
       drawn.turn(angle);
       if (moving) start();

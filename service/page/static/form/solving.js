@@ -11,7 +11,10 @@ export function solving(form) {
   const own = (key, label, why, factor = 1) => {
     const path = ["submission", key];
     const given = form.submission[key];
-    const input = numberInput(idOf(path, "c"), given === undefined ? "" : String(typeof given === "number" ? given / factor : given));
+    const input = numberInput(
+      idOf(path, "c"),
+      given === undefined ? "" : String(typeof given === "number" ? given / factor : given),
+    );
     input.addEventListener("input", () => {
       const typed = number(input);
       form.submit(key, typeof typed === "number" ? typed * factor : typed);
@@ -19,7 +22,11 @@ export function solving(form) {
     return field(form, path, label, [input], why);
   };
   return [
-    h("div", { class: "fields" }, ["designs", "seed", "method"].map((key) => byschema(form, ["optimiser", key]))),
+    h(
+      "div",
+      { class: "fields" },
+      ["designs", "seed", "method"].map((key) => byschema(form, ["optimiser", key])),
+    ),
     h(
       "details",
       { class: "more" },
@@ -30,8 +37,16 @@ export function solving(form) {
         byschema(form, ["optimiser", "samples"]),
         byschema(form, ["optimiser", "evaluations"]),
         own("priority", "priority", "Jobs of higher priority are solved first; 0 is usual."),
-        own("seconds", "time limit (s)", "The search ends after so many seconds with what it has found; left out, as long as the service allows."),
-        own("evaluations", "limit of designs", "The search ends after it has looked at so many designs."),
+        own(
+          "seconds",
+          "time limit (s)",
+          "The search ends after so many seconds with what it has found; left out, as long as the service allows.",
+        ),
+        own(
+          "evaluations",
+          "limit of designs",
+          "The search ends after it has looked at so many designs.",
+        ),
         own("memory_bytes", "memory limit (MB)", "What the worker of this job may use.", 1e6),
       ),
     ),

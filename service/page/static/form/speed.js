@@ -1,7 +1,14 @@
 /** Crank speed and direction: a speed, whose sign is the direction, or a time and a direction. */
 
 import { h } from "../lib/dom.js";
-import { byschema, changeUnit, choice, number as counted, numberInput, unitSelect } from "./controls.js";
+import {
+  byschema,
+  changeUnit,
+  choice,
+  number as counted,
+  numberInput,
+  unitSelect,
+} from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { points } from "./points.js";
@@ -11,28 +18,54 @@ import { split } from "../lib/units.js";
 const TABLE = ["mechanism"];
 const DIRECTION = [...TABLE, "direction"];
 /** Keys that state the speed, by label. @type {Record<string, string>} */
-const SPEED_KEYS = { "crank speed": "speed", "cycle time": "cycle_time", "strokes per minute": "strokes_per_minute" };
+const SPEED_KEYS = {
+  "crank speed": "speed",
+  "cycle time": "cycle_time",
+  "strokes per minute": "strokes_per_minute",
+};
 /** @type {Record<string, string | null>} */
 const KINDS = { speed: "angular speed", cycle_time: "time", strokes_per_minute: null };
 /** @type {Record<string, string>} */
 const WHY = {
   speed: "The speed of the crank; with a speed profile, its mean over the crank angle.",
-  cycle_time: "The time of one turn, or of two turns if a load has a cycle of 720 deg. A speed profile is scaled to it.",
+  cycle_time:
+    "The time of one turn, or of two turns if a load has a cycle of 720 deg. A speed profile is scaled to it.",
   strokes_per_minute: "The number of crank turns per minute. A speed profile is scaled to it.",
 };
 
 /** Return the fields of a speed that goes up and down over the turn: harmonics, or points. @param {Form.Whole} form */
 export function speedProfile(form) {
   const path = ["mechanism", "speed_profile"];
-  const table = points(form, path, [{ key: "crank_angles", label: "crank angle", kind: "angle" }, { key: "speeds", label: "crank speed", kind: "angular speed" }],
-    "Measured speeds, with the sign of the speed, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, they are scaled to it", { optional: true, title: "speeds over the turn, one a line" });
+  const table = points(
+    form,
+    path,
+    [
+      { key: "crank_angles", label: "crank angle", kind: "angle" },
+      { key: "speeds", label: "crank speed", kind: "angular speed" },
+    ],
+    "Measured speeds, with the sign of the speed, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, they are scaled to it",
+    { optional: true, title: "speeds over the turn, one a line" },
+  );
   const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service opens no files
-  return h("fieldset", { class: "inner" }, h("legend", {}, "speed profile"), h("div", { class: "fields" }, byschema(form, [...path, "cosines"]), byschema(form, [...path, "sines"]), table, file));
+  return h(
+    "fieldset",
+    { class: "inner" },
+    h("legend", {}, "speed profile"),
+    h(
+      "div",
+      { class: "fields" },
+      byschema(form, [...path, "cosines"]),
+      byschema(form, [...path, "sines"]),
+      table,
+      file,
+    ),
+  );
 }
 
 /** Return the fields for speed and direction; a cycle time or strokes per minute may replace the speed. @param {Form.Whole} form */
 export function speed(form) {
-  const key = Object.values(SPEED_KEYS).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
+  const key =
+    Object.values(SPEED_KEYS).find((one) => form.at([...TABLE, one]) !== undefined) ?? "speed";
   const [usual, ...others] = Object.keys(SPEED_KEYS);
   const label = Object.keys(SPEED_KEYS).find((one) => SPEED_KEYS[one] === key) ?? usual;
   const path = [...TABLE, key];
@@ -45,7 +78,12 @@ export function speed(form) {
   const way = h(
     "select",
     { id: idOf([...TABLE, "speed"], "way") },
-    [["", "counter-clockwise"], ["-", "clockwise"]].map(([sign, text]) => h("option", { value: sign, selected: (sign === "-") === backwards }, text)),
+    [
+      ["", "counter-clockwise"],
+      ["-", "clockwise"],
+    ].map(([sign, text]) =>
+      h("option", { value: sign, selected: (sign === "-") === backwards }, text),
+    ),
   );
   const write = () => {
     const typed = input.value.trim();
@@ -65,14 +103,31 @@ export function speed(form) {
     write();
   });
   const stated = choice(
-    { ...form, at: () => (key === "speed" ? undefined : label), put: (_, chosen) => stateSpeedAs(form, SPEED_KEYS[String(chosen ?? usual)], way.value) },
+    {
+      ...form,
+      at: () => (key === "speed" ? undefined : label),
+      put: (_, chosen) => stateSpeedAs(form, SPEED_KEYS[String(chosen ?? usual)], way.value),
+    },
     [...TABLE, "stated"],
-    { options: others, fallback: usual, label: "speed given by", why: "The mean speed of the crank over the crank angle, the cycle time, or the number of crank turns per minute. A speed profile is scaled to either of the last two.", changed: (chosen) => form.redraw(idOf([...TABLE, SPEED_KEYS[chosen || usual]], "c")) },
+    {
+      options: others,
+      fallback: usual,
+      label: "speed given by",
+      why: "The mean speed of the crank over the crank angle, the cycle time, or the number of crank turns per minute. A speed profile is scaled to either of the last two.",
+      changed: (chosen) => form.redraw(idOf([...TABLE, SPEED_KEYS[chosen || usual]], "c")),
+    },
   );
   return [
     stated,
     field(form, path, label, units ? [input, units] : [input], WHY[key]),
-    field(form, [...TABLE, "speed", "direction"], "direction", [way], "At constant speed, direction and sign of the offset decide which stroke is slow: with counter-clockwise rotation and a positive offset it is the inward stroke.", { register: false }),
+    field(
+      form,
+      [...TABLE, "speed", "direction"],
+      "direction",
+      [way],
+      "At constant speed, direction and sign of the offset decide which stroke is slow: with counter-clockwise rotation and a positive offset it is the inward stroke.",
+      { register: false },
+    ),
   ];
 }
 

@@ -15,14 +15,24 @@ export function firstJob(system) {
       gravity: "9.81 m/s^2",
     },
     load: [{ force: inch ? "50 lbf" : "200 N", opposes: "outward stroke" }],
-    tolerances: { crank: length(0.05, 0.002), rod: length(0.05, 0.002), offset: length(0.05, 0.002), crank_angle: "0.1 deg" },
+    tolerances: {
+      crank: length(0.05, 0.002),
+      rod: length(0.05, 0.002),
+      offset: length(0.05, 0.002),
+      crank_angle: "0.1 deg",
+    },
     variables: {
       crank: [length(20, 1), length(100, 4)],
       rod: [length(60, 2.5), length(400, 16)],
       offset: [length(0, 0), length(100, 4)],
     },
     constraints: { stroke: { equals: length(100, 4) }, transmission_angle: { min: "40 deg" } },
-    objectives: { time_ratio: "maximise", peak_torque: "minimise", transmission_angle: "maximise", position_error: "minimise" },
+    objectives: {
+      time_ratio: "maximise",
+      peak_torque: "minimise",
+      transmission_angle: "maximise",
+      position_error: "minimise",
+    },
     optimiser: { designs: 100, seed: 1 },
   };
 }

@@ -17,21 +17,91 @@ export function strength(form) {
   const table = form.schema.property(PATH);
   const on = form.at(PATH) !== undefined;
   const select = choice(
-    { ...form, at: () => (on ? "yes" : undefined), put: (_, value) => given(form, value ? { material: form.schema.property([...PATH, "material"])?.examples?.[0], pins: {} } : undefined), register: () => {} },
+    {
+      ...form,
+      at: () => (on ? "yes" : undefined),
+      put: (_, value) =>
+        given(
+          form,
+          value
+            ? { material: form.schema.property([...PATH, "material"])?.examples?.[0], pins: {} }
+            : undefined,
+        ),
+      register: () => {},
+    },
     ["sections", "on"],
-    { options: ["yes"], label: "with material and pins", fallback: "no", why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for.", changed: () => form.redraw() },
+    {
+      options: ["yes"],
+      label: "with material and pins",
+      fallback: "no",
+      why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for.",
+      changed: () => form.redraw(),
+    },
   );
   if (!on) return [select];
-  const missing = ["crank", "rod"].filter((link) => !isTable(form.at(["mechanism", link])) || at(form.job, ["mechanism", link, "width"]) === undefined);
-  const rest = Object.keys(table?.properties ?? {}).filter((key) => !["material", "pins", ...RANGES].includes(key));
+  const missing = ["crank", "rod"].filter(
+    (link) =>
+      !isTable(form.at(["mechanism", link])) ||
+      at(form.job, ["mechanism", link, "width"]) === undefined,
+  );
+  const rest = Object.keys(table?.properties ?? {}).filter(
+    (key) => !["material", "pins", ...RANGES].includes(key),
+  );
   return [
     select,
-    missing.length ? h("p", { class: "quiet wide" }, `For stresses and safety, give the ${missing.join(" and the ")} a rectangular section (width and depth) in the fields above.`) : null,
-    h("p", { class: "quiet wide" }, "The material begins as a common steel; give the values of yours. Pins have no size until you give one."),
-    missing.length ? null : h("p", { class: "row wide" }, h("button", { type: "button", onclick: () => propose(form) }, "Make pins half as thick as their bars are wide"), h("span", { class: "quiet" }, "a usual start; of two bars the narrower counts")),
+    missing.length
+      ? h(
+          "p",
+          { class: "quiet wide" },
+          `For stresses and safety, give the ${missing.join(" and the ")} a rectangular section (width and depth) in the fields above.`,
+        )
+      : null,
+    h(
+      "p",
+      { class: "quiet wide" },
+      "The material begins as a common steel; give the values of yours. Pins have no size until you give one.",
+    ),
+    missing.length
+      ? null
+      : h(
+          "p",
+          { class: "row wide" },
+          h(
+            "button",
+            { type: "button", onclick: () => propose(form) },
+            "Make pins half as thick as their bars are wide",
+          ),
+          h("span", { class: "quiet" }, "a usual start; of two bars the narrower counts"),
+        ),
     byschema(form, [...PATH, "material"]),
-    h("fieldset", { class: "inner" }, h("legend", {}, "pins"), h("div", { class: "fields" }, keysOf(form, [...PATH, "pins"]).map((key) => held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`)))),
-    h("details", { class: "more" }, h("summary", {}, "Safety, and sizes that can be made"), h("div", { class: "fields" }, rest.map((key) => byschema(form, [...PATH, key])), RANGES.map((key) => range(form, [...PATH, key], { label: `${key} that can be made`, why: form.schema.property([...PATH, key])?.description ?? "" })))),
+    h(
+      "fieldset",
+      { class: "inner" },
+      h("legend", {}, "pins"),
+      h(
+        "div",
+        { class: "fields" },
+        keysOf(form, [...PATH, "pins"]).map((key) =>
+          held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`),
+        ),
+      ),
+    ),
+    h(
+      "details",
+      { class: "more" },
+      h("summary", {}, "Safety, and sizes that can be made"),
+      h(
+        "div",
+        { class: "fields" },
+        rest.map((key) => byschema(form, [...PATH, key])),
+        RANGES.map((key) =>
+          range(form, [...PATH, key], {
+            label: `${key} that can be made`,
+            why: form.schema.property([...PATH, key])?.description ?? "",
+          }),
+        ),
+      ),
+    ),
   ];
 }
 
@@ -47,7 +117,8 @@ function propose(form) {
     const widths = links.map((link) => split(form.at(["mechanism", link, "width"]), "length"));
     const [narrowest] = widths.sort((one, other) => inMetres(one) - inMetres(other));
     const half = 0.5 * Number(narrowest.number);
-    if (half > 0) form.put([...PATH, "pins", pin], join(String(Number(half.toPrecision(6))), narrowest.unit));
+    if (half > 0)
+      form.put([...PATH, "pins", pin], join(String(Number(half.toPrecision(6))), narrowest.unit));
   }
   form.redraw();
 }
@@ -61,7 +132,11 @@ function inMetres({ number, unit }) {
 export function strengthGiven(form) {
   const pins = Object.values(form.at([...PATH, "pins"]) ?? {}).map(String);
   const yields = form.at([...PATH, "material", "yield_strength"]);
-  return form.at(PATH) === undefined ? "" : [yields && `yield strength ${yields}`, pins.length && `pins ${pins.join(", ")}`].filter(Boolean).join("; ");
+  return form.at(PATH) === undefined
+    ? ""
+    : [yields && `yield strength ${yields}`, pins.length && `pins ${pins.join(", ")}`]
+        .filter(Boolean)
+        .join("; ");
 }
 
 /** @param {Form.Whole} form @param {Form.Path} path */
@@ -74,7 +149,11 @@ export function held(form, path, label) {
   const varies = ["variables", ...path];
   const own = byschema(form, path, { label, required: true });
   if (form.at(varies) === undefined) {
-    const button = h("button", { type: "button", "aria-label": `Let ${label} vary` }, "Let it vary");
+    const button = h(
+      "button",
+      { type: "button", "aria-label": `Let ${label} vary` },
+      "Let it vary",
+    );
     button.addEventListener("click", () => {
       const value = form.at(path);
       form.put(varies, around(typeof value === "number" ? value : String(value ?? "")));
@@ -83,8 +162,17 @@ export function held(form, path, label) {
     own?.querySelector(".field-controls")?.append(button);
     return [own];
   }
-  return [own, range(form, varies, { label: `${label}, varying`, drop: "Hold", why: "The search chooses it within these; the value beside it is that of single analyses.", fixed: false, removed: () => {
-    form.put(varies, undefined);
-    form.redraw();
-  } })];
+  return [
+    own,
+    range(form, varies, {
+      label: `${label}, varying`,
+      drop: "Hold",
+      why: "The search chooses it within these; the value beside it is that of single analyses.",
+      fixed: false,
+      removed: () => {
+        form.put(varies, undefined);
+        form.redraw();
+      },
+    }),
+  ];
 }

@@ -11,25 +11,66 @@ const EVERY = 45; // deg between the points that are begun with
 /** Return the points of the wanted motion in a line; "" without one. @param {Form.Whole} form */
 export function wantedGiven(form) {
   const angles = form.at([...PATH, "crank_angles"]);
-  return Array.isArray(angles) ? `${angles.length} points` : form.at(PATH) === undefined ? "" : String(form.at([...PATH, "file"]) ?? "");
+  return Array.isArray(angles)
+    ? `${angles.length} points`
+    : form.at(PATH) === undefined
+      ? ""
+      : String(form.at([...PATH, "file"]) ?? "");
 }
 
 /** Return the fields of the wanted motion, or what begins one. @param {Form.Whole} form */
 export function targetMotion(form) {
   if (form.at(PATH) === undefined) {
-    return h("p", { class: "row wide" }, h("button", { type: "button", id: "add-target-motion", onclick: () => {
-      form.put(PATH, first(form));
-      form.redraw();
-    } }, "Give points of a motion"), h("span", { class: "quiet" }, "Then ask for a small motion deviation below, as an objective or a requirement."));
+    return h(
+      "p",
+      { class: "row wide" },
+      h(
+        "button",
+        {
+          type: "button",
+          id: "add-target-motion",
+          onclick: () => {
+            form.put(PATH, first(form));
+            form.redraw();
+          },
+        },
+        "Give points of a motion",
+      ),
+      h(
+        "span",
+        { class: "quiet" },
+        "Then ask for a small motion deviation below, as an objective or a requirement.",
+      ),
+    );
   }
-  const drop = h("p", { class: "wide" }, h("button", { type: "button", onclick: () => {
-    form.put(PATH, undefined);
-    form.redraw("add-target-motion");
-  } }, "Remove the wanted motion"));
+  const drop = h(
+    "p",
+    { class: "wide" },
+    h(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          form.put(PATH, undefined);
+          form.redraw("add-target-motion");
+        },
+      },
+      "Remove the wanted motion",
+    ),
+  );
   const free = ["phase", "shift"].map((key) => byschema(form, [...PATH, key]));
-  if (form.at([...PATH, "crank_angles"]) === undefined) return [byschema(form, [...PATH, "file"]), free, drop];
+  if (form.at([...PATH, "crank_angles"]) === undefined)
+    return [byschema(form, [...PATH, "file"]), free, drop];
   return [
-    points(form, PATH, [{ key: "crank_angles", label: "crank angle", kind: "angle" }, { key: "positions", label: "slider position", kind: "length" }], "Where the slider should be at crank angles that increase and span less than a turn"),
+    points(
+      form,
+      PATH,
+      [
+        { key: "crank_angles", label: "crank angle", kind: "angle" },
+        { key: "positions", label: "slider position", kind: "length" },
+      ],
+      "Where the slider should be at crank angles that increase and span less than a turn",
+    ),
     free,
     drop,
   ];
@@ -39,6 +80,11 @@ export function targetMotion(form) {
 function first(form) {
   const motion = form.said?.example?.motion;
   const angles = motion ? Array.from({ length: 360 / EVERY }, (_, n) => n * EVERY) : [0, 90, 180];
-  const positions = motion ? angles.map((angle) => Math.round(between(motion.slider_position_mm, angle) ?? 0)) : [240, 200, 160];
-  return { crank_angles: angles.map((angle) => `${angle} deg`), positions: positions.map((position) => `${position} mm`) };
+  const positions = motion
+    ? angles.map((angle) => Math.round(between(motion.slider_position_mm, angle) ?? 0))
+    : [240, 200, 160];
+  return {
+    crank_angles: angles.map((angle) => `${angle} deg`),
+    positions: positions.map((position) => `${position} mm`),
+  };
 }

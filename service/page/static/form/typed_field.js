@@ -15,7 +15,8 @@ const drawn = new WeakMap();
  * @param {HTMLInputElement} input @param {unknown} given @param {HTMLSelectElement | null} [select]
  */
 export function drawnFrom(input, given, select) {
-  if (typeof given === "string" || typeof given === "number") drawn.set(input, { value: input.value, unit: select?.value, given });
+  if (typeof given === "string" || typeof given === "number")
+    drawn.set(input, { value: input.value, unit: select?.value, given });
 }
 
 /**
@@ -31,8 +32,16 @@ export function taken(input, measure = {}) {
  * Return the same as {value}; or {ends}, in the unit that the field shows, of a range that is typed as its middle and half its width.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {{ value?: string | number, ends?: string[] }}
  */
-export function entered(input, { kind = null, percent = false, select = null, range = false } = {}) {
-  const found = read(valued(input), { unit: select?.value ?? "", ...measureOf(kind), percent, range });
+export function entered(
+  input,
+  { kind = null, percent = false, select = null, range = false } = {},
+) {
+  const found = read(valued(input), {
+    unit: select?.value ?? "",
+    ...measureOf(kind),
+    percent,
+    range,
+  });
   delete input.dataset.wrong;
   const before = drawn.get(input);
   if (before && before.value === input.value && before.unit === select?.value) {
@@ -40,7 +49,8 @@ export function entered(input, { kind = null, percent = false, select = null, ra
     say(input);
     return { value: /** @type {string | number} */ (before.given) };
   }
-  if (input.value !== input.dataset.number) for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
+  if (input.value !== input.dataset.number)
+    for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
   if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
   if (found.ends) {
     input.dataset.said = found.said;
@@ -81,7 +91,9 @@ export function ordered(input) {
 export function say(input) {
   const place = input.closest(".field")?.querySelector(".understood");
   if (!(place instanceof HTMLElement)) return;
-  const said = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(({ dataset }) => dataset.said ?? []);
+  const said = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(
+    ({ dataset }) => dataset.said ?? [],
+  );
   place.textContent = said.join(" · ");
   place.hidden = said.length === 0;
 }

@@ -14,7 +14,12 @@ export function varying(form) {
   const taken = new Set(leaves(form).map(({ name }) => name));
   const all = leaves(form).filter(({ name }) => !beside(form, name));
   const left = numbers(form).filter(({ name }) => !taken.has(name) && !beside(form, name));
-  const select = h("select", { id: "add-varying" }, h("option", { value: "" }, "choose a number …"), left.map(({ name }) => h("option", { value: name }, titleOf(name))));
+  const select = h(
+    "select",
+    { id: "add-varying" },
+    h("option", { value: "" }, "choose a number …"),
+    left.map(({ name }) => h("option", { value: name }, titleOf(name))),
+  );
   select.addEventListener("change", () => {
     const chosen = left.find(({ name }) => name === select.value);
     if (!chosen) return;
@@ -24,18 +29,39 @@ export function varying(form) {
   });
   return [
     all.length
-      ? h("div", { class: "fields ranges" }, all.map(({ path, name }) => range(form, path, { ...looksOf(form, name), fixed: false, removed: () => {
-        form.put(path, undefined);
-        form.redraw("add-varying");
-      } })))
+      ? h(
+          "div",
+          { class: "fields ranges" },
+          all.map(({ path, name }) =>
+            range(form, path, {
+              ...looksOf(form, name),
+              fixed: false,
+              removed: () => {
+                form.put(path, undefined);
+                form.redraw("add-varying");
+              },
+            }),
+          ),
+        )
       : null,
-    left.length ? h("p", { class: "row wide" }, h("label", { for: "add-varying" }, "Another number that varies"), select) : null,
+    left.length
+      ? h(
+          "p",
+          { class: "row wide" },
+          h("label", { for: "add-varying" }, "Another number that varies"),
+          select,
+        )
+      : null,
   ];
 }
 
 /** Whether a number has the values that it may take beside it, elsewhere in the form. @param {Form.Whole} form @param {string} name */
 function beside(form, name) {
-  return BESIDE.test(name) && at(form.job, name.split(".")) !== undefined && form.at(["variables", name]) === undefined;
+  return (
+    BESIDE.test(name) &&
+    at(form.job, name.split(".")) !== undefined &&
+    form.at(["variables", name]) === undefined
+  );
 }
 
 /** Return the names of the numbers that vary besides the dimensions, in words. @param {Form.Whole} form */
@@ -45,7 +71,9 @@ export function varyingNames(form) {
 
 /** Return the tables whose numbers may vary. @param {Form.Whole} form */
 function roots(form) {
-  return Object.entries(form.schema.property(["variables"])?.properties ?? {}).filter(([, node]) => form.schema.resolve(node).type === "object").map(([key]) => key);
+  return Object.entries(form.schema.property(["variables"])?.properties ?? {})
+    .filter(([, node]) => form.schema.resolve(node).type === "object")
+    .map(([key]) => key);
 }
 
 /** Return where numbers vary: path in the job, and the name of the number. @param {Form.Whole} form */
@@ -55,12 +83,17 @@ function leaves(form) {
   const found = [];
   /** @param {unknown} part @param {Form.Path} path */
   const walk = (part, path) => {
-    const table = isTable(part) && !Array.isArray(part) && !Object.keys(part).some((key) => VALUES.includes(key));
-    if (table && Object.keys(part).length) for (const [key, inner] of Object.entries(part)) walk(inner, [...path, key]);
+    const table =
+      isTable(part) &&
+      !Array.isArray(part) &&
+      !Object.keys(part).some((key) => VALUES.includes(key));
+    if (table && Object.keys(part).length)
+      for (const [key, inner] of Object.entries(part)) walk(inner, [...path, key]);
     else found.push({ path, name: path.slice(1).join(".") });
   };
   const given = form.at(["variables"]);
-  for (const [key, part] of Object.entries(isTable(given) ? given : {})) if (known.includes(key.split(".")[0])) walk(part, ["variables", key]);
+  for (const [key, part] of Object.entries(isTable(given) ? given : {}))
+    if (known.includes(key.split(".")[0])) walk(part, ["variables", key]);
   return found;
 }
 
@@ -71,12 +104,14 @@ function numbers(form) {
   /** @param {unknown} part @param {Form.Path} path */
   const walk = (part, path) => {
     if (isTable(part)) {
-      for (const [key, inner] of Object.entries(part)) walk(inner, [...path, Array.isArray(part) ? Number(key) : key]);
+      for (const [key, inner] of Object.entries(part))
+        walk(inner, [...path, Array.isArray(part) ? Number(key) : key]);
     } else if (typeof part === "number" || typeof part === "string") {
       const node = form.schema.property(path);
       const control = node && describe(node).control;
       const one = typeof path[path.length - 1] === "string"; // not of a table of points
-      if (one && (control === "quantity" || control === "ratio") && !/%\s*$/.test(String(part))) found.push({ name: nameOf(path), value: part });
+      if (one && (control === "quantity" || control === "ratio") && !/%\s*$/.test(String(part)))
+        found.push({ name: nameOf(path), value: part });
     }
   };
   for (const root of roots(form)) walk(form.at([root]), [root]);
@@ -90,7 +125,12 @@ function nameOf(path) {
 
 /** Return a name in words: "mechanism.slider.mass" is "slider mass", "sections.pins.crank_pin" is "crank pin diameter". @param {string} name */
 export function titleOf(name) {
-  return words(name.replace(/^mechanism\./, "").replace(/^sections\.pins\.(.+)/, "$1 diameter").replaceAll(".", " "));
+  return words(
+    name
+      .replace(/^mechanism\./, "")
+      .replace(/^sections\.pins\.(.+)/, "$1 diameter")
+      .replaceAll(".", " "),
+  );
 }
 
 /** @param {Form.Whole} form @param {string} name */
@@ -99,13 +139,22 @@ function looksOf(form, name) {
   const node = form.schema.property(path);
   const found = node && describe(node);
   const given = at(form.job, path);
-  return { label: titleOf(name), kind: found?.kind ?? null, why: `${found?.description ?? ""}; ${given === undefined ? "it needs a value in its own place too" : `${given} where single designs are analysed`}`.replace(/^; /, "") };
+  return {
+    label: titleOf(name),
+    kind: found?.kind ?? null,
+    why: `${found?.description ?? ""}; ${given === undefined ? "it needs a value in its own place too" : `${given} where single designs are analysed`}`.replace(
+      /^; /,
+      "",
+    ),
+  };
 }
 
 /** Return a range around a value. @param {string | number} value */
 export function around(value) {
   const [, number, unit] = /^\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*(.*)$/is.exec(String(value)) ?? [];
   if (number === undefined || Number(number) === 0) return ["", ""];
-  const ends = [0.5, 2].map((factor) => Number((factor * Number(number)).toPrecision(3))).sort((a, b) => a - b);
+  const ends = [0.5, 2]
+    .map((factor) => Number((factor * Number(number)).toPrecision(3)))
+    .sort((a, b) => a - b);
   return unit ? ends.map((end) => `${end} ${unit}`) : ends;
 }

@@ -23,12 +23,19 @@ export function axisFields(explorer) {
 
   function draw() {
     const { axes } = explorer.chosen;
-    for (const place of [above, below]) place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
+    for (const place of [above, below])
+      place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
     const held = focused(above)?.dataset.act;
-    fill(above, axes.map((axis, index) => head(axis, index, axes.length)));
+    fill(
+      above,
+      axes.map((axis, index) => head(axis, index, axes.length)),
+    );
     if (held) first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
     fields = axes.map(({ key }) => field(key));
-    fill(below, fields.map(({ node }) => node));
+    fill(
+      below,
+      fields.map(({ node }) => node),
+    );
     limits();
   }
 
@@ -37,25 +44,53 @@ export function axisFields(explorer) {
     const column = explorer.data.column(key);
     /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
     const act = (sign, label, doing, disabled = false, pressed = undefined) =>
-      h("button", { type: "button", class: "small", "aria-pressed": pressed === undefined ? null : String(pressed), title: label, "aria-label": `${label}: ${column.title}`, disabled, "data-act": `${label}-${key}`, onclick: doing }, sign);
-    return h("div", {
-      class: "axis-head", draggable: "true", "data-axis": key,
-      ondragstart: ({ dataTransfer }) => dataTransfer?.setData("text/axis", String(index)),
-      ondragover: (event) => event.dataTransfer?.types.includes("text/axis") && event.preventDefault(),
-      ondrop: (event) => {
-        event.preventDefault();
-        const from = Number(event.dataTransfer?.getData("text/axis"));
-        if (from !== index) explorer.moveAxis(from, index - from);
+      h(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-pressed": pressed === undefined ? null : String(pressed),
+          title: label,
+          "aria-label": `${label}: ${column.title}`,
+          disabled,
+          "data-act": `${label}-${key}`,
+          onclick: doing,
+        },
+        sign,
+      );
+    return h(
+      "div",
+      {
+        class: "axis-head",
+        draggable: "true",
+        "data-axis": key,
+        ondragstart: ({ dataTransfer }) => dataTransfer?.setData("text/axis", String(index)),
+        ondragover: (event) =>
+          event.dataTransfer?.types.includes("text/axis") && event.preventDefault(),
+        ondrop: (event) => {
+          event.preventDefault();
+          const from = Number(event.dataTransfer?.getData("text/axis"));
+          if (from !== index) explorer.moveAxis(from, index - from);
+        },
       },
-    },
       h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
       h("span", { class: "way" }, wayOf(key, flipped)),
-      h("div", { class: "axis-acts" },
+      h(
+        "div",
+        { class: "axis-acts" },
         act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
         act("⇅", "Flip", () => explorer.flipAxis(index)),
         act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
-        act("×", "Leave out", () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)), count === 1),
-        mayBeLogged(explorer, key) && act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key))));
+        act(
+          "×",
+          "Leave out",
+          () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)),
+          count === 1,
+        ),
+        mayBeLogged(explorer, key) &&
+          act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
+      ),
+    );
   }
 
   /** Return an arrow to the better end of an axis; in words for a value to come near to. @param {string} key @param {boolean} flipped */
@@ -73,7 +108,16 @@ export function axisFields(explorer) {
     const [low, high] = ends(explorer.data.range(key), column.unit);
     /** @param {string} side @param {string} placeholder @param {string} label */
     const input = (side, placeholder, label) =>
-      h("input", { type: "text", inputmode: "decimal", class: "number", "data-limit": `${side}.${key}`, placeholder, "aria-label": `${label} ${headed(column)}`, onchange: take, onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null) });
+      h("input", {
+        type: "text",
+        inputmode: "decimal",
+        class: "number",
+        "data-limit": `${side}.${key}`,
+        placeholder,
+        "aria-label": `${label} ${headed(column)}`,
+        onchange: take,
+        onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null),
+      });
     const least = input("min", low, "At least");
     const most = input("max", high, "At most");
     function take() {
@@ -83,12 +127,25 @@ export function axisFields(explorer) {
     }
     return {
       key,
-      node: h("div", { class: "axis-limit", role: "group", "aria-label": `Limits of ${column.title}` }, most, least),
+      node: h(
+        "div",
+        { class: "axis-limit", role: "group", "aria-label": `Limits of ${column.title}` },
+        most,
+        least,
+      ),
       /** @param {Page.Limit | undefined} limit */
       show(limit) {
-        for (const [end, node] of /** @type {const} */ ([["low", least], ["high", most]])) {
+        for (const [end, node] of /** @type {const} */ ([
+          ["low", least],
+          ["high", most],
+        ])) {
           const value = limit?.[end];
-          if (document.activeElement === node && node.value.trim() && number(node, column.unit) === value) continue;
+          if (
+            document.activeElement === node &&
+            node.value.trim() &&
+            number(node, column.unit) === value
+          )
+            continue;
           node.value = value === null || value === undefined ? "" : text(value, column.unit, 6);
           node.removeAttribute("aria-invalid");
         }
@@ -99,13 +156,24 @@ export function axisFields(explorer) {
   /** @param {string} key @param {Api.Column} column @param {string[]} words */
   function ofWords(key, column, words) {
     /** @type {HTMLInputElement[]} */
-    const ticks = words.map((word) => h("input", { type: "checkbox", value: word, "data-limit": `is.${key}`, onchange: () => {
-      const wanted = ticks.filter(({ checked }) => checked).map(({ value }) => value);
-      explorer.limit(key, wanted.length === words.length ? null : { words: wanted });
-    } }));
+    const ticks = words.map((word) =>
+      h("input", {
+        type: "checkbox",
+        value: word,
+        "data-limit": `is.${key}`,
+        onchange: () => {
+          const wanted = ticks.filter(({ checked }) => checked).map(({ value }) => value);
+          explorer.limit(key, wanted.length === words.length ? null : { words: wanted });
+        },
+      }),
+    );
     return {
       key,
-      node: h("div", { class: "axis-limit", role: "group", "aria-label": `Only ${column.title}` }, ticks.map((tick) => h("label", {}, tick, ` ${tick.value}`))),
+      node: h(
+        "div",
+        { class: "axis-limit", role: "group", "aria-label": `Only ${column.title}` },
+        ticks.map((tick) => h("label", {}, tick, ` ${tick.value}`)),
+      ),
       /** @param {Page.Limit | undefined} limit */
       show(limit) {
         for (const tick of ticks) tick.checked = !limit?.words || limit.words.includes(tick.value);

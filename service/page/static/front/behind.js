@@ -30,7 +30,10 @@ export async function behind(run, signal) {
     /** Return the designs as rows of two columns; none where the run does not have both. @param {string} x @param {string} y @returns {Api.Row[]} */
     rows(x, y) {
       if (![x, y].every((key) => data.has(key))) return [];
-      return Array.from({ length: Math.floor((data.count - 1) / step) + 1 }, (_, n) => ({ [x]: data.cell(x, n * step), [y]: data.cell(y, n * step) }));
+      return Array.from({ length: Math.floor((data.count - 1) / step) + 1 }, (_, n) => ({
+        [x]: data.cell(x, n * step),
+        [y]: data.cell(y, n * step),
+      }));
     },
   };
 }

@@ -18,9 +18,18 @@ export function bindingPanel(explorer) {
   const { job, data } = explorer;
   const list = h("div", { class: "limits" });
   const wrong = h("p", { class: "bad", role: "alert", hidden: true });
-  const place = h("section", { class: "panel binding", "aria-labelledby": "binding-title", hidden: true },
+  const place = h(
+    "section",
+    { class: "panel binding", "aria-labelledby": "binding-title", hidden: true },
     h("h2", { id: "binding-title" }, "Your limits bind"),
-    h("p", { class: "quiet hint" }, "Designs that rest on a limit would go on if it let them. A wider one is tried by a run of its own; the front of this one stays behind the new one."), list, wrong);
+    h(
+      "p",
+      { class: "quiet hint" },
+      "Designs that rest on a limit would go on if it let them. A wider one is tried by a run of its own; the front of this one stays behind the new one.",
+    ),
+    list,
+    wrong,
+  );
   /** @type {Api.Limit[]} */
   let limits = [];
 
@@ -43,7 +52,17 @@ export function bindingPanel(explorer) {
   function show() {
     place.hidden = limits.length === 0;
     const [shown, rest] = [limits.slice(0, FEW), limits.slice(FEW)];
-    fill(list, shown.map(line), rest.length > 0 && h("details", {}, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "limit" : "limits"}`), h("div", { class: "limits" }, rest.map(line))));
+    fill(
+      list,
+      shown.map(line),
+      rest.length > 0 &&
+        h(
+          "details",
+          {},
+          h("summary", {}, `${rest.length} more ${rest.length === 1 ? "limit" : "limits"}`),
+          h("div", { class: "limits" }, rest.map(line)),
+        ),
+    );
   }
 
   /** @param {Api.Limit} limit */
@@ -52,19 +71,69 @@ export function bindingPanel(explorer) {
     const id = `wider-${limit.of}-${side}`;
     const count = designs.length;
     const words = `${count} of ${counted(data.count, "design")} ${count === 1 ? "rests" : "rest"} on ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
-    const those = data.knows(column) && h("button", { type: "button", class: "linked", "aria-label": `Show the designs that rest on ${title} ${WORDS[side]} ${withUnit(value, unit)}`, onclick: () => {
-      const near = REST * Math.abs(value);
-      explorer.limit(column, side === "upper" ? { low: value - near, high: null } : { low: null, high: value + near });
-    } }, "show them");
+    const those =
+      data.knows(column) &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "linked",
+          "aria-label": `Show the designs that rest on ${title} ${WORDS[side]} ${withUnit(value, unit)}`,
+          onclick: () => {
+            const near = REST * Math.abs(value);
+            explorer.limit(
+              column,
+              side === "upper"
+                ? { low: value - near, high: null }
+                : { low: null, high: value + near },
+            );
+          },
+        },
+        "show them",
+      );
     const bar = h("span", {});
     bar.style.width = `${(100 * count) / data.count}%`;
     const share = h("span", { class: "rest-share", "aria-hidden": "true" }, bar);
-    if (wider === null) return h("div", { class: "limit" }, share, h("p", {}, words, ". ", those), h("p", { class: "quiet" }, "Change it in the job."));
-    const input = h("input", { id, type: "text", inputmode: "decimal", class: "number", autocomplete: "off", value: String(Number(inShown(wider, unit).toPrecision(6))), "aria-describedby": `${id}-unit` });
+    if (wider === null)
+      return h(
+        "div",
+        { class: "limit" },
+        share,
+        h("p", {}, words, ". ", those),
+        h("p", { class: "quiet" }, "Change it in the job."),
+      );
+    const input = h("input", {
+      id,
+      type: "text",
+      inputmode: "decimal",
+      class: "number",
+      autocomplete: "off",
+      value: String(Number(inShown(wider, unit).toPrecision(6))),
+      "aria-describedby": `${id}-unit`,
+    });
     const button = h("button", {}, "Widen and run again");
-    return h("form", { class: "limit", novalidate: true, "data-limit": `${limit.of}.${side}`, onsubmit: (event) => { event.preventDefault(); widen(limit, input, button); } },
-      share, h("p", {}, words, ". ", those),
-      h("div", { class: "row" }, h("label", { for: id }, h("span", { class: "hidden" }, `${title} `), WORDS[side]), input, h("span", { class: "quiet", id: `${id}-unit` }, unitOf(unit)), button));
+    return h(
+      "form",
+      {
+        class: "limit",
+        novalidate: true,
+        "data-limit": `${limit.of}.${side}`,
+        onsubmit: (event) => {
+          event.preventDefault();
+          widen(limit, input, button);
+        },
+      },
+      share,
+      h("p", {}, words, ". ", those),
+      h(
+        "div",
+        { class: "row" },
+        h("label", { for: id }, h("span", { class: "hidden" }, `${title} `), WORDS[side]),
+        input,
+        h("span", { class: "quiet", id: `${id}-unit` }, unitOf(unit)),
+        button,
+      ),
+    );
   }
 
   /** @param {Api.Limit} limit @param {HTMLInputElement} input @param {HTMLButtonElement} button */
@@ -73,7 +142,9 @@ export function bindingPanel(explorer) {
     const { value, wrong } = measured(input.value, limit.unit);
     if (value === undefined) {
       input.setAttribute("aria-invalid", "true");
-      refuse(`${limit.title} ${WORDS[limit.side]}: ${wrong?.replace(/\.$/, "") ?? `a number${unit && ` in ${unit}`} is needed`}`);
+      refuse(
+        `${limit.title} ${WORDS[limit.side]}: ${wrong?.replace(/\.$/, "") ?? `a number${unit && ` in ${unit}`} is needed`}`,
+      );
       input.focus();
       return;
     }
@@ -81,7 +152,11 @@ export function bindingPanel(explorer) {
     refuse("");
     button.disabled = true;
     try {
-      const { id } = await post(`jobs/${job.id}/widened`, { limits: [{ of: limit.of, side: limit.side, value }] }, { signal: explorer.signal });
+      const { id } = await post(
+        `jobs/${job.id}/widened`,
+        { limits: [{ of: limit.of, side: limit.side, value }] },
+        { signal: explorer.signal },
+      );
       go(["jobs", id]);
     } catch (problem) {
       if (isAbort(problem)) return;

@@ -23,7 +23,13 @@ export function choicesFrom(query, front) {
   const objectives = front.objectives.map(({ column }) => column);
   const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
   const first = keys.findIndex((key) => key.startsWith("choice_"));
-  const labels = keys.filter((key, place) => first >= 0 && place >= first && front.columns[place].group === front.columns[first].group && !objectives.includes(key));
+  const labels = keys.filter(
+    (key, place) =>
+      first >= 0 &&
+      place >= first &&
+      front.columns[place].group === front.columns[first].group &&
+      !objectives.includes(key),
+  );
   const strokes = front.strokes_differ ? ["slow_stroke"] : [];
   /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
@@ -33,7 +39,9 @@ export function choicesFrom(query, front) {
     return known(asked) ? asked : otherwise;
   };
   /** @type {Axis[]} */
-  const axes = list("axes").map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") })).filter(({ key }) => known(key));
+  const axes = list("axes")
+    .map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") }))
+    .filter(({ key }) => known(key));
   const standard = [...sizes, ...labels, ...objectives];
   const columns = list("columns").filter(known);
   const sort = (query.get("sort") ?? "").replace(/^-/, "");
@@ -50,11 +58,23 @@ export function choicesFrom(query, front) {
     sort: known(sort) ? sort : "",
     reverse: (query.get("sort") ?? "").startsWith("-"),
     page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
-    selected: list("selected").map(Number).filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count).slice(0, MOST),
-    weights: weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10) ? weights : null,
+    selected: list("selected")
+      .map(Number)
+      .filter((number) => Number.isInteger(number) && number >= 1 && number <= front.count)
+      .slice(0, MOST),
+    weights:
+      weights.length === objectives.length && weights.every((weight) => weight >= 0 && weight <= 10)
+        ? weights
+        : null,
     wish: wishesFrom(query, front.objectives),
     behind: query.get("behind") !== "none", // whether the front of the run before is shown
-    standard: { axes: standard.join(","), x: objectives[0], y: objectives[1], colour: objectives[2] ?? "", columns: [...objectives, ...labels, ...sizes, ...strokes].join(",") },
+    standard: {
+      axes: standard.join(","),
+      x: objectives[0],
+      y: objectives[1],
+      colour: objectives[2] ?? "",
+      columns: [...objectives, ...labels, ...sizes, ...strokes].join(","),
+    },
   };
 }
 
@@ -78,8 +98,22 @@ function limitsFrom(query, known) {
 function lassoFrom(query, known) {
   const [x, y, ...corners] = (query.get("lasso") ?? "").split(",");
   const numbers = corners.map(Number);
-  if (!known(x) || !known(y) || numbers.length < 6 || numbers.length % 2 || !numbers.every(Number.isFinite)) return null;
-  return { x, y, line: Array.from({ length: numbers.length / 2 }, (_, index) => [numbers[2 * index], numbers[2 * index + 1]]) };
+  if (
+    !known(x) ||
+    !known(y) ||
+    numbers.length < 6 ||
+    numbers.length % 2 ||
+    !numbers.every(Number.isFinite)
+  )
+    return null;
+  return {
+    x,
+    y,
+    line: Array.from({ length: numbers.length / 2 }, (_, index) => [
+      numbers[2 * index],
+      numbers[2 * index + 1],
+    ]),
+  };
 }
 
 /** Return the query of an address; what is as it would be anyway is left out. @param {Chosen} chosen @param {Page.Lasso | null} lasso */
@@ -89,17 +123,28 @@ export function queryOf(chosen, lasso) {
   const unless = (value, usual) => (value === usual ? "" : value);
   /** @type {Record<string, Dom.Value>} */
   const query = {
-    axes: unless(chosen.axes.map(({ key, flipped }) => `${flipped ? "-" : ""}${key}`).join(","), standard.axes),
+    axes: unless(
+      chosen.axes.map(({ key, flipped }) => `${flipped ? "-" : ""}${key}`).join(","),
+      standard.axes,
+    ),
     log: chosen.log.join(","),
     x: unless(chosen.x, standard.x),
     y: unless(chosen.y, standard.y),
-    colour: unless(chosen.colour, standard.colour) || (chosen.colour === "" && standard.colour ? "none" : ""),
+    colour:
+      unless(chosen.colour, standard.colour) ||
+      (chosen.colour === "" && standard.colour ? "none" : ""),
     columns: unless(chosen.columns.join(","), standard.columns),
     sort: chosen.sort ? `${chosen.reverse ? "-" : ""}${chosen.sort}` : "",
     page: chosen.page > 1 ? chosen.page : "",
     selected: chosen.selected.join(","),
     weights: chosen.weights?.join(",") ?? "",
-    lasso: lasso ? [lasso.x, lasso.y, ...lasso.line.flat().map((number) => Number(number.toPrecision(5)))].join(",") : "",
+    lasso: lasso
+      ? [
+          lasso.x,
+          lasso.y,
+          ...lasso.line.flat().map((number) => Number(number.toPrecision(5))),
+        ].join(",")
+      : "",
     behind: chosen.behind ? "" : "none",
     ...wishQuery(chosen.wish),
   };
@@ -122,6 +167,17 @@ export function toggled(selected, number) {
 
 /** Return the columns that are drawn, shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
 export function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
-  const keys = [...LENGTHS, ...axes.map(({ key }) => key), x, y, colour, ...columns, sort, ...of.keys(), lasso?.x ?? "", lasso?.y ?? ""];
+  const keys = [
+    ...LENGTHS,
+    ...axes.map(({ key }) => key),
+    x,
+    y,
+    colour,
+    ...columns,
+    sort,
+    ...of.keys(),
+    lasso?.x ?? "",
+    lasso?.y ?? "",
+  ];
   return keys.filter((key) => key !== "");
 }

@@ -12,21 +12,46 @@ export function chooser(heading, columns, chosen, choose) {
   const ticks = columns.map((column) => {
     const { key } = column;
     const name = h("span", {}, headed(column));
-    const tick = h("input", { type: "checkbox", value: key, onchange: () => {
-      const before = chosen().filter((one) => one !== key);
-      choose(tick.checked ? [...before, key] : before);
-      if (!chosen().includes(key)) tick.checked = false;
-    } });
-    return { tick, label: h("label", {}, tick, " ", name), show: () => (name.textContent = headed(column)) };
+    const tick = h("input", {
+      type: "checkbox",
+      value: key,
+      onchange: () => {
+        const before = chosen().filter((one) => one !== key);
+        choose(tick.checked ? [...before, key] : before);
+        if (!chosen().includes(key)) tick.checked = false;
+      },
+    });
+    return {
+      tick,
+      label: h("label", {}, tick, " ", name),
+      show: () => (name.textContent = headed(column)),
+    };
   });
-  const find = h("input", { type: "search", "aria-label": `Find a quantity for ${heading.toLowerCase()}`, placeholder: "Find", oninput: () => {
-    const wanted = find.value.trim().toLowerCase();
-    for (const { label } of ticks) label.hidden = !label.textContent.toLowerCase().includes(wanted);
-  } });
-  return menu(heading, h("div", { class: "chooser-list panel", role: "group", "aria-label": heading }, find, ticks.map(({ label }) => label)), { opened: () => {
-    for (const { tick, show } of ticks) {
-      tick.checked = chosen().includes(tick.value);
-      show(); // in the units of now
-    }
-  } });
+  const find = h("input", {
+    type: "search",
+    "aria-label": `Find a quantity for ${heading.toLowerCase()}`,
+    placeholder: "Find",
+    oninput: () => {
+      const wanted = find.value.trim().toLowerCase();
+      for (const { label } of ticks)
+        label.hidden = !label.textContent.toLowerCase().includes(wanted);
+    },
+  });
+  return menu(
+    heading,
+    h(
+      "div",
+      { class: "chooser-list panel", role: "group", "aria-label": heading },
+      find,
+      ticks.map(({ label }) => label),
+    ),
+    {
+      opened: () => {
+        for (const { tick, show } of ticks) {
+          tick.checked = chosen().includes(tick.value);
+          show(); // in the units of now
+        }
+      },
+    },
+  );
 }

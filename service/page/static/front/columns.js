@@ -6,15 +6,34 @@ import { titleOf, unitOf, withUnit } from "../lib/numbers.js";
 // How a key ends, and the unit that this means; the longer endings first.
 /** @type {[string, string][]} */
 const ENDINGS = [
-  ["_m_s3", "m/s^3"], ["_m_s2", "m/s^2"], ["_m_s", "m/s"], ["_kg_m2", "kg m^2"], ["_kg_m3", "kg/m^3"], ["_kg", "kg"],
-  ["_rad_s2", "rad/s^2"], ["_rpm", "rpm"], ["_Ns2_per_m2", "N s^2/m^2"], ["_Ns_per_m", "N s/m"], ["_N_per_m", "N/m"], ["_m2", "m^2"], ["_Nm", "N m"],
-  ["_mm", "mm"], ["_deg", "deg"], ["_N", "N"], ["_W", "W"], ["_MPa", "MPa"],
+  ["_m_s3", "m/s^3"],
+  ["_m_s2", "m/s^2"],
+  ["_m_s", "m/s"],
+  ["_kg_m2", "kg m^2"],
+  ["_kg_m3", "kg/m^3"],
+  ["_kg", "kg"],
+  ["_rad_s2", "rad/s^2"],
+  ["_rpm", "rpm"],
+  ["_Ns2_per_m2", "N s^2/m^2"],
+  ["_Ns_per_m", "N s/m"],
+  ["_N_per_m", "N/m"],
+  ["_m2", "m^2"],
+  ["_Nm", "N m"],
+  ["_mm", "mm"],
+  ["_deg", "deg"],
+  ["_N", "N"],
+  ["_W", "W"],
+  ["_MPa", "MPa"],
 ];
 
 /** Return {key, title, unit} of a key such as "peak_torque_Nm". Titles of the service need `readySystem`. @param {string} key @returns {Api.Column} */
 export function columnOf(key) {
   const [ending, unit] = ENDINGS.find(([ending]) => key.endsWith(ending)) ?? ["", ""];
-  return { key, title: titleOf(key) ?? key.slice(0, key.length - ending.length).replaceAll("_", " "), unit };
+  return {
+    key,
+    title: titleOf(key) ?? key.slice(0, key.length - ending.length).replaceAll("_", " "),
+    unit,
+  };
 }
 
 /** Return the link to what a column means; the slack of a quantity is explained with it. @param {string} key */

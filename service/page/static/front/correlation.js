@@ -5,7 +5,11 @@ import { fill, h } from "../lib/dom.js";
 /** @import { Explorer } from "./explorer.js" */
 
 const WAIT = 150; // ms after the designs changed
-const WORDS = /** @type {const} */ ([[0.95, "almost always"], [0.7, "mostly"], [0.3, "somewhat more often than not"]]);
+const WORDS = /** @type {const} */ ([
+  [0.95, "almost always"],
+  [0.7, "mostly"],
+  [0.3, "somewhat more often than not"],
+]);
 
 /**
  * Return the ranks of numbers from 1, alike ones at the mean of theirs.
@@ -14,7 +18,7 @@ const WORDS = /** @type {const} */ ([[0.95, "almost always"], [0.7, "mostly"], [
 export function ranks(numbers) {
   const order = Uint32Array.from(numbers, (_, n) => n).sort((a, b) => numbers[a] - numbers[b]);
   const found = new Float64Array(numbers.length);
-  for (let start = 0; start < order.length; ) {
+  for (let start = 0; start < order.length;) {
     let end = start;
     while (end < order.length && numbers[order[end]] === numbers[order[start]]) end += 1;
     for (let n = start; n < end; n += 1) found[order[n]] = (start + 1 + end) / 2;
@@ -30,7 +34,8 @@ export function ranks(numbers) {
 export function rankCorrelation(a, b, mask) {
   /** @type {number[]} */
   const rows = [];
-  for (let row = 0; row < mask.length; row += 1) if (mask[row] && !Number.isNaN(a[row]) && !Number.isNaN(b[row])) rows.push(row);
+  for (let row = 0; row < mask.length; row += 1)
+    if (mask[row] && !Number.isNaN(a[row]) && !Number.isNaN(b[row])) rows.push(row);
   const [one, other] = [a, b].map((column) => ranks(rows.map((row) => column[row])));
   const mean = (rows.length + 1) / 2;
   let [both, first, second] = [0, 0, 0];
@@ -45,18 +50,31 @@ export function rankCorrelation(a, b, mask) {
 
 /** Return a correlation in words. @param {string} x @param {string} y @param {number | null} value @param {number} count */
 export function inWords(x, y, value, count) {
-  if (value === null || count < 3) return `Of ${x} and ${y} nothing can be said: too few designs differ in both.`;
+  if (value === null || count < 3)
+    return `Of ${x} and ${y} nothing can be said: too few designs differ in both.`;
   const [, often] = WORDS.find(([least]) => Math.abs(value) >= least) ?? [];
   const numbers = `(rank correlation ${value.toFixed(2).replace("-", "−")}, ${count} designs)`;
-  return often ? `With more ${x} comes ${often} ${value > 0 ? "more" : "less"} ${y} ${numbers}.` : `${x.charAt(0).toUpperCase()}${x.slice(1)} and ${y} hardly go together ${numbers}.`;
+  return often
+    ? `With more ${x} comes ${often} ${value > 0 ? "more" : "less"} ${y} ${numbers}.`
+    : `${x.charAt(0).toUpperCase()}${x.slice(1)} and ${y} hardly go together ${numbers}.`;
 }
 
 /** Return {place, draw()}: the pair of the scatter in words, and every pair of objectives to choose from. @param {Explorer} explorer */
 export function correlations(explorer) {
   const { data, limits, chosen } = explorer;
   const sentence = h("p", { class: "correlation" });
-  const matrix = h("div", { class: "scroll pairs", tabindex: 0, role: "region", "aria-label": "Every pair of objectives" });
-  const all = h("details", { ontoggle: ({ currentTarget }) => currentTarget.open && drawMatrix() }, h("summary", {}, "Every pair of objectives"), matrix);
+  const matrix = h("div", {
+    class: "scroll pairs",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Every pair of objectives",
+  });
+  const all = h(
+    "details",
+    { ontoggle: ({ currentTarget }) => currentTarget.open && drawMatrix() },
+    h("summary", {}, "Every pair of objectives"),
+    matrix,
+  );
   const several = data.objectives.length > 2;
   const place = h("div", {}, sentence, several && all);
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -67,22 +85,69 @@ export function correlations(explorer) {
     const { x, y } = chosen;
     const apt = [x, y].every((key) => data.has(key) && !data.words(key)) && x !== y;
     sentence.hidden = !apt;
-    if (apt) sentence.textContent = inWords(data.column(x).title, data.column(y).title, rankCorrelation(data.numbers(x), data.numbers(y), limits.mask), limits.chosen);
+    if (apt)
+      sentence.textContent = inWords(
+        data.column(x).title,
+        data.column(y).title,
+        rankCorrelation(data.numbers(x), data.numbers(y), limits.mask),
+        limits.chosen,
+      );
     if (all.open) drawMatrix();
   }
 
   async function drawMatrix() {
     await data.need(data.objectives.map(({ column }) => column));
     const columns = data.objectives.map(({ column, title }) => ({ column, title }));
-    const rows = columns.slice(1).map((up, n) => h("tr", {}, h("th", { scope: "row" }, up.title), columns.slice(0, -1).map((across, m) => {
-      if (m > n) return h("td", {});
-      const value = rankCorrelation(data.numbers(across.column), data.numbers(up.column), limits.mask);
-      const shown = value === null ? "–" : value.toFixed(2).replace("-", "−");
-      const chosenNow = chosen.x === across.column && chosen.y === up.column;
-      return h("td", {}, h("button", { type: "button", "aria-pressed": String(chosenNow), "aria-label": `Show ${up.title} over ${across.title}, rank correlation ${shown}`, onclick: () => explorer.change({ x: across.column, y: up.column }, "all") }, shown));
-    })));
-    fill(matrix, h("table", {}, h("caption", { class: "hidden" }, "Rank correlation of every pair of objectives"),
-      h("thead", {}, h("tr", {}, h("td", {}), columns.slice(0, -1).map(({ title }) => h("th", { scope: "col" }, title)))), h("tbody", {}, rows)));
+    const rows = columns.slice(1).map((up, n) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, up.title),
+        columns.slice(0, -1).map((across, m) => {
+          if (m > n) return h("td", {});
+          const value = rankCorrelation(
+            data.numbers(across.column),
+            data.numbers(up.column),
+            limits.mask,
+          );
+          const shown = value === null ? "–" : value.toFixed(2).replace("-", "−");
+          const chosenNow = chosen.x === across.column && chosen.y === up.column;
+          return h(
+            "td",
+            {},
+            h(
+              "button",
+              {
+                type: "button",
+                "aria-pressed": String(chosenNow),
+                "aria-label": `Show ${up.title} over ${across.title}, rank correlation ${shown}`,
+                onclick: () => explorer.change({ x: across.column, y: up.column }, "all"),
+              },
+              shown,
+            ),
+          );
+        }),
+      ),
+    );
+    fill(
+      matrix,
+      h(
+        "table",
+        {},
+        h("caption", { class: "hidden" }, "Rank correlation of every pair of objectives"),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("td", {}),
+            columns.slice(0, -1).map(({ title }) => h("th", { scope: "col" }, title)),
+          ),
+        ),
+        h("tbody", {}, rows),
+      ),
+    );
   }
 
   function draw() {

@@ -37,7 +37,11 @@ export class FrontData {
   async need(keys) {
     const wanted = [...new Set(keys)].filter((key) => this.known.has(key) && !this.kept.has(key));
     if (!wanted.length || !this.count) return;
-    const { values } = await get(`jobs/${this.job}/columns`, { columns: wanted.join(",") }, this.signal);
+    const { values } = await get(
+      `jobs/${this.job}/columns`,
+      { columns: wanted.join(",") },
+      this.signal,
+    );
     this.take(values);
   }
 
@@ -88,7 +92,8 @@ export class FrontData {
   better(key) {
     const objective = this.objectives.find(({ column }) => column === key);
     if (!objective) return "";
-    if (typeof objective.target === "number") return `best near ${withUnit(objective.target, objective.unit, 4)}`;
+    if (typeof objective.target === "number")
+      return `best near ${withUnit(objective.target, objective.unit, 4)}`;
     return objective.sense === "maximise" ? "more is better" : "less is better";
   }
 
@@ -111,13 +116,20 @@ export class FrontData {
  * @param {Api.Row[string][]} cells @returns {Kept}
  */
 function stored(cells) {
-  const words = cells.some((cell) => typeof cell === "string") ? [...new Set(cells.filter((cell) => cell !== null).map(String))].sort() : null;
+  const words = cells.some((cell) => typeof cell === "string")
+    ? [...new Set(cells.filter((cell) => cell !== null).map(String))].sort()
+    : null;
   const place = new Map((words ?? []).map((word, index) => [word, index]));
   const numbers = new Float64Array(cells.length);
   let [low, high] = [Infinity, -Infinity];
   for (let row = 0; row < cells.length; row += 1) {
     const cell = cells[row];
-    const number = cell === null ? NaN : typeof cell === "number" && !words ? cell : place.get(String(cell)) ?? NaN;
+    const number =
+      cell === null
+        ? NaN
+        : typeof cell === "number" && !words
+          ? cell
+          : (place.get(String(cell)) ?? NaN);
     numbers[row] = number;
     if (number < low) low = number;
     if (number > high) high = number;

@@ -83,19 +83,40 @@ export class Explorer {
     /** @type {Awaited<ReturnType<typeof behind>>} */
     this.before = null; // the run that this one is a changed copy of
     this.count = h("p", { class: "count", role: "status" });
-    this.clearing = h("button", { type: "button", onclick: () => this.clear() }, "Clear all limits");
+    this.clearing = h(
+      "button",
+      { type: "button", onclick: () => this.clear() },
+      "Clear all limits",
+    );
     this.saving = saving(this);
     this.fields = axisFields(this);
     this.lines = parallel({
-      data, limits, axes: () => chosen.axes, colour: () => chosen.colour, marks: () => marksOf(this, "lines"), limit: (key, limit) => this.limit(key, limit),
-      log: (key) => logged(this, key), say: (row) => this.said(row),
-      point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
+      data,
+      limits,
+      axes: () => chosen.axes,
+      colour: () => chosen.colour,
+      marks: () => marksOf(this, "lines"),
+      limit: (key, limit) => this.limit(key, limit),
+      log: (key) => logged(this, key),
+      say: (row) => this.said(row),
+      point: (row) => this.point(row),
+      open: (row) => this.open(row),
+      select: (row) => this.select(row),
     });
     this.dots = scatter({
-      data, limits, x: () => chosen.x, y: () => chosen.y, colour: () => chosen.colour, marks: () => marksOf(this, "dots"), others: () => othersOf(this).map(({ cells }) => cells),
-      log: (key) => logged(this, key), say: (row) => this.said(row),
+      data,
+      limits,
+      x: () => chosen.x,
+      y: () => chosen.y,
+      colour: () => chosen.colour,
+      marks: () => marksOf(this, "dots"),
+      others: () => othersOf(this).map(({ cells }) => cells),
+      log: (key) => logged(this, key),
+      say: (row) => this.said(row),
       behind: () => (chosen.behind && this.before ? this.before.rows(chosen.x, chosen.y) : []),
-      point: (row) => this.point(row), open: (row) => this.open(row), select: (row) => this.select(row),
+      point: (row) => this.point(row),
+      open: (row) => this.open(row),
+      select: (row) => this.select(row),
       box: (x, y) => {
         this.limits.set(chosen.x, x);
         this.limit(chosen.y, y);
@@ -114,21 +135,70 @@ export class Explorer {
     files.replaceChildren(h("li", {}, this.saving.node), this.kept.file);
     place.replaceChildren(
       h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
-      h("section", { class: "panel all-designs", "aria-labelledby": "lines-title" },
-        h("div", { class: "row spread" }, h("h2", { id: "lines-title" }, "All designs"), this.count,
-          h("div", { class: "row" }, this.clearing, chooser("Axes", columns, () => chosen.axes.map(({ key }) => key), (keys) => this.chooseAxes(keys)))),
-        h("p", { class: "quiet hint" }, "Drag along an axis to keep a part of it; double click to let go. The fields below do the same."),
-        h("div", { class: "scroll lines" }, h("div", { class: "lines-inner" }, this.fields.above, this.lines.place, this.fields.below))),
+      h(
+        "section",
+        { class: "panel all-designs", "aria-labelledby": "lines-title" },
+        h(
+          "div",
+          { class: "row spread" },
+          h("h2", { id: "lines-title" }, "All designs"),
+          this.count,
+          h(
+            "div",
+            { class: "row" },
+            this.clearing,
+            chooser(
+              "Axes",
+              columns,
+              () => chosen.axes.map(({ key }) => key),
+              (keys) => this.chooseAxes(keys),
+            ),
+          ),
+        ),
+        h(
+          "p",
+          { class: "quiet hint" },
+          "Drag along an axis to keep a part of it; double click to let go. The fields below do the same.",
+        ),
+        h(
+          "div",
+          { class: "scroll lines" },
+          h(
+            "div",
+            { class: "lines-inner" },
+            this.fields.above,
+            this.lines.place,
+            this.fields.below,
+          ),
+        ),
+      ),
       this.scatterPanel.place,
       this.binding.place,
       this.wishing.place,
       this.kept.place,
-      h("section", { class: "panel the-table", "aria-labelledby": "table-title" },
-        h("div", { class: "row spread" }, h("h2", { id: "table-title" }, "Designs"), this.selected.place,
-          chooser("Columns", columns, () => chosen.columns, (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"))),
-        this.table.place));
+      h(
+        "section",
+        { class: "panel the-table", "aria-labelledby": "table-title" },
+        h(
+          "div",
+          { class: "row spread" },
+          h("h2", { id: "table-title" }, "Designs"),
+          this.selected.place,
+          chooser(
+            "Columns",
+            columns,
+            () => chosen.columns,
+            (keys) => this.change({ columns: keys.length ? keys : chosen.columns }, "table"),
+          ),
+        ),
+        this.table.place,
+      ),
+    );
     const again = () => this.update("all");
-    place.addEventListener("click", ({ target }) => target instanceof Element && target.closest("a") && this.keepAddress());
+    place.addEventListener(
+      "click",
+      ({ target }) => target instanceof Element && target.closest("a") && this.keepAddress(),
+    );
     const sizes = new ResizeObserver(() => this.width !== place.clientWidth && again());
     sizes.observe(place);
     this.signal.addEventListener("abort", () => {
@@ -139,10 +209,14 @@ export class Explorer {
       clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
     });
-    for (const name of ["units", "scheme"]) window.addEventListener(name, again, { signal: this.signal });
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again, { signal: this.signal });
+    for (const name of ["units", "scheme"])
+      window.addEventListener(name, again, { signal: this.signal });
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again, {
+      signal: this.signal,
+    });
     this.draw("all");
-    if (job.origin) this.lookBehind(job.origin).catch((problem) => isAbort(problem) || sayProblem(problem));
+    if (job.origin)
+      this.lookBehind(job.origin).catch((problem) => isAbort(problem) || sayProblem(problem));
   }
 
   /** Show the front of the run before, once it is here. @param {number} run */
@@ -159,7 +233,10 @@ export class Explorer {
   async change(choices, what) {
     Object.assign(this.chosen, choices);
     try {
-      await Promise.all([this.data.need(wanted(this.chosen, this.limits)), this.before?.need([this.chosen.x, this.chosen.y])]);
+      await Promise.all([
+        this.data.need(wanted(this.chosen, this.limits)),
+        this.before?.need([this.chosen.x, this.chosen.y]),
+      ]);
     } catch (problem) {
       sayProblem(problem);
       return;
@@ -243,7 +320,10 @@ export class Explorer {
   drawTable(waits) {
     clearTimeout(this.tabling);
     if (waits) {
-      this.tabling = setTimeout(() => this.drawTable(false), OFTEN - (performance.now() - this.tabled));
+      this.tabling = setTimeout(
+        () => this.drawTable(false),
+        OFTEN - (performance.now() - this.tabled),
+      );
       return;
     }
     this.tabled = performance.now();
@@ -297,7 +377,9 @@ export class Explorer {
   chooseAxes(keys) {
     if (!keys.length) return;
     const { axes } = this.chosen;
-    this.setAxes(keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }));
+    this.setAxes(
+      keys.map((key) => axes.find((axis) => axis.key === key) ?? { key, flipped: false }),
+    );
   }
 
   /** Return a design in words, with its objectives. @param {number} row */
@@ -315,6 +397,10 @@ export class Explorer {
 
   /** @param {number} index */
   flipAxis(index) {
-    this.setAxes(this.chosen.axes.map((axis, other) => (other === index ? { ...axis, flipped: !axis.flipped } : axis)));
+    this.setAxes(
+      this.chosen.axes.map((axis, other) =>
+        other === index ? { ...axis, flipped: !axis.flipped } : axis,
+      ),
+    );
   }
 }

@@ -16,16 +16,31 @@ const EVERY = 5_000; // ms between two looks at what others keep
 /** Return {place, file, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
 export function keptPanel(explorer) {
   const { data, job, chosen } = explorer;
-  const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of kept designs" });
-  const none = h("p", { class: "quiet hint" }, "None yet. Keep a what-if or rounded design in its view, a wished one above, or the designs that are ticked in the table.");
+  const table = h("div", {
+    class: "scroll",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Table of kept designs",
+  });
+  const none = h(
+    "p",
+    { class: "quiet hint" },
+    "None yet. Keep a what-if or rounded design in its view, a wished one above, or the designs that are ticked in the table.",
+  );
   const add = h("button", { type: "button", onclick: () => keepTicked().catch(sayProblem) });
   const only = h("input", { type: "checkbox", onchange: () => draw("all") });
   const stars = h("label", {}, only, " only with a star");
   const csv = h("a", { download: "" }, "Kept designs as CSV");
   const file = h("li", {}, csv);
   const why = h("p", { class: "decision" });
-  const place = h("section", { class: "panel kept", "aria-labelledby": "kept-title" },
-    h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add), why, none, table);
+  const place = h(
+    "section",
+    { class: "panel kept", "aria-labelledby": "kept-title" },
+    h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add),
+    why,
+    none,
+    table,
+  );
   /** @type {Api.Kept[]} */
   let designs = [];
   let turn = 0; // of the latest question
@@ -72,7 +87,8 @@ export function keptPanel(explorer) {
   }
 
   async function keepTicked() {
-    for (const number of chosen.selected) await post(`jobs/${job.id}/kept`, { design: number, name: `Design ${number}`, star: true });
+    for (const number of chosen.selected)
+      await post(`jobs/${job.id}/kept`, { design: number, name: `Design ${number}`, star: true });
     await ask();
   }
 
@@ -89,15 +105,34 @@ export function keptPanel(explorer) {
   /** Return the view of a kept design; null where more than its lengths is other than in the design that it began as. @param {Api.Kept} one */
   function hrefOf({ design, changed, cells }) {
     if (design === null) return null;
-    return changed ? link(["jobs", job.id, "designs", design], Object.fromEntries(LENGTHS.map((key) => [key, cells[key]]))) : explorer.hrefOf(design - 1);
+    return changed
+      ? link(
+          ["jobs", job.id, "designs", design],
+          Object.fromEntries(LENGTHS.map((key) => [key, cells[key]])),
+        )
+      : explorer.hrefOf(design - 1);
   }
 
   /** Return the link to the report of a kept design, with the alternatives and the reasons; null where it has no view. @param {Api.Kept} one */
   function reportOf(one) {
     const { design, changed, cells, name } = one;
     if (!hrefOf(one)) return null;
-    const lengths = changed ? Object.fromEntries(LENGTHS.map((key) => [key, Number(cells[key])])) : {};
-    return h("a", { class: "button", download: "", "aria-label": `Report of the decision for ${name}`, href: address(`jobs/${job.id}/designs/${design}/report.html`, { ...lengths, units: apiSystem() }) }, "Report of the decision");
+    const lengths = changed
+      ? Object.fromEntries(LENGTHS.map((key) => [key, Number(cells[key])]))
+      : {};
+    return h(
+      "a",
+      {
+        class: "button",
+        download: "",
+        "aria-label": `Report of the decision for ${name}`,
+        href: address(`jobs/${job.id}/designs/${design}/report.html`, {
+          ...lengths,
+          units: apiSystem(),
+        }),
+      },
+      "Report of the decision",
+    );
   }
 
   /** @param {Api.Kept} one */
@@ -105,18 +140,100 @@ export function keptPanel(explorer) {
     const { number, name } = one;
     const href = hrefOf(one);
     /** @param {"note" | "reason"} key @param {string} label */
-    const words = (key, label) => h("td", {}, h("input", { type: "text", maxlength: 4000, value: one[key], "aria-label": `${label} ${name}`, "data-act": `${key}-${number}`, oninput: () => (typing = true), onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }), onblur: () => sent() }));
-    return h("tr", { class: one.decided ? "decided" : null },
-      h("td", {}, h("button", { type: "button", class: "star", "aria-pressed": String(one.star), "aria-label": `Star of ${name}`, "data-act": `star-${number}`, onclick: () => change(number, { star: !one.star }) }, one.star ? "★" : "☆")),
-      h("th", { scope: "row" }, href ? h("a", { href }, name) : name,
-        one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"), one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement")),
-      data.objectives.map(({ column, unit }) => h("td", { class: "number", "data-key": column, "data-value": String(one.cells[column] ?? "") }, withUnit(one.cells[column], unit, 5))),
+    const words = (key, label) =>
+      h(
+        "td",
+        {},
+        h("input", {
+          type: "text",
+          maxlength: 4000,
+          value: one[key],
+          "aria-label": `${label} ${name}`,
+          "data-act": `${key}-${number}`,
+          oninput: () => (typing = true),
+          onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }),
+          onblur: () => sent(),
+        }),
+      );
+    return h(
+      "tr",
+      { class: one.decided ? "decided" : null },
+      h(
+        "td",
+        {},
+        h(
+          "button",
+          {
+            type: "button",
+            class: "star",
+            "aria-pressed": String(one.star),
+            "aria-label": `Star of ${name}`,
+            "data-act": `star-${number}`,
+            onclick: () => change(number, { star: !one.star }),
+          },
+          one.star ? "★" : "☆",
+        ),
+      ),
+      h(
+        "th",
+        { scope: "row" },
+        href ? h("a", { href }, name) : name,
+        one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"),
+        one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement"),
+      ),
+      data.objectives.map(({ column, unit }) =>
+        h(
+          "td",
+          { class: "number", "data-key": column, "data-value": String(one.cells[column] ?? "") },
+          withUnit(one.cells[column], unit, 5),
+        ),
+      ),
       words("note", "Note on"),
-      h("td", {}, h("input", { type: "radio", name: "decided", checked: one.decided, "aria-label": `Decided for ${name}`, "data-act": `decided-${number}`, onchange: () => change(number, { decided: true }) })),
+      h(
+        "td",
+        {},
+        h("input", {
+          type: "radio",
+          name: "decided",
+          checked: one.decided,
+          "aria-label": `Decided for ${name}`,
+          "data-act": `decided-${number}`,
+          onchange: () => change(number, { decided: true }),
+        }),
+      ),
       words("reason", "Why, or why not,"),
-      LENGTHS.map((key) => h("td", { class: "number quiet", "data-key": key, "data-value": String(one.cells[key] ?? "") }, withUnit(one.cells[key], "mm", 6))),
-      h("td", {}, searching(`${job.id}`, () => lengthsOf(one.cells), { title: "Search near", name: `Search near ${name}`, act: `near-${number}` })),
-      h("td", {}, h("button", { type: "button", class: "small", "aria-label": `Drop ${name}`, title: "Drop", onclick: () => drop(one) }, "×")));
+      LENGTHS.map((key) =>
+        h(
+          "td",
+          { class: "number quiet", "data-key": key, "data-value": String(one.cells[key] ?? "") },
+          withUnit(one.cells[key], "mm", 6),
+        ),
+      ),
+      h(
+        "td",
+        {},
+        searching(`${job.id}`, () => lengthsOf(one.cells), {
+          title: "Search near",
+          name: `Search near ${name}`,
+          act: `near-${number}`,
+        }),
+      ),
+      h(
+        "td",
+        {},
+        h(
+          "button",
+          {
+            type: "button",
+            class: "small",
+            "aria-label": `Drop ${name}`,
+            title: "Drop",
+            onclick: () => drop(one),
+          },
+          "×",
+        ),
+      ),
+    );
   }
 
   function drawTable() {
@@ -129,19 +246,73 @@ export function keptPanel(explorer) {
     for (const node of [stars, file]) node.hidden = designs.length === 0;
     csv.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
     const decided = designs.find((one) => one.decided);
-    fill(why, decided && [h("strong", {}, `Decided for ${decided.name}`), decided.reason && ` because ${decided.reason}`, " ", reportOf(decided)]);
+    fill(
+      why,
+      decided && [
+        h("strong", {}, `Decided for ${decided.name}`),
+        decided.reason && ` because ${decided.reason}`,
+        " ",
+        reportOf(decided),
+      ],
+    );
     why.hidden = !decided;
-    const heads = ["", "name", ...data.objectives.map(({ title }) => title), "note", "decided", "because, or why not", "crank", "rod", "offset", "", ""];
+    const heads = [
+      "",
+      "name",
+      ...data.objectives.map(({ title }) => title),
+      "note",
+      "decided",
+      "because, or why not",
+      "crank",
+      "rod",
+      "offset",
+      "",
+      "",
+    ];
     const words = 2 + data.objectives.length; // where those that are no numbers begin
-    fill(table, h("table", {}, h("caption", { class: "hidden" }, "Kept designs"),
-      h("thead", {}, h("tr", {}, heads.map((title, n) => h("th", { scope: "col", class: n > 1 && (n < words || n > words + 2) && title ? "number" : null }, title || h("span", { class: "hidden" }, n ? (n < heads.length - 1 ? "Search near" : "Drop") : "Star"))))), h("tbody", {}, shown.map(line))));
+    fill(
+      table,
+      h(
+        "table",
+        {},
+        h("caption", { class: "hidden" }, "Kept designs"),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            heads.map((title, n) =>
+              h(
+                "th",
+                {
+                  scope: "col",
+                  class: n > 1 && (n < words || n > words + 2) && title ? "number" : null,
+                },
+                title ||
+                  h(
+                    "span",
+                    { class: "hidden" },
+                    n ? (n < heads.length - 1 ? "Search near" : "Drop") : "Star",
+                  ),
+              ),
+            ),
+          ),
+        ),
+        h("tbody", {}, shown.map(line)),
+      ),
+    );
     if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();
   }
 
   const look = () => document.hidden || drawn === "" || ask(() => {}); // the next one may be answered
   const watcher = setInterval(look, EVERY);
   explorer.signal.addEventListener("abort", () => clearInterval(watcher));
-  for (const [from, name] of /** @type {const} */ ([[document, "visibilitychange"], [window, "focus"]])) from.addEventListener(name, look, { signal: explorer.signal });
+  for (const [from, name] of /** @type {const} */ ([
+    [document, "visibilitychange"],
+    [window, "focus"],
+  ]))
+    from.addEventListener(name, look, { signal: explorer.signal });
 
   let drawn = "";
   let ticked = "-";
@@ -149,7 +320,9 @@ export function keptPanel(explorer) {
   function draw(what) {
     if (ticked !== chosen.selected.join()) {
       ticked = chosen.selected.join();
-      add.textContent = ticked ? `Keep design ${chosen.selected.join(", ")}` : "Keep ticked designs";
+      add.textContent = ticked
+        ? `Keep design ${chosen.selected.join(", ")}`
+        : "Keep ticked designs";
       add.disabled = !ticked;
     }
     const now = `${unitOf("mm")} ${only.checked}`;
@@ -161,6 +334,9 @@ export function keptPanel(explorer) {
   }
 
   /** Return those that are none of the front, for the charts. */
-  const marks = () => designs.filter(({ changed, star }) => changed && (star || !only.checked)).map(({ cells, name }) => ({ cells, name }));
+  const marks = () =>
+    designs
+      .filter(({ changed, star }) => changed && (star || !only.checked))
+      .map(({ cells, name }) => ({ cells, name }));
   return { place, file, draw, marks, ask };
 }

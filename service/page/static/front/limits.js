@@ -22,7 +22,9 @@ export class Limits {
 
   /** Set the limit of a column, or take it away with null. @param {string} key @param {Page.Limit | null} limit */
   set(key, limit) {
-    const open = !limit || (limit.words ? limit.words.length === 0 : limit.low === null && limit.high === null);
+    const open =
+      !limit ||
+      (limit.words ? limit.words.length === 0 : limit.low === null && limit.high === null);
     if (open) this.of.delete(key);
     else this.of.set(key, limit);
   }
@@ -36,17 +38,20 @@ export class Limits {
       const numbers = data.numbers(key);
       if (limit.words) {
         const allowed = new Set(limit.words.map((word) => data.words(key)?.indexOf(word)));
-        for (let row = 0; row < mask.length; row += 1) if (!allowed.has(numbers[row])) mask[row] = 0;
+        for (let row = 0; row < mask.length; row += 1)
+          if (!allowed.has(numbers[row])) mask[row] = 0;
       } else {
         const low = limit.low === null ? -Infinity : limit.low - NEAR * Math.abs(limit.low);
         const high = limit.high === null ? Infinity : limit.high + NEAR * Math.abs(limit.high);
         // Written so that a design without a value is outside.
-        for (let row = 0; row < mask.length; row += 1) if (!(numbers[row] >= low && numbers[row] <= high)) mask[row] = 0;
+        for (let row = 0; row < mask.length; row += 1)
+          if (!(numbers[row] >= low && numbers[row] <= high)) mask[row] = 0;
       }
     }
     if (this.lasso && data.has(this.lasso.x) && data.has(this.lasso.y)) {
       const [across, up] = [data.numbers(this.lasso.x), data.numbers(this.lasso.y)];
-      for (let row = 0; row < mask.length; row += 1) if (mask[row] && !inside(this.lasso.line, across[row], up[row])) mask[row] = 0;
+      for (let row = 0; row < mask.length; row += 1)
+        if (mask[row] && !inside(this.lasso.line, across[row], up[row])) mask[row] = 0;
     }
     let chosen = 0;
     for (let row = 0; row < mask.length; row += 1) chosen += mask[row];

@@ -24,7 +24,13 @@ export function linkagePanel(explorer) {
   const way = h("a", { class: "button primary" });
   const picture = h("div", { class: "linkage-picture" });
   const numbers = h("dl", { class: "terms" });
-  const place = h("section", { class: "panel linkage", "aria-labelledby": "linkage-title" }, h("div", { class: "row spread" }, title, way), picture, numbers);
+  const place = h(
+    "section",
+    { class: "panel linkage", "aria-labelledby": "linkage-title" },
+    h("div", { class: "row spread" }, title, way),
+    picture,
+    numbers,
+  );
   const drawn = drawing(picture, { label: "" });
   /** @type {ReturnType<typeof turning> | null} */
   let motion = null; // once the service said which way the crank turns
@@ -37,7 +43,12 @@ export function linkagePanel(explorer) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later;
   let within = false; // whether the pointer or the focus is in the panel itself
-  for (const [name, inside] of /** @type {const} */ ([["pointerenter", true], ["focusin", true], ["pointerleave", false], ["focusout", false]])) {
+  for (const [name, inside] of /** @type {const} */ ([
+    ["pointerenter", true],
+    ["focusin", true],
+    ["pointerleave", false],
+    ["focusout", false],
+  ])) {
     place.addEventListener(name, () => {
       within = inside;
       move();
@@ -47,7 +58,14 @@ export function linkagePanel(explorer) {
   /** Ask once for the speed of the crank; without an answer it turns counter-clockwise. */
   async function ask() {
     asked = true;
-    const rpm = await get(`jobs/${explorer.job.id}/designs/1/requirements`, {}, explorer.signal).then(({ speed_rpm }) => speed_rpm ?? 0, () => 0);
+    const rpm = await get(
+      `jobs/${explorer.job.id}/designs/1/requirements`,
+      {},
+      explorer.signal,
+    ).then(
+      ({ speed_rpm }) => speed_rpm ?? 0,
+      () => 0,
+    );
     if (explorer.signal.aborted) return;
     motion = turning(rpm, explorer.signal);
     motion.set(START);
@@ -67,22 +85,38 @@ export function linkagePanel(explorer) {
   /** Draw a design that swings between its ends, once the service has said how it goes. @param {number} row */
   async function showSwing(row) {
     const path = /** @type {const} */ (`jobs/${explorer.job.id}/designs/${row + 1}/curves`);
-    const asked = cycles.get(row) ?? get(path, { angles: TIMES }, explorer.signal).then(({ curves }) => curves, () => null);
+    const asked =
+      cycles.get(row) ??
+      get(path, { angles: TIMES }, explorer.signal).then(
+        ({ curves }) => curves,
+        () => null,
+      );
     cycles.set(row, asked);
     const curves = await asked;
     if (!curves || shown !== row || explorer.signal.aborted) return;
-    drawn.show(explorer.linkages.of(row), curves, { frame: explorer.linkages.frame(), direction: 0, small: true, turns: 0, dead_centres_deg: ENDS });
+    drawn.show(explorer.linkages.of(row), curves, {
+      frame: explorer.linkages.frame(),
+      direction: 0,
+      small: true,
+      turns: 0,
+      dead_centres_deg: ENDS,
+    });
     if (!motion) drawn.turn(START);
   }
 
   /** @param {string} what */
   function draw(what) {
-    const row = explorer.pointed ?? shown ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
+    const row =
+      explorer.pointed ?? shown ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
     if (row !== shown || what === "all") {
       shown = row;
       const linkage = explorer.linkages.of(row);
       const names = namesOf(explorer).get(row) ?? [];
-      fill(title, `Design ${row + 1}`, names.length > 0 && h("span", { class: "quiet" }, ` ${names.join(", ")}`));
+      fill(
+        title,
+        `Design ${row + 1}`,
+        names.length > 0 && h("span", { class: "quiet" }, ` ${names.join(", ")}`),
+      );
       fill(way, "Open", h("span", { class: "hidden" }, " the design of the picture"));
       way.href = explorer.hrefOf(row);
       drawn.node.setAttribute("aria-label", `Linkage of design ${row + 1}`);
@@ -90,13 +124,27 @@ export function linkagePanel(explorer) {
         clearTimeout(later);
         later = setTimeout(() => showSwing(row), cycles.has(row) ? 0 : SOON);
       } else {
-        drawn.show(linkage, motionOf(linkage), { frame: explorer.linkages.frame(), direction: motion?.direction ?? 0, small: true });
+        drawn.show(linkage, motionOf(linkage), {
+          frame: explorer.linkages.frame(),
+          direction: motion?.direction ?? 0,
+          small: true,
+        });
         if (!motion) drawn.turn(START);
       }
-      fill(numbers, [...data.objectives.map(({ column }) => column), ...LENGTHS].filter((key) => data.has(key)).map((key) => {
-        const { title: words, unit } = data.column(key);
-        return h("div", { class: LENGTHS.includes(key) ? "length" : null }, h("dt", {}, words), h("dd", { class: "number" }, withUnit(data.cell(key, row), unit, 4)));
-      }));
+      fill(
+        numbers,
+        [...data.objectives.map(({ column }) => column), ...LENGTHS]
+          .filter((key) => data.has(key))
+          .map((key) => {
+            const { title: words, unit } = data.column(key);
+            return h(
+              "div",
+              { class: LENGTHS.includes(key) ? "length" : null },
+              h("dt", {}, words),
+              h("dd", { class: "number" }, withUnit(data.cell(key, row), unit, 4)),
+            );
+          }),
+      );
     }
     move();
   }

@@ -26,7 +26,13 @@ export function linkages(data) {
     for (let row = 0; row < data.count; row += 1) {
       const { inner, outer } = deadCentresOf(of(row));
       const { crank_mm: r } = of(row);
-      found.push(frameWithin(of(row), Number.isFinite(inner) ? inner : 0, Number.isFinite(outer) ? outer : r)); // of one that need not turn
+      found.push(
+        frameWithin(
+          of(row),
+          Number.isFinite(inner) ? inner : 0,
+          Number.isFinite(outer) ? outer : r,
+        ),
+      ); // of one that need not turn
     }
     frame = around(found);
     return frame;

@@ -21,8 +21,21 @@ export function keepListed(job, numbers) {
 export function beside(job, number, all) {
   const numbers = kept(job);
   const place = numbers.indexOf(number);
-  if (place >= 0) return { place: place + 1, count: numbers.length, before: numbers[place - 1] ?? null, after: numbers[place + 1] ?? null, listed: true };
-  return { place: number, count: all, before: number > 1 ? number - 1 : null, after: number < all ? number + 1 : null, listed: false };
+  if (place >= 0)
+    return {
+      place: place + 1,
+      count: numbers.length,
+      before: numbers[place - 1] ?? null,
+      after: numbers[place + 1] ?? null,
+      listed: true,
+    };
+  return {
+    place: number,
+    count: all,
+    before: number > 1 ? number - 1 : null,
+    after: number < all ? number + 1 : null,
+    listed: false,
+  };
 }
 
 /** @param {string | number} job @returns {number[]} */
@@ -44,6 +57,9 @@ export function linesOf(table, numbers) {
   const [head, ...lines] = table.trimEnd().split(/\r?\n/);
   const found = new Map(lines.map((line) => [Number.parseInt(line, 10), line]));
   const wanted = numbers.map((number) => found.get(number));
-  if (!head.startsWith("number") || found.size !== lines.length || wanted.includes(undefined)) throw new Error("The table of the service has not one line for each design; download all of it instead.");
+  if (!head.startsWith("number") || found.size !== lines.length || wanted.includes(undefined))
+    throw new Error(
+      "The table of the service has not one line for each design; download all of it instead.",
+    );
   return `${[head, ...wanted].join("\n")}\n`;
 }

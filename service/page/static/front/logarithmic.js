@@ -17,5 +17,8 @@ export function logged(explorer, key) {
 /** Make the axes of a column logarithmic, or linear again. @param {Explorer} explorer @param {string} key */
 export function logAxis(explorer, key) {
   const { log } = explorer.chosen;
-  explorer.change({ log: log.includes(key) ? log.filter((other) => other !== key) : [...log, key] }, "all");
+  explorer.change(
+    { log: log.includes(key) ? log.filter((other) => other !== key) : [...log, key] },
+    "all",
+  );
 }

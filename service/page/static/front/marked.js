@@ -10,12 +10,24 @@ export function marksOf(explorer, kind) {
   const { ink, front, picked, pointed, chosen } = explorer;
   /** @type {Page.Mark[]} */
   const found = [];
-  if (kind === "dots") for (const [row, names] of namesOf(explorer)) found.push({ row, colour: ink.text, name: names[0] });
+  if (kind === "dots")
+    for (const [row, names] of namesOf(explorer))
+      found.push({ row, colour: ink.text, name: names[0] });
   else if (front.knee !== null) found.push({ row: front.knee, colour: ink.text, width: 2 });
-  if (picked !== null) found.push({ row: picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
-  for (const { cells, name } of othersOf(explorer)) found.push({ cells, colour: ink["series-4"], name, width: 3 });
-  for (const number of chosen.selected) found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
-  if (pointed !== null) found.push({ row: pointed, colour: ink.mark, width: 3.5, name: kind === "dots" ? `${pointed + 1}` : "", read: true });
+  if (picked !== null)
+    found.push({ row: picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
+  for (const { cells, name } of othersOf(explorer))
+    found.push({ cells, colour: ink["series-4"], name, width: 3 });
+  for (const number of chosen.selected)
+    found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
+  if (pointed !== null)
+    found.push({
+      row: pointed,
+      colour: ink.mark,
+      width: 3.5,
+      name: kind === "dots" ? `${pointed + 1}` : "",
+      read: true,
+    });
   return found;
 }
 
@@ -33,7 +45,8 @@ export function namesOf({ front, data }) {
   const add = (row, name) => names.set(row, [...(names.get(row) ?? []), name]);
   if (front.knee !== null) add(front.knee, "knee");
   for (const [quantity, row] of Object.entries(front.extremes)) {
-    const title = data.objectives.find((objective) => objective.quantity === quantity)?.title ?? quantity;
+    const title =
+      data.objectives.find((objective) => objective.quantity === quantity)?.title ?? quantity;
     add(row, `best ${title}`);
   }
   return names;

@@ -22,15 +22,30 @@ export function marksPanel(explorer) {
   const sliders = data.objectives.map((objective, index) => slider(objective, index));
   const off = h("button", { type: "button", onclick: () => weigh(null) }, "Without weights");
   const several = data.objectives.length > 1;
-  const place = h("section", { class: "panel worth", "aria-labelledby": "marks-title" },
+  const place = h(
+    "section",
+    { class: "panel worth", "aria-labelledby": "marks-title" },
     h("h2", { id: "marks-title" }, "Worth a look"),
     beyondAllowed,
     front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${inWords(sentence)}.`)),
     list,
     front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), costs],
-    several && [h("h3", { class: "weights" }, "Weigh the objectives"),
-      h("p", { class: "quiet hint" }, "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities."),
-      h("div", { class: "weights" }, sliders.map(({ node }) => node)), picked, off]);
+    several && [
+      h("h3", { class: "weights" }, "Weigh the objectives"),
+      h(
+        "p",
+        { class: "quiet hint" },
+        "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities.",
+      ),
+      h(
+        "div",
+        { class: "weights" },
+        sliders.map(({ node }) => node),
+      ),
+      picked,
+      off,
+    ],
+  );
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   let asked = "";
@@ -39,11 +54,18 @@ export function marksPanel(explorer) {
   /** @param {Api.Objective} given @param {number} index */
   function slider({ title }, index) {
     const value = h("output", { class: "number" });
-    const input = h("input", { type: "range", min: 0, max: 10, step: 1, name: `weight-${index}`, oninput: () => {
-      const weights = chosen.weights ? [...chosen.weights] : data.objectives.map(() => 1);
-      weights[index] = Number(input.value);
-      weigh(weights);
-    } });
+    const input = h("input", {
+      type: "range",
+      min: 0,
+      max: 10,
+      step: 1,
+      name: `weight-${index}`,
+      oninput: () => {
+        const weights = chosen.weights ? [...chosen.weights] : data.objectives.map(() => 1);
+        weights[index] = Number(input.value);
+        weigh(weights);
+      },
+    });
     return { input, value, node: h("label", {}, h("span", {}, title), input, value) };
   }
 
@@ -65,17 +87,28 @@ export function marksPanel(explorer) {
       picked.textContent = weights ? "Give one of them a weight." : "";
       return;
     }
-    const topsis = data.objectives.map(({ quantity }, index) => `${quantity}=${weights[index]}`).join(", ");
+    const topsis = data.objectives
+      .map(({ quantity }, index) => `${quantity}=${weights[index]}`)
+      .join(", ");
     const where = explorer.limits.conditions();
     const question = JSON.stringify([topsis, where]);
     if (question === asked) return;
     timer = setTimeout(async () => {
       asked = question;
       try {
-        const { number } = await get(`jobs/${explorer.job.id}/pick`, { topsis, where }, explorer.signal);
+        const { number } = await get(
+          `jobs/${explorer.job.id}/pick`,
+          { topsis, where },
+          explorer.signal,
+        );
         if (asked !== question) return;
         explorer.picked = number - 1;
-        fill(picked, "These weights choose ", h("a", { href: explorer.hrefOf(number - 1) }, `design ${number}`), ".");
+        fill(
+          picked,
+          "These weights choose ",
+          h("a", { href: explorer.hrefOf(number - 1) }, `design ${number}`),
+          ".",
+        );
       } catch (problem) {
         if (asked !== question || isAbort(problem)) return;
         explorer.picked = null;
@@ -88,20 +121,48 @@ export function marksPanel(explorer) {
 
   /** @param {number} row @param {string} name */
   function item(row, name) {
-    const of = data.objectives.map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4)).join(" · ");
-    return h("li", { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
+    const of = data.objectives
+      .map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4))
+      .join(" · ");
+    return h(
+      "li",
+      { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
       smallLinkage(explorer.linkages.of(row), explorer.linkages.frame()),
-      h("div", {},
-        h("a", { href: explorer.hrefOf(row), onfocus: () => explorer.focus(row), onblur: () => explorer.focus(null) }, `Design ${row + 1}`), ` ${name}`, h("div", { class: "quiet" }, of)));
+      h(
+        "div",
+        {},
+        h(
+          "a",
+          {
+            href: explorer.hrefOf(row),
+            onfocus: () => explorer.focus(row),
+            onblur: () => explorer.focus(null),
+          },
+          `Design ${row + 1}`,
+        ),
+        ` ${name}`,
+        h("div", { class: "quiet" }, of),
+      ),
+    );
   }
 
   /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
   async function drawCosts() {
     if (!front.trade_offs.length || front.knee === null) return;
     const units = apiSystem();
-    const asked = units && get(`jobs/${explorer.job.id}/designs/${front.knee + 1}/trade-offs`, { units }, explorer.signal);
+    const asked =
+      units &&
+      get(
+        `jobs/${explorer.job.id}/designs/${front.knee + 1}/trade-offs`,
+        { units },
+        explorer.signal,
+      );
     const sentences = asked ? (await asked).trade_offs : front.trade_offs;
-    if (units === apiSystem()) fill(costs, sentences.map((sentence) => h("li", {}, sentence)));
+    if (units === apiSystem())
+      fill(
+        costs,
+        sentences.map((sentence) => h("li", {}, sentence)),
+      );
   }
 
   /** @param {string} what */
@@ -113,10 +174,18 @@ export function marksPanel(explorer) {
     off.hidden = !chosen.weights;
     ask();
     if (what !== "all") return;
-    fill(beyondAllowed, front.violations.map((sentence) => h("p", { class: "error" }, `Beyond what is allowed: ${inShownUnits(sentence)}.`)));
+    fill(
+      beyondAllowed,
+      front.violations.map((sentence) =>
+        h("p", { class: "error" }, `Beyond what is allowed: ${inShownUnits(sentence)}.`),
+      ),
+    );
     drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));
     await data.need(data.objectives.map(({ column }) => column)).catch(sayProblem);
-    fill(list, [...namesOf(explorer)].map(([row, names]) => item(row, names.join(", "))));
+    fill(
+      list,
+      [...namesOf(explorer)].map(([row, names]) => item(row, names.join(", "))),
+    );
   }
   return { place, draw };
 }

@@ -11,13 +11,25 @@ import { linesOf } from "./listed.js";
 
 /** Return {node, draw()} of the button that saves the chosen designs of an explorer. @param {Explorer} explorer */
 export function saving(explorer) {
-  const node = h("button", { type: "button", class: "linked", onclick: () => save().catch(sayProblem) });
+  const node = h("button", {
+    type: "button",
+    class: "linked",
+    onclick: () => save().catch(sayProblem),
+  });
 
   async function save() {
     node.disabled = true;
     try {
-      const all = await getText(`jobs/${explorer.job.id}/export.csv`, { units: apiSystem() }, explorer.signal);
-      download(linesOf(all, explorer.table.numbers()), "text/csv", `${explorer.front.run}-chosen.csv`);
+      const all = await getText(
+        `jobs/${explorer.job.id}/export.csv`,
+        { units: apiSystem() },
+        explorer.signal,
+      );
+      download(
+        linesOf(all, explorer.table.numbers()),
+        "text/csv",
+        `${explorer.front.run}-chosen.csv`,
+      );
     } finally {
       draw();
     }
@@ -25,7 +37,9 @@ export function saving(explorer) {
 
   function draw() {
     const { open, chosen } = explorer.limits;
-    node.textContent = open ? "As the table is sorted, as CSV" : `${grouped(chosen)} chosen, as sorted, as CSV`;
+    node.textContent = open
+      ? "As the table is sorted, as CSV"
+      : `${grouped(chosen)} chosen, as sorted, as CSV`;
     node.disabled = chosen === 0;
   }
   return { node, draw };

@@ -20,24 +20,69 @@ export function scatterPanel(explorer, dots) {
   const { data, chosen } = explorer;
   /** @param {string} label @param {"x" | "y" | "colour"} name @param {string} none */
   const pick = (label, name, none = "") => {
-    const select = h("select", { name, onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all") },
-      none && h("option", { value: "" }, none), data.columns.map(({ key, title }) => h("option", { value: key }, title)));
-    const log = h("input", { type: "checkbox", "aria-label": `Logarithmic, ${label.toLowerCase()}`, onchange: () => logAxis(explorer, chosen[name]) });
+    const select = h(
+      "select",
+      {
+        name,
+        onchange: ({ currentTarget }) => explorer.change({ [name]: currentTarget.value }, "all"),
+      },
+      none && h("option", { value: "" }, none),
+      data.columns.map(({ key, title }) => h("option", { value: key }, title)),
+    );
+    const log = h("input", {
+      type: "checkbox",
+      "aria-label": `Logarithmic, ${label.toLowerCase()}`,
+      onchange: () => logAxis(explorer, chosen[name]),
+    });
     const logs = h("label", { class: "log", title: "Logarithmic axis" }, log, " log");
-    return { name, select, log, logs, node: h("span", { class: "pick" }, h("label", {}, `${label} `, select), name !== "colour" && logs) };
+    return {
+      name,
+      select,
+      log,
+      logs,
+      node: h(
+        "span",
+        { class: "pick" },
+        h("label", {}, `${label} `, select),
+        name !== "colour" && logs,
+      ),
+    };
   };
-  const drag = h("label", {}, "Drag ", h("select", { name: "drag", onchange: (event) => dots.byHand(event.currentTarget.value === "line") },
-    h("option", { value: "box" }, "a box"), h("option", { value: "line" }, "by hand")));
+  const drag = h(
+    "label",
+    {},
+    "Drag ",
+    h(
+      "select",
+      { name: "drag", onchange: (event) => dots.byHand(event.currentTarget.value === "line") },
+      h("option", { value: "box" }, "a box"),
+      h("option", { value: "line" }, "by hand"),
+    ),
+  );
   const picks = [pick("Across", "x"), pick("Up", "y"), pick("Colour", "colour", "none")];
   const key = h("div", { class: "legend" });
   const together = correlations(explorer);
   const before = h("div", { class: "legend before", hidden: true });
-  const place = h("section", { class: "panel trade-off", "aria-labelledby": "scatter-title" },
+  const place = h(
+    "section",
+    { class: "panel trade-off", "aria-labelledby": "scatter-title" },
     h("h2", { id: "scatter-title" }, "Trade-offs"),
-    h("div", { class: "row picks" }, picks.map(({ node }) => node), drag),
+    h(
+      "div",
+      { class: "row picks" },
+      picks.map(({ node }) => node),
+      drag,
+    ),
     h("div", { class: "dots" }, dots.place),
-    key, before, together.place,
-    h("p", { class: "quiet hint" }, "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it."));
+    key,
+    before,
+    together.place,
+    h(
+      "p",
+      { class: "quiet hint" },
+      "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it.",
+    ),
+  );
 
   function draw() {
     for (const one of picks) {
@@ -52,8 +97,26 @@ export function scatterPanel(explorer, dots) {
     const { before: run } = explorer;
     before.hidden = !run;
     if (!run || before.firstChild) return;
-    const shown = h("input", { type: "checkbox", checked: chosen.behind, onchange: ({ currentTarget }) => explorer.change({ behind: currentTarget.checked }, "all") });
-    fill(before, h("label", {}, shown, h("span", { class: "ring", "aria-hidden": "true" }), ` Behind it: the front of run ${run.run}`), h("a", { href: link(["compare"], { jobs: `${run.run},${explorer.job.id}` }) }, "Compare them"));
+    const shown = h("input", {
+      type: "checkbox",
+      checked: chosen.behind,
+      onchange: ({ currentTarget }) => explorer.change({ behind: currentTarget.checked }, "all"),
+    });
+    fill(
+      before,
+      h(
+        "label",
+        {},
+        shown,
+        h("span", { class: "ring", "aria-hidden": "true" }),
+        ` Behind it: the front of run ${run.run}`,
+      ),
+      h(
+        "a",
+        { href: link(["compare"], { jobs: `${run.run},${explorer.job.id}` }) },
+        "Compare them",
+      ),
+    );
   }
 
   function legend() {
@@ -72,11 +135,25 @@ export function scatterPanel(explorer, dots) {
       return node;
     };
     if (words) {
-      fill(key, h("span", {}, `${column.title}:`), words.map((word, index) => h("span", {}, patch(inks[index % inks.length]), ` ${word}`)));
+      fill(
+        key,
+        h("span", {}, `${column.title}:`),
+        words.map((word, index) => h("span", {}, patch(inks[index % inks.length]), ` ${word}`)),
+      );
       return;
     }
     const [low, high] = ends(data.range(chosen.colour), column.unit);
-    fill(key, h("span", {}, headed(column)), h("span", {}, low), h("span", { class: "shades", title: "viridis: equal steps look alike" }, inks.map((ink) => patch(ink, true))), h("span", {}, high));
+    fill(
+      key,
+      h("span", {}, headed(column)),
+      h("span", {}, low),
+      h(
+        "span",
+        { class: "shades", title: "viridis: equal steps look alike" },
+        inks.map((ink) => patch(ink, true)),
+      ),
+      h("span", {}, high),
+    );
   }
 
   return { place, draw, legend, together };

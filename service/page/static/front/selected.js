@@ -16,11 +16,28 @@ export function selectedBar(explorer) {
     if (shown === selected.join()) return;
     shown = selected.join();
     const [first, ...others] = selected;
-    fill(place,
-      selected.length === 0 && h("span", { class: "quiet" }, "Tick two or three designs to see them side by side"),
-      selected.length === 1 && h("span", { class: "quiet" }, `Design ${first} is selected; tick another one`),
-      selected.length > 1 && h("a", { class: "button primary", href: link(["jobs", explorer.job.id, "designs", first], { beside: others.join(",") }) }, `Designs ${selected.join(", ")} side by side`),
-      selected.length > 0 && h("button", { type: "button", onclick: () => explorer.change({ selected: [] }, "marks") }, "Select none"));
+    fill(
+      place,
+      selected.length === 0 &&
+        h("span", { class: "quiet" }, "Tick two or three designs to see them side by side"),
+      selected.length === 1 &&
+        h("span", { class: "quiet" }, `Design ${first} is selected; tick another one`),
+      selected.length > 1 &&
+        h(
+          "a",
+          {
+            class: "button primary",
+            href: link(["jobs", explorer.job.id, "designs", first], { beside: others.join(",") }),
+          },
+          `Designs ${selected.join(", ")} side by side`,
+        ),
+      selected.length > 0 &&
+        h(
+          "button",
+          { type: "button", onclick: () => explorer.change({ selected: [] }, "marks") },
+          "Select none",
+        ),
+    );
   }
   return { place, draw };
 }

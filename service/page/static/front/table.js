@@ -17,7 +17,12 @@ export function designTable(explorer) {
   const body = h("tbody");
   const caption = h("caption", { class: "hidden" }, "The chosen designs");
   const pages = h("nav", { class: "row pages", "aria-label": "Pages of designs" });
-  const place = h("div", {}, h("div", { class: "scroll" }, h("table", { class: "designs" }, caption, head, body)), pages);
+  const place = h(
+    "div",
+    {},
+    h("div", { class: "scroll" }, h("table", { class: "designs" }, caption, head, body)),
+    pages,
+  );
   body.addEventListener("keydown", keys);
 
   function rows() {
@@ -44,17 +49,54 @@ export function designTable(explorer) {
     const page = Math.min(chosen.page, last);
     const columns = chosen.columns.filter((key) => data.has(key));
     const held = focused(place)?.dataset.act;
-    fill(head, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "hidden" }, "Selected")), h("th", { scope: "col" }, "design"), columns.map(heading)));
+    fill(
+      head,
+      h(
+        "tr",
+        {},
+        h("th", { scope: "col" }, h("span", { class: "hidden" }, "Selected")),
+        h("th", { scope: "col" }, "design"),
+        columns.map(heading),
+      ),
+    );
     const names = namesOf(explorer);
-    fill(body, [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)));
-    if (!found.length) fill(body, h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")));
+    fill(
+      body,
+      [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)),
+    );
+    if (!found.length)
+      fill(
+        body,
+        h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")),
+      );
     /** @param {string} sign @param {string} label @param {number} to @param {boolean} disabled */
-    const turn = (sign, label, to, disabled) => h("button", { type: "button", "aria-label": label, "data-act": label, disabled, onclick: () => explorer.change({ page: to }, "table") }, sign);
+    const turn = (sign, label, to, disabled) =>
+      h(
+        "button",
+        {
+          type: "button",
+          "aria-label": label,
+          "data-act": label,
+          disabled,
+          onclick: () => explorer.change({ page: to }, "table"),
+        },
+        sign,
+      );
     const first = (page - 1) * PAGE;
-    fill(pages,
-      turn("«", "First page", 1, page === 1), turn("‹", "Previous page", page - 1, page === 1),
-      h("span", {}, found.length ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${grouped(limits.chosen)}` : "0"),
-      turn("›", "Next page", page + 1, page === last), turn("»", "Last page", last, page === last));
+    fill(
+      pages,
+      turn("«", "First page", 1, page === 1),
+      turn("‹", "Previous page", page - 1, page === 1),
+      h(
+        "span",
+        {},
+        found.length
+          ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${grouped(limits.chosen)}`
+          : "0",
+      ),
+      turn("›", "Next page", page + 1, page === last),
+      turn("»", "Last page", last, page === last),
+    );
     if (held) firstOf(place, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
     mark();
   }
@@ -65,26 +107,80 @@ export function designTable(explorer) {
     const { sort, reverse } = explorer.chosen;
     const sorted = sort === key ? (reverse ? "descending" : "ascending") : "none";
     const words = explorer.data.words(key);
-    return h("th", { scope: "col", class: words ? null : "number", "aria-sort": sorted },
-      h("button", { type: "button", class: "sort", "data-act": `sort-${key}`, title: `Sort by ${column.title}`, onclick: () => explorer.sortBy(key) },
-        headed(column), h("span", { "aria-hidden": "true" }, { ascending: " ▲", descending: " ▼", none: "" }[sorted])),
-      h("a", { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` }, "?"),
-      h("div", { class: "way" }, explorer.data.better(key)));
+    return h(
+      "th",
+      { scope: "col", class: words ? null : "number", "aria-sort": sorted },
+      h(
+        "button",
+        {
+          type: "button",
+          class: "sort",
+          "data-act": `sort-${key}`,
+          title: `Sort by ${column.title}`,
+          onclick: () => explorer.sortBy(key),
+        },
+        headed(column),
+        h(
+          "span",
+          { "aria-hidden": "true" },
+          { ascending: " ▲", descending: " ▼", none: "" }[sorted],
+        ),
+      ),
+      h(
+        "a",
+        { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` },
+        "?",
+      ),
+      h("div", { class: "way" }, explorer.data.better(key)),
+    );
   }
 
   /** @param {number} row @param {string[]} columns @param {Map<number, string[]>} names */
   function line(row, columns, names) {
     const { data, chosen } = explorer;
     const number = row + 1;
-    return h("tr", { "data-row": row, onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
-      h("td", {}, h("input", { type: "checkbox", "data-act": `select-${row}`, checked: chosen.selected.includes(number), "aria-label": `Select design ${number}`, onchange: () => explorer.select(row) })),
-      h("td", {},
-        h("a", { href: explorer.hrefOf(row), "data-act": `open-${row}`, onfocus: () => explorer.focus(row), onblur: () => explorer.focus(null) }, `${number}`),
-        (names.get(row) ?? []).map((name) => h("span", { class: "mark-name" }, name))),
+    return h(
+      "tr",
+      {
+        "data-row": row,
+        onpointerenter: () => explorer.point(row),
+        onpointerleave: () => explorer.point(null),
+      },
+      h(
+        "td",
+        {},
+        h("input", {
+          type: "checkbox",
+          "data-act": `select-${row}`,
+          checked: chosen.selected.includes(number),
+          "aria-label": `Select design ${number}`,
+          onchange: () => explorer.select(row),
+        }),
+      ),
+      h(
+        "td",
+        {},
+        h(
+          "a",
+          {
+            href: explorer.hrefOf(row),
+            "data-act": `open-${row}`,
+            onfocus: () => explorer.focus(row),
+            onblur: () => explorer.focus(null),
+          },
+          `${number}`,
+        ),
+        (names.get(row) ?? []).map((name) => h("span", { class: "mark-name" }, name)),
+      ),
       columns.map((key) => {
         const value = data.cell(key, row);
-        return h("td", { class: data.words(key) ? null : "number" }, aligned(value, data.column(key).unit, data.range(key)));
-      }));
+        return h(
+          "td",
+          { class: data.words(key) ? null : "number" },
+          aligned(value, data.column(key).unit, data.range(key)),
+        );
+      }),
+    );
   }
 
   /** Arrows go from row to row, Enter opens, the space bar selects. @param {KeyboardEvent} event */
@@ -126,7 +222,8 @@ export function designTable(explorer) {
  */
 function aligned(value, unit, { low, high }) {
   const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));
-  if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6)) return text(value, unit, 5);
+  if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6))
+    return text(value, unit, 5);
   const places = Math.max(0, 4 - Math.floor(Math.log10(greatest)));
   const shown = inShown(value, unit).toFixed(places);
   return Number(shown) === 0 && value !== 0 ? text(value, unit, 3) : shown.replace("-", "−");

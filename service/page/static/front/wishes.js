@@ -17,7 +17,8 @@ export function wishesFrom(query, objectives) {
     const text = query.get(`wish.${quantity}`) ?? "";
     const [, limit, number] = /^(to )?(.+)$/.exec(text) ?? [];
     if (CLASSES.includes(text)) of.set(quantity, { kind: /** @type {Kind} */ (text) });
-    else if (number && Number.isFinite(Number(number))) of.set(quantity, { kind: limit ? "limit" : "value", value: Number(number) });
+    else if (number && Number.isFinite(Number(number)))
+      of.set(quantity, { kind: limit ? "limit" : "value", value: Number(number) });
   }
   const design = Number(query.get("wish.design"));
   return of.size ? { of, design: Number.isInteger(design) && design > 0 ? design : null } : null;
@@ -27,7 +28,9 @@ export function wishesFrom(query, objectives) {
 export function wishQuery(wishes) {
   /** @type {Record<string, string>} */
   const query = {};
-  for (const [quantity, { kind, value }] of wishes?.of ?? []) query[`wish.${quantity}`] = kind === "limit" ? `to ${value}` : kind === "value" ? String(value) : kind;
+  for (const [quantity, { kind, value }] of wishes?.of ?? [])
+    query[`wish.${quantity}`] =
+      kind === "limit" ? `to ${value}` : kind === "value" ? String(value) : kind;
   if (wishes?.design) query["wish.design"] = String(wishes.design);
   return query;
 }
@@ -40,7 +43,10 @@ export function asked({ of, design }, objectives) {
   const units = new Map(objectives.map(({ quantity, unit }) => [quantity, unit]));
   const at = [...of].map(([quantity, { kind, value }]) => {
     const number = `${value} ${units.get(quantity) ?? ""}`.trim();
-    return [quantity, kind === "value" ? number : kind === "limit" ? `may worsen to ${number}` : kind];
+    return [
+      quantity,
+      kind === "value" ? number : kind === "limit" ? `may worsen to ${number}` : kind,
+    ];
   });
   return { at: Object.fromEntries(at), design: relative({ of, design }) ? design : null };
 }
@@ -59,18 +65,36 @@ export function wrongIn(wishes, objectives, count) {
   /** @type {Problem[]} */
   const found = [];
   for (const [quantity, { kind, value }] of of) {
-    if ((kind === "value" || kind === "limit") && !Number.isFinite(value ?? NaN)) found.push({ id: quantity, text: "A number is needed here; write one, or choose “free”." });
+    if ((kind === "value" || kind === "limit") && !Number.isFinite(value ?? NaN))
+      found.push({ id: quantity, text: "A number is needed here; write one, or choose “free”." });
   }
   const kinds = objectives.map(({ quantity }) => of.get(quantity)?.kind ?? "free");
-  if (relative(wishes) && (design === null || !Number.isInteger(design) || design < 1 || design > count)) found.push({ id: "design", text: `“Improve” and “keep” speak of a design of the front; give its number, 1 to ${count}.` });
-  if (!kinds.some((kind) => kind === "value" || kind === "improve")) found.push({ id: "", text: "Nothing is wished yet; give one objective a value, or let it improve." });
-  else if (kinds.every((kind) => CLASSES.includes(kind))) found.push({ id: "", text: "No design improves while all other objectives keep; let one be free, or worsen to a value." });
+  if (
+    relative(wishes) &&
+    (design === null || !Number.isInteger(design) || design < 1 || design > count)
+  )
+    found.push({
+      id: "design",
+      text: `“Improve” and “keep” speak of a design of the front; give its number, 1 to ${count}.`,
+    });
+  if (!kinds.some((kind) => kind === "value" || kind === "improve"))
+    found.push({
+      id: "",
+      text: "Nothing is wished yet; give one objective a value, or let it improve.",
+    });
+  else if (kinds.every((kind) => CLASSES.includes(kind)))
+    found.push({
+      id: "",
+      text: "No design improves while all other objectives keep; let one be free, or worsen to a value.",
+    });
   return found;
 }
 
 /** Return where a refusal of the service belongs: to the objective that it names first. @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem} */
 export function placed(detail, objectives) {
-  const named = objectives.map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) })).filter(({ at }) => at >= 0);
+  const named = objectives
+    .map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) }))
+    .filter(({ at }) => at >= 0);
   named.sort((one, other) => one.at - other.at || other.quantity.length - one.quantity.length);
   const text = `${detail.charAt(0).toUpperCase()}${detail.slice(1)}.`;
   return { id: named.length === 1 ? named[0].quantity : "", text };
@@ -78,7 +102,13 @@ export function placed(detail, objectives) {
 
 /** Return wishes that somebody made, as the service has them. @param {Api.MadeWish} made @returns {Wishes} */
 export function wishesOf({ wishes, design }) {
-  const of = Object.entries(wishes).map(([quantity, { wish, value }]) => /** @type {[string, Wish]} */ ([quantity, value === null ? { kind: wish } : { kind: wish, value }]));
+  const of = Object.entries(wishes).map(
+    ([quantity, { wish, value }]) =>
+      /** @type {[string, Wish]} */ ([
+        quantity,
+        value === null ? { kind: wish } : { kind: wish, value },
+      ]),
+  );
   return { of: new Map(of), design };
 }
 

@@ -16,7 +16,13 @@ import { sentenceOf } from "../lib/refusals.js";
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
 
 /** @type {[Kind, string][]} */
-const KINDS = [["free", "is free"], ["value", "is wished"], ["improve", "improves"], ["keep", "keeps"], ["limit", "may worsen to"]];
+const KINDS = [
+  ["free", "is free"],
+  ["value", "is wished"],
+  ["improve", "improves"],
+  ["keep", "keeps"],
+  ["limit", "may worsen to"],
+];
 const APART = 1e-9; // of a number: less is rounding
 
 /** Return {place, draw(what), cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
@@ -24,20 +30,57 @@ export function wishingPanel(explorer) {
   const { data, chosen, job } = explorer;
   const { objectives } = data;
   const rows = objectives.map(row);
-  const design = h("input", { type: "text", inputmode: "numeric", id: "wish-design", class: "number", "aria-describedby": "wish-design-wrong", oninput: clean });
+  const design = h("input", {
+    type: "text",
+    inputmode: "numeric",
+    id: "wish-design",
+    class: "number",
+    "aria-describedby": "wish-design-wrong",
+    oninput: clean,
+  });
   const wrongDesign = h("p", { class: "error", id: "wish-design-wrong" });
-  const from = h("div", { class: "wish-from" }, h("label", { for: "wish-design" }, "“Improves” and “keeps” speak of design "), design, wrongDesign);
+  const from = h(
+    "div",
+    { class: "wish-from" },
+    h("label", { for: "wish-design" }, "“Improves” and “keeps” speak of design "),
+    design,
+    wrongDesign,
+  );
   const solve = h("button", { class: "primary" }, "Solve");
   const none = h("button", { type: "button", onclick: () => take(null) }, "Without wishes");
   const wrong = h("p", { class: "error", role: "alert" });
   const answer = h("div", { class: "wish-answer", "aria-live": "polite" });
   const before = h("div", { class: "wish-history" });
-  const form = h("form", { novalidate: true, onsubmit: (event) => { event.preventDefault(); submit(); } },
-    h("div", { class: "wish-rows" }, rows.map(({ node }) => node)), from, h("div", { class: "row" }, solve, none), wrong);
-  const place = h("section", { class: "panel wishing", "aria-labelledby": "wishing-title" },
+  const form = h(
+    "form",
+    {
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        submit();
+      },
+    },
+    h(
+      "div",
+      { class: "wish-rows" },
+      rows.map(({ node }) => node),
+    ),
+    from,
+    h("div", { class: "row" }, solve, none),
+    wrong,
+  );
+  const place = h(
+    "section",
+    { class: "panel wishing", "aria-labelledby": "wishing-title" },
     h("h2", { id: "wishing-title" }, "Choose by wishing"),
-    h("p", { class: "quiet hint" }, "Say what you would like to have. The optimal design that comes nearest is solved anew; it need not be one of the list. A wished value is no bound."),
-    h("div", { class: "wish-columns" }, form, answer), before);
+    h(
+      "p",
+      { class: "quiet hint" },
+      "Say what you would like to have. The optimal design that comes nearest is solved anew; it need not be one of the list. A wished value is no bound.",
+    ),
+    h("div", { class: "wish-columns" }, form, answer),
+    before,
+  );
   place.hidden = objectives.length < 2 || data.count === 0;
   /** @type {Api.Wished | null} */
   let found = null;
@@ -50,8 +93,25 @@ export function wishingPanel(explorer) {
   /** @param {Api.Objective} objective */
   function row({ quantity, title, unit }) {
     const id = `wish-${quantity}`;
-    const kind = h("select", { id, onchange: () => { shape(); clean(); } }, KINDS.map(([value, words]) => h("option", { value }, words)));
-    const value = h("input", { type: "text", inputmode: "decimal", class: "number", "aria-label": `Value for ${title}`, "aria-describedby": `${id}-wrong`, oninput: clean });
+    const kind = h(
+      "select",
+      {
+        id,
+        onchange: () => {
+          shape();
+          clean();
+        },
+      },
+      KINDS.map(([value, words]) => h("option", { value }, words)),
+    );
+    const value = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      class: "number",
+      "aria-label": `Value for ${title}`,
+      "aria-describedby": `${id}-wrong`,
+      oninput: clean,
+    });
     const units = h("span", { class: "quiet" });
     const refused = h("p", { class: "error", id: `${id}-wrong` });
     function shape() {
@@ -60,18 +120,33 @@ export function wishingPanel(explorer) {
       units.textContent = unitOf(unit);
     }
     return {
-      quantity, value, refused, shape,
-      node: h("div", { class: "wish-row" }, h("label", { for: id }, title), kind, h("span", { class: "wish-value" }, value, units), refused),
+      quantity,
+      value,
+      refused,
+      shape,
+      node: h(
+        "div",
+        { class: "wish-row" },
+        h("label", { for: id }, title),
+        kind,
+        h("span", { class: "wish-value" }, value, units),
+        refused,
+      ),
       /** @returns {Wish | null} */
       get() {
         if (kind.value === "free") return null;
         const wanted = /** @type {Kind} */ (kind.value);
-        return value.hidden ? { kind: wanted } : { kind: wanted, value: measured(value.value, unit).value ?? NaN };
+        return value.hidden
+          ? { kind: wanted }
+          : { kind: wanted, value: measured(value.value, unit).value ?? NaN };
       },
       /** @param {Wish | undefined} wish */
       set(wish) {
         kind.value = wish?.kind ?? "free";
-        value.value = wish?.value === undefined ? "" : String(Number(inShown(wish.value, unit).toPrecision(10))).replace("-", "−");
+        value.value =
+          wish?.value === undefined
+            ? ""
+            : String(Number(inShown(wish.value, unit).toPrecision(10))).replace("-", "−");
         shape();
       },
     };
@@ -80,14 +155,19 @@ export function wishingPanel(explorer) {
   /** Return what the fields say. @returns {Wishes} */
   function said() {
     /** @type {[string, Wish][]} */
-    const of = rows.flatMap((one) => { const wish = one.get(); return wish ? [[one.quantity, wish]] : []; });
+    const of = rows.flatMap((one) => {
+      const wish = one.get();
+      return wish ? [[one.quantity, wish]] : [];
+    });
     return { of: new Map(of), design: design.value.trim() === "" ? null : Number(design.value) };
   }
 
   /** Show the wishes of the address, or none, in the fields. */
   function showFields() {
     for (const one of rows) one.set(chosen.wish?.of.get(one.quantity));
-    design.value = String(chosen.wish?.design ?? explorer.chosen.selected[0] ?? (explorer.front.knee ?? 0) + 1);
+    design.value = String(
+      chosen.wish?.design ?? explorer.chosen.selected[0] ?? (explorer.front.knee ?? 0) + 1,
+    );
     clean();
   }
 
@@ -99,7 +179,11 @@ export function wishingPanel(explorer) {
   /** Say at each field what is wrong with it. @param {Problem[]} problems */
   function tell(problems) {
     /** @param {string} id */
-    const of = (id) => problems.filter((one) => one.id === id).map((one) => one.text).join(" ");
+    const of = (id) =>
+      problems
+        .filter((one) => one.id === id)
+        .map((one) => one.text)
+        .join(" ");
     for (const one of [...rows, { quantity: "design", value: design, refused: wrongDesign }]) {
       one.refused.textContent = of(one.quantity);
       if (of(one.quantity)) one.value.setAttribute("aria-invalid", "true");
@@ -118,7 +202,10 @@ export function wishingPanel(explorer) {
 
   /** Take over wishes, null to have none, and ask for the design. @param {Wishes | null} wishes */
   function take(wishes) {
-    explorer.change({ wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } }, "marks");
+    explorer.change(
+      { wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } },
+      "marks",
+    );
     showFields();
     ask();
   }
@@ -132,7 +219,9 @@ export function wishingPanel(explorer) {
     }
     solve.setAttribute("aria-busy", "true"); // not disabled: whoever has changed a wish meanwhile asks again
     try {
-      const given = await post(`jobs/${job.id}/wish`, asked(wish, objectives), { signal: explorer.signal });
+      const given = await post(`jobs/${job.id}/wish`, asked(wish, objectives), {
+        signal: explorer.signal,
+      });
       if (own !== turn) return;
       if (given.design) await locate(given.design);
       found = given;
@@ -142,7 +231,12 @@ export function wishingPanel(explorer) {
       if (own !== turn || isAbort(problem)) return;
       found = null;
       show();
-      tell([{ ...placed(problem instanceof Error ? problem.message : "", objectives), text: `${sentenceOf(problem)}.` }]);
+      tell([
+        {
+          ...placed(problem instanceof Error ? problem.message : "", objectives),
+          text: `${sentenceOf(problem)}.`,
+        },
+      ]);
     } finally {
       if (own === turn) solve.removeAttribute("aria-busy");
     }
@@ -153,11 +247,26 @@ export function wishingPanel(explorer) {
     await data.need(objectives.map(({ column }) => column));
     near = nearest(wished, objectives, data);
     const path = /** @type {const} */ (`jobs/${job.id}/designs/${near}`);
-    const [{ ranges }, { design: other }] = await Promise.all([get(`${path}/requirements`, {}, explorer.signal), get(path, {}, explorer.signal)]);
-    const further = [...Object.keys(ranges).filter((key) => !LENGTHS.includes(key)), ...Object.keys(wished).filter((key) => key.startsWith("choice_"))];
+    const [{ ranges }, { design: other }] = await Promise.all([
+      get(`${path}/requirements`, {}, explorer.signal),
+      get(path, {}, explorer.signal),
+    ]);
+    const further = [
+      ...Object.keys(ranges).filter((key) => !LENGTHS.includes(key)),
+      ...Object.keys(wished).filter((key) => key.startsWith("choice_")),
+    ];
     free = [...LENGTHS, ...further];
-    const alike = further.every((key) => wished[key] === other[key] || Math.abs(Number(wished[key]) - Number(other[key])) <= APART * Math.abs(Number(other[key])));
-    way = alike ? link(["jobs", job.id, "designs", near], Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])]))) : "";
+    const alike = further.every(
+      (key) =>
+        wished[key] === other[key] ||
+        Math.abs(Number(wished[key]) - Number(other[key])) <= APART * Math.abs(Number(other[key])),
+    );
+    way = alike
+      ? link(
+          ["jobs", job.id, "designs", near],
+          Object.fromEntries(LENGTHS.map((key) => [key, Number(wished[key])])),
+        )
+      : "";
     beside = other;
   }
   /** @type {Api.Row} */
@@ -175,14 +284,38 @@ export function wishingPanel(explorer) {
     none.hidden = !chosen.wish;
     if (!found) return fill(answer);
     const [head] = found.sentences;
-    const sentence = h("p", { class: found.possible ? "good" : null }, `${head.charAt(0).toUpperCase()}${head.slice(1)}.`);
+    const sentence = h(
+      "p",
+      { class: found.possible ? "good" : null },
+      `${head.charAt(0).toUpperCase()}${head.slice(1)}.`,
+    );
     const { design: wished } = found;
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
-    fill(answer, sentence, outcomes(found, nearby),
-      h("div", { class: "row" }, way ? h("a", { class: "button primary", href: way }, "Open the wished design") : h("span", { class: "quiet" }, "More than its lengths is new, so all of its numbers are here."),
-        keeping({ job: `${job.id}`, design: near, dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])), kept: () => explorer.kept?.ask(), lengths: () => lengthsOf(wished) })),
-      h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)));
+    fill(
+      answer,
+      sentence,
+      outcomes(found, nearby),
+      h(
+        "div",
+        { class: "row" },
+        way
+          ? h("a", { class: "button primary", href: way }, "Open the wished design")
+          : h(
+              "span",
+              { class: "quiet" },
+              "More than its lengths is new, so all of its numbers are here.",
+            ),
+        keeping({
+          job: `${job.id}`,
+          design: near,
+          dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])),
+          kept: () => explorer.kept?.ask(),
+          lengths: () => lengthsOf(wished),
+        }),
+      ),
+      h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)),
+    );
   }
 
   /** @param {Api.Wished} given @param {Node} nearby */
@@ -190,24 +323,111 @@ export function wishingPanel(explorer) {
     const lines = given.objectives.map((one) => {
       const objective = objectives.find(({ quantity }) => quantity === one.quantity);
       const value = objective && Number(beside[objective.column]);
-      const words = { free: "free", improve: `better than ${withUnit(one.before, one.unit, 4)}`, keep: `as ${withUnit(one.before, one.unit, 4)}`, value: withUnit(one.wished, one.unit, 4), limit: `to ${withUnit(one.wished, one.unit, 4)}` }[one.wish];
-      return h("tr", {}, h("th", { scope: "row" }, one.title), h("td", { class: "number quiet" }, words),
-        h("td", { class: "number", "data-key": one.quantity, "data-value": String(one.reached) }, withUnit(one.reached, one.unit)),
-        h("td", {}, one.wish === "free" ? null : h("span", { class: one.met ? "good" : "at-limit" }, one.met ? "✓ met" : `short by ${withUnit(one.short, one.unit, 3)}`)),
-        h("td", { class: "number quiet" }, value === undefined ? "" : signed(one.reached, value, one.unit)));
+      const words = {
+        free: "free",
+        improve: `better than ${withUnit(one.before, one.unit, 4)}`,
+        keep: `as ${withUnit(one.before, one.unit, 4)}`,
+        value: withUnit(one.wished, one.unit, 4),
+        limit: `to ${withUnit(one.wished, one.unit, 4)}`,
+      }[one.wish];
+      return h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, one.title),
+        h("td", { class: "number quiet" }, words),
+        h(
+          "td",
+          { class: "number", "data-key": one.quantity, "data-value": String(one.reached) },
+          withUnit(one.reached, one.unit),
+        ),
+        h(
+          "td",
+          {},
+          one.wish === "free"
+            ? null
+            : h(
+                "span",
+                { class: one.met ? "good" : "at-limit" },
+                one.met ? "✓ met" : `short by ${withUnit(one.short, one.unit, 3)}`,
+              ),
+        ),
+        h(
+          "td",
+          { class: "number quiet" },
+          value === undefined ? "" : signed(one.reached, value, one.unit),
+        ),
+      );
     });
-    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Wished and reached" }, h("table", {}, h("caption", { class: "hidden" }, "Wished and reached"),
-      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Objective"), h("th", { scope: "col", class: "number" }, "wished"), h("th", { scope: "col", class: "number" }, "reached"), h("th", { scope: "col" }, h("span", { class: "hidden" }, "met")), h("th", { scope: "col", class: "number" }, "against ", nearby))),
-      h("tbody", {}, lines)));
+    return h(
+      "div",
+      { class: "scroll", tabindex: 0, role: "region", "aria-label": "Wished and reached" },
+      h(
+        "table",
+        {},
+        h("caption", { class: "hidden" }, "Wished and reached"),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("th", { scope: "col" }, "Objective"),
+            h("th", { scope: "col", class: "number" }, "wished"),
+            h("th", { scope: "col", class: "number" }, "reached"),
+            h("th", { scope: "col" }, h("span", { class: "hidden" }, "met")),
+            h("th", { scope: "col", class: "number" }, "against ", nearby),
+          ),
+        ),
+        h("tbody", {}, lines),
+      ),
+    );
   }
 
   /** @param {Api.Wished} given @param {Api.Row} wished */
   function numbers({ columns }, wished) {
     const shown = columns.filter(({ key }) => !key.startsWith("slack_"));
-    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "All numbers of the wished design" }, h("table", {}, h("caption", { class: "hidden" }, "All numbers of the wished design"),
-      h("thead", {}, h("tr", {}, ["Quantity", "wished design", `design ${near}`].map((title, n) => h("th", { scope: "col", class: n ? "number" : null }, title)))),
-      h("tbody", {}, shown.map(({ key, title, unit }) => h("tr", {}, h("th", { scope: "row" }, title),
-        h("td", { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") }, withUnit(wished[key], unit)), h("td", { class: "number quiet" }, withUnit(beside[key], unit)))))));
+    return h(
+      "div",
+      {
+        class: "scroll",
+        tabindex: 0,
+        role: "region",
+        "aria-label": "All numbers of the wished design",
+      },
+      h(
+        "table",
+        {},
+        h("caption", { class: "hidden" }, "All numbers of the wished design"),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            ["Quantity", "wished design", `design ${near}`].map((title, n) =>
+              h("th", { scope: "col", class: n ? "number" : null }, title),
+            ),
+          ),
+        ),
+        h(
+          "tbody",
+          {},
+          shown.map(({ key, title, unit }) =>
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, title),
+              h(
+                "td",
+                { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") },
+                withUnit(wished[key], unit),
+              ),
+              h("td", { class: "number quiet" }, withUnit(beside[key], unit)),
+            ),
+          ),
+        ),
+      ),
+    );
   }
 
   /** Ask for the wishes that anybody made of the run. */
@@ -223,8 +443,28 @@ export function wishingPanel(explorer) {
   /** Offer the wishes that were made before. */
   function drawBefore() {
     const open = first(before, "details")?.hasAttribute("open");
-    const items = made.map((wishes) => h("li", {}, h("button", { type: "button", class: "linked", onclick: () => take(wishes) }, inWords(wishes))));
-    fill(before, items.length > 0 && h("details", { open }, h("summary", {}, `Wishes so far (${items.length})`), h("p", { class: "quiet hint" }, "By all who see this run, the latest first."), h("ol", {}, items)));
+    const items = made.map((wishes) =>
+      h(
+        "li",
+        {},
+        h(
+          "button",
+          { type: "button", class: "linked", onclick: () => take(wishes) },
+          inWords(wishes),
+        ),
+      ),
+    );
+    fill(
+      before,
+      items.length > 0 &&
+        h(
+          "details",
+          { open },
+          h("summary", {}, `Wishes so far (${items.length})`),
+          h("p", { class: "quiet hint" }, "By all who see this run, the latest first."),
+          h("ol", {}, items),
+        ),
+    );
   }
 
   /** @param {Wishes} wishes */
@@ -233,7 +473,9 @@ export function wishingPanel(explorer) {
       const wish = wishes.of.get(quantity);
       if (!wish) return [];
       const value = withUnit(wish.value ?? null, unit, 5);
-      return [`${title} ${{ value, limit: `may worsen to ${value}`, improve: "improves", keep: "keeps", free: "" }[wish.kind]}`];
+      return [
+        `${title} ${{ value, limit: `may worsen to ${value}`, improve: "improves", keep: "keeps", free: "" }[wish.kind]}`,
+      ];
     });
     return `${parts.join(", ")}${wishes.design ? `, from design ${wishes.design}` : ""}`;
   }

@@ -7,16 +7,48 @@ import { h, mathml } from "../lib/dom.js";
  * @typedef {{ tag: string, text?: string, parts?: Part[], prose?: boolean }} Part
  */
 
-const GREEK = new Map(Object.entries({ alpha: "α", mu: "μ", omega: "ω", phi: "φ", pi: "π", psi: "ψ", rho: "ρ", sigma: "σ", theta: "θ", dtheta: "dθ" }));
-const FUNCTIONS = new Set(["sqrt", "sin", "cos", "asin", "acos", "arcsin", "arctan", "max", "min", "sgn"]);
+const GREEK = new Map(
+  Object.entries({
+    alpha: "α",
+    mu: "μ",
+    omega: "ω",
+    phi: "φ",
+    pi: "π",
+    psi: "ψ",
+    rho: "ρ",
+    sigma: "σ",
+    theta: "θ",
+    dtheta: "dθ",
+  }),
+);
+const FUNCTIONS = new Set([
+  "sqrt",
+  "sin",
+  "cos",
+  "asin",
+  "acos",
+  "arcsin",
+  "arctan",
+  "max",
+  "min",
+  "sgn",
+]);
 const SIGNS = new Map(Object.entries({ "+-": "±", "-": "−", deg: "°" }));
 const TOKEN = /\s*(\+-|\d+(?:\.\d+)?|[A-Za-z]+(?:_[A-Za-z]+)?(?:'s\b|'+)?|[^\sA-Za-z\d])/y;
 
 const OWN = /^(?:cos\()?([A-Z]|mu_\w+)\)? = /; // the symbol that a quantity's formula says
 /** @type {Record<string, [string, string | null]>} */
 const SYMBOLS = {
-  r: ["crank", "crank"], l: ["rod", "rod"], e: ["offset", "offset"], T: ["drive torque", null], theta: ["crank angle", null], phi: ["angle of the rod", null], omega: ["crank speed", null],
-  alpha: ["crank acceleration", null], "x'": ["slider position, derived by the crank angle", null], x_out: ["slider position at the outer dead centre", null],
+  r: ["crank", "crank"],
+  l: ["rod", "rod"],
+  e: ["offset", "offset"],
+  T: ["drive torque", null],
+  theta: ["crank angle", null],
+  phi: ["angle of the rod", null],
+  omega: ["crank speed", null],
+  alpha: ["crank acceleration", null],
+  "x'": ["slider position, derived by the crank angle", null],
+  x_out: ["slider position at the outer dead centre", null],
 };
 
 /** Return a formula: its symbols set, its words as text, so that it takes as many lines as it needs. @param {string} text */
@@ -29,10 +61,14 @@ export function formula(text) {
     else if (Array.isArray(last)) last.push(part);
     else pieces.push([part]);
   }
-  return h("span", { class: "formula" }, pieces.map((piece, place) => [
-    place && !(typeof piece === "string" && /^[,:;]$/.test(piece)) ? " " : "",
-    typeof piece === "string" ? piece : drawn({ tag: "math", parts: piece }),
-  ]));
+  return h(
+    "span",
+    { class: "formula" },
+    pieces.map((piece, place) => [
+      place && !(typeof piece === "string" && /^[,:;]$/.test(piece)) ? " " : "",
+      typeof piece === "string" ? piece : drawn({ tag: "math", parts: piece }),
+    ]),
+  );
 }
 
 /**
@@ -46,8 +82,18 @@ export function symbolsOf(text, quantities) {
     const symbol = OWN.exec(own)?.[1];
     if (symbol) known[symbol] ??= [title, name];
   }
-  const names = [...new Set(tokensOf(text).map((token) => (token in known ? token : token.replace(/'+$/, (primes) => (token.startsWith("x") && primes ? "'" : "")))))];
-  return names.filter((name) => name in known).map((name) => [drawn({ tag: "math", parts: parsed(name) }), ...known[name]]);
+  const names = [
+    ...new Set(
+      tokensOf(text).map((token) =>
+        token in known
+          ? token
+          : token.replace(/'+$/, (primes) => (token.startsWith("x") && primes ? "'" : "")),
+      ),
+    ),
+  ];
+  return names
+    .filter((name) => name in known)
+    .map((name) => [drawn({ tag: "math", parts: parsed(name) }), ...known[name]]);
 }
 
 /** Return the parts of a formula. @param {string} text @returns {Part[]} */
@@ -77,7 +123,13 @@ export function parsed(text) {
     if (next() !== "^") return base;
     place += 1;
     const over = single();
-    return { tag: "msup", parts: [base, over.tag === "mrow" && over.parts?.[0]?.text === "(" ? row(over.parts.slice(1, -1)) : over] };
+    return {
+      tag: "msup",
+      parts: [
+        base,
+        over.tag === "mrow" && over.parts?.[0]?.text === "(" ? row(over.parts.slice(1, -1)) : over,
+      ],
+    };
   };
   /** @returns {Part} */
   const single = () => {
@@ -101,7 +153,9 @@ export function parsed(text) {
     if (opening !== "(" && opening !== "|") return { tag: "mi", text: name, prose: true };
     place += 1;
     const inner = bracketed(opening);
-    return name === "sqrt" ? { tag: "msqrt", parts: inner.parts?.slice(1, -1) } : row([{ tag: "mi", text: name }, inner]);
+    return name === "sqrt"
+      ? { tag: "msqrt", parts: inner.parts?.slice(1, -1) }
+      : row([{ tag: "mi", text: name }, inner]);
   };
   /** Put what stands last before a stroke over what follows: only symbols, no words. @param {Part[]} before @param {string} closing @returns {Part[]} */
   const fraction = (before, closing) => {
@@ -129,7 +183,9 @@ function tokensOf(text) {
 /** Return a name: a symbol with its index and its primes, or a word. @param {string} token @returns {Part} */
 function symbol(token) {
   const [, name, index, primes = ""] = /^([A-Za-z]+)(?:_([A-Za-z]+))?('+)?$/.exec(token) ?? [];
-  const known = name && (GREEK.get(name) ?? (index || name.length === 1 || /^d[a-zA-Z]$/.test(name) ? name : null));
+  const known =
+    name &&
+    (GREEK.get(name) ?? (index || name.length === 1 || /^d[a-zA-Z]$/.test(name) ? name : null));
   if (!known || (known === "a" && !index)) return { tag: "mtext", text: token, prose: true };
   /** @type {Part} */
   const letter = { tag: "mi", text: known };
@@ -137,7 +193,10 @@ function symbol(token) {
   const primed = primes ? [{ tag: "mo", text: "′".repeat(primes.length) }] : []; // which stands high by itself
   if (!index) return row([letter, ...primed]);
   /** @type {Part} */
-  const below = GREEK.has(index) || index.length === 1 ? { tag: "mi", text: GREEK.get(index) ?? index } : { tag: "mtext", text: index };
+  const below =
+    GREEK.has(index) || index.length === 1
+      ? { tag: "mi", text: GREEK.get(index) ?? index }
+      : { tag: "mtext", text: index };
   return row([{ tag: "msub", parts: [letter, below] }, ...primed]);
 }
 
@@ -153,12 +212,23 @@ function bare(part) {
 
 /** @param {Part} part @returns {MathMLElement} */
 function drawn({ tag, text, parts = [] }) {
-  return mathml(tag, {}, text ?? parts.map((part, place) => drawn(apart(part, parts[place - 1], parts[place + 1]))));
+  return mathml(
+    tag,
+    {},
+    text ?? parts.map((part, place) => drawn(apart(part, parts[place - 1], parts[place + 1]))),
+  );
 }
 
 /** Return a part with the room that words need beside symbols. @param {Part} part @param {Part | undefined} before @param {Part | undefined} after */
 function apart(part, before, after) {
   if (!part.prose) return part;
-  const [left, right] = [before && before.text !== "(" && before.text !== "|", after && !/^[,:;)|]$/.test(after.text ?? "")];
-  return { ...part, tag: "mtext", text: `${left && !before?.prose ? "\u00a0" : ""}${part.text}${right ? "\u00a0" : ""}` };
+  const [left, right] = [
+    before && before.text !== "(" && before.text !== "|",
+    after && !/^[,:;)|]$/.test(after.text ?? ""),
+  ];
+  return {
+    ...part,
+    tag: "mtext",
+    text: `${left && !before?.prose ? "\u00a0" : ""}${part.text}${right ? "\u00a0" : ""}`,
+  };
 }

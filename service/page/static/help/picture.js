@@ -21,7 +21,13 @@ const RADIUS = 38;
 /** Return the picture of a kind of quantity; title: for readers of the screen. @param {string} kind @param {string} title */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
-  return svg("svg", { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` }, still(), linkage(pose), marks());
+  return svg(
+    "svg",
+    { class: "picture", viewBox: "0 30 296 146", role: "img", "aria-label": `Picture: ${title}` },
+    still(),
+    linkage(pose),
+    marks(),
+  );
 }
 
 /** @type {Record<string, { pose?: Pose, marks: () => Dom.Child }>} */
@@ -29,24 +35,118 @@ const PICTURES = {
   crank: { marks: () => [bold(O, POSE.pin), label(42, 92, "crank")] },
   rod: { marks: () => [bold(POSE.pin, POSE.slider), label(140, 72, "rod")] },
   offset: { marks: () => [size([24, O[1]], [24, LINE]), label(4, 80, "offset")] },
-  stroke: { marks: () => [ghost(OUT), ghost(IN), size([IN.slider[0], 118], [OUT.slider[0], 118]), drop(IN.slider, 122), drop(OUT.slider, 122), label(180, 135, "stroke")] },
-  "time ratio": { marks: () => [ghost(OUT), ghost(IN), thin(O, OUT.pin), thin(O, IN.pin), wide(OUT.pin, IN.pin, 1), label(18, 62, "slow stroke"), label(84, 148, "fast")] },
-  "transmission angle": { pose: STEEP, marks: () => [thin(STEEP.slider, [STEEP.slider[0], 150]), stroked(`M${STEEP.slider[0]} 122A36 36 0 0 1 ${STEEP.slider[0] - 31.3} ${LINE + 17.7}`), label(162, 142, "µ")] },
-  "self-locking": { pose: STEEP, marks: () => [arrow(STEEP.pin, [STEEP.slider[0] - 14, LINE + 8]), arrow([STEEP.slider[0], LINE + 42], [STEEP.slider[0], LINE + 13]), label(200, 132, "guide")] },
+  stroke: {
+    marks: () => [
+      ghost(OUT),
+      ghost(IN),
+      size([IN.slider[0], 118], [OUT.slider[0], 118]),
+      drop(IN.slider, 122),
+      drop(OUT.slider, 122),
+      label(180, 135, "stroke"),
+    ],
+  },
+  "time ratio": {
+    marks: () => [
+      ghost(OUT),
+      ghost(IN),
+      thin(O, OUT.pin),
+      thin(O, IN.pin),
+      wide(OUT.pin, IN.pin, 1),
+      label(18, 62, "slow stroke"),
+      label(84, 148, "fast"),
+    ],
+  },
+  "transmission angle": {
+    pose: STEEP,
+    marks: () => [
+      thin(STEEP.slider, [STEEP.slider[0], 150]),
+      stroked(`M${STEEP.slider[0]} 122A36 36 0 0 1 ${STEEP.slider[0] - 31.3} ${LINE + 17.7}`),
+      label(162, 142, "µ"),
+    ],
+  },
+  "self-locking": {
+    pose: STEEP,
+    marks: () => [
+      arrow(STEEP.pin, [STEEP.slider[0] - 14, LINE + 8]),
+      arrow([STEEP.slider[0], LINE + 42], [STEEP.slider[0], LINE + 13]),
+      label(200, 132, "guide"),
+    ],
+  },
   torque: { marks: () => [turning(), label(20, 52, "torque")] },
   power: { marks: () => [turning(), label(20, 52, "power")] },
-  inertia: { marks: () => [bold(O, POSE.pin), bold(POSE.pin, POSE.slider), box(POSE.slider, "mark"), turning()] },
-  "position error": { marks: () => [box([POSE.slider[0] - 9, LINE], "dashed"), box([POSE.slider[0] + 9, LINE], "dashed"), size([POSE.slider[0] - 9, 116], [POSE.slider[0] + 9, 116]), label(206, 134, "± error")] },
-  "wanted motion": { marks: () => [...[30, 58, 82, 104, 130, 160].map((x, place) => dot([120 + x, 150 - [4, 12, 17, 16, 10, 3][place]])), stroked("M138 152C170 134 205 126 232 136S270 150 286 152"), label(140, 172, "points of the motion")] },
-  cylinder: { marks: () => [ghost(OUT), ghost(IN), svg("rect", { class: "mark dashed", x: IN.slider[0] + 18, y: LINE - 12, width: OUT.slider[0] - IN.slider[0], height: 24 }), label(172, 140, "swept volume")] },
-  footprint: { marks: () => [svg("rect", { class: "mark dashed", x: 37, y: 74, width: 204, height: 76 }), label(150, 166, "footprint")] },
+  inertia: {
+    marks: () => [
+      bold(O, POSE.pin),
+      bold(POSE.pin, POSE.slider),
+      box(POSE.slider, "mark"),
+      turning(),
+    ],
+  },
+  "position error": {
+    marks: () => [
+      box([POSE.slider[0] - 9, LINE], "dashed"),
+      box([POSE.slider[0] + 9, LINE], "dashed"),
+      size([POSE.slider[0] - 9, 116], [POSE.slider[0] + 9, 116]),
+      label(206, 134, "± error"),
+    ],
+  },
+  "wanted motion": {
+    marks: () => [
+      ...[30, 58, 82, 104, 130, 160].map((x, place) =>
+        dot([120 + x, 150 - [4, 12, 17, 16, 10, 3][place]]),
+      ),
+      stroked("M138 152C170 134 205 126 232 136S270 150 286 152"),
+      label(140, 172, "points of the motion"),
+    ],
+  },
+  cylinder: {
+    marks: () => [
+      ghost(OUT),
+      ghost(IN),
+      svg("rect", {
+        class: "mark dashed",
+        x: IN.slider[0] + 18,
+        y: LINE - 12,
+        width: OUT.slider[0] - IN.slider[0],
+        height: 24,
+      }),
+      label(172, 140, "swept volume"),
+    ],
+  },
+  footprint: {
+    marks: () => [
+      svg("rect", { class: "mark dashed", x: 37, y: 74, width: 204, height: 76 }),
+      label(150, 166, "footprint"),
+    ],
+  },
   "pivot force": { marks: () => [arrow(O, [40, 142]), label(18, 160, "pivot")] },
   "crank pin force": { marks: () => [arrow(POSE.pin, [62, 48]), label(44, 40, "crank pin")] },
-  "slider pin force": { marks: () => [arrow(POSE.slider, [180, 56]), label(150, 48, "slider pin")] },
-  "guide force": { pose: STEEP, marks: () => [arrow([STEEP.slider[0], LINE + 50], [STEEP.slider[0], LINE + 13]), label(198, 134, "guide force")] },
-  speed: { marks: () => [arrow([POSE.slider[0] - 22, 58], [POSE.slider[0] - 66, 58]), label(160, 48, "speed")] },
-  acceleration: { marks: () => [arrow([POSE.slider[0] - 16, 58], [POSE.slider[0] - 66, 58]), arrow([POSE.slider[0] - 16, 58], [POSE.slider[0] - 54, 58]), label(150, 48, "acceleration")] },
-  "shaking force": { marks: () => [arrow(O, [30, O[1]]), arrow(O, [120, O[1]]), label(20, 136, "on the frame")] },
+  "slider pin force": {
+    marks: () => [arrow(POSE.slider, [180, 56]), label(150, 48, "slider pin")],
+  },
+  "guide force": {
+    pose: STEEP,
+    marks: () => [
+      arrow([STEEP.slider[0], LINE + 50], [STEEP.slider[0], LINE + 13]),
+      label(198, 134, "guide force"),
+    ],
+  },
+  speed: {
+    marks: () => [
+      arrow([POSE.slider[0] - 22, 58], [POSE.slider[0] - 66, 58]),
+      label(160, 48, "speed"),
+    ],
+  },
+  acceleration: {
+    marks: () => [
+      arrow([POSE.slider[0] - 16, 58], [POSE.slider[0] - 66, 58]),
+      arrow([POSE.slider[0] - 16, 58], [POSE.slider[0] - 54, 58]),
+      label(150, 48, "acceleration"),
+    ],
+  },
+  "shaking force": {
+    marks: () => [arrow(O, [30, O[1]]), arrow(O, [120, O[1]]), label(20, 136, "on the frame")],
+  },
   "shaking moment": { marks: () => [turning(), label(14, 166, "on the frame")] },
 };
 
@@ -60,7 +160,11 @@ function still() {
 
 /** @param {Pose} pose */
 function linkage({ pin, slider }) {
-  return [box(slider, "part"), svg("path", { class: "part", d: `M${O}L${pin}L${slider}` }), [O, pin, slider].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 4 }))];
+  return [
+    box(slider, "part"),
+    svg("path", { class: "part", d: `M${O}L${pin}L${slider}` }),
+    [O, pin, slider].map(([cx, cy]) => svg("circle", { class: "pin", cx, cy, r: 4 })),
+  ];
 }
 
 /** @param {Pose} pose */
@@ -70,7 +174,14 @@ function ghost({ pin, slider }) {
 
 /** @param {Page.Point} centre @param {string} kind */
 function box([x, y], kind) {
-  return svg("rect", { class: kind === "dashed" ? "mark dashed" : kind, x: x - 18, y: y - 12, width: 36, height: 24, rx: 2 });
+  return svg("rect", {
+    class: kind === "dashed" ? "mark dashed" : kind,
+    x: x - 18,
+    y: y - 12,
+    width: 36,
+    height: 24,
+    rx: 2,
+  });
 }
 
 /** @param {Page.Point} from @param {Page.Point} to */
@@ -113,10 +224,16 @@ function arrow(from, to, both = false) {
   const head = (tip, other) => {
     const way = Math.atan2(other[1] - tip[1], other[0] - tip[0]);
     /** @param {number} by */
-    const wing = (by) => [tip[0] + 8 * Math.cos(way + by), tip[1] + 8 * Math.sin(way + by)].map((value) => value.toFixed(1));
+    const wing = (by) =>
+      [tip[0] + 8 * Math.cos(way + by), tip[1] + 8 * Math.sin(way + by)].map((value) =>
+        value.toFixed(1),
+      );
     return `M${wing(0.45)}L${tip}L${wing(-0.45)}`;
   };
-  return svg("path", { class: "mark", d: `M${from}L${to}${head(to, from)}${both ? head(from, to) : ""}` });
+  return svg("path", {
+    class: "mark",
+    d: `M${from}L${to}${head(to, from)}${both ? head(from, to) : ""}`,
+  });
 }
 
 /** @param {Page.Point} from @param {Page.Point} to */

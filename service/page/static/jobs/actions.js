@@ -17,15 +17,32 @@ export function actions(job, changed, { primary = false } = {}) {
   const of = `run ${job.id}, ${job.name}`;
   /** @param {string} label @param {"cancel" | "resume"} path @param {string} told @param {string} name */
   const act = (label, path, told, name = path) =>
-    h("button", { type: "button", class: primary && name === path ? "primary" : null, "data-act": name, "aria-label": `${label} ${of}`, onclick: (event) => run(event.currentTarget, async () => {
-      const now = await post(`jobs/${job.id}/${path}`);
-      say(told);
-      changed(now);
-    }) }, label);
+    h(
+      "button",
+      {
+        type: "button",
+        class: primary && name === path ? "primary" : null,
+        "data-act": name,
+        "aria-label": `${label} ${of}`,
+        onclick: (event) =>
+          run(event.currentTarget, async () => {
+            const now = await post(`jobs/${job.id}/${path}`);
+            say(told);
+            changed(now);
+          }),
+      },
+      label,
+    );
   /** @param {{ currentTarget: HTMLButtonElement }} event */
   const gone = async (event) => {
     const button = event.currentTarget;
-    if (!(await confirmed(`Delete run ${job.id}?`, `“${job.name}” and everything it found will be gone for good.`, "Delete"))) {
+    if (
+      !(await confirmed(
+        `Delete run ${job.id}?`,
+        `“${job.name}” and everything it found will be gone for good.`,
+        "Delete",
+      ))
+    ) {
       button.closest("details")?.querySelector("summary")?.focus();
       return;
     }
@@ -51,13 +68,51 @@ export function actions(job, changed, { primary = false } = {}) {
   };
   const ended = ENDED.includes(job.state);
   return [
-    primary && job.state === "running" && !job.cancel_asked && act("Pause", "cancel", `Run ${job.id} pauses after its round; Resume goes on from there.`, "pause"),
-    !ended && !job.cancel_asked && (job.state === "running"
-      ? act("Finish now", "cancel", `Run ${job.id} ends with what it has found; it can go on from there later.`)
-      : act("Cancel", "cancel", `Run ${job.id} does not begin.`)),
-    ["cancelled", "failed"].includes(job.state) && act("Resume", "resume", `Run ${job.id} goes on.`),
-    h("a", { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${of}` }, "Clone"),
-    ended && menu("…", h("div", { class: "chooser-list panel narrow" }, h("button", { type: "button", class: "danger", "data-act": "delete", "aria-label": `Delete ${of}`, onclick: gone }, "Delete this run")), { name: `More for ${of}`, act: "more" }),
+    primary &&
+      job.state === "running" &&
+      !job.cancel_asked &&
+      act(
+        "Pause",
+        "cancel",
+        `Run ${job.id} pauses after its round; Resume goes on from there.`,
+        "pause",
+      ),
+    !ended &&
+      !job.cancel_asked &&
+      (job.state === "running"
+        ? act(
+            "Finish now",
+            "cancel",
+            `Run ${job.id} ends with what it has found; it can go on from there later.`,
+          )
+        : act("Cancel", "cancel", `Run ${job.id} does not begin.`)),
+    ["cancelled", "failed"].includes(job.state) &&
+      act("Resume", "resume", `Run ${job.id} goes on.`),
+    h(
+      "a",
+      { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${of}` },
+      "Clone",
+    ),
+    ended &&
+      menu(
+        "…",
+        h(
+          "div",
+          { class: "chooser-list panel narrow" },
+          h(
+            "button",
+            {
+              type: "button",
+              class: "danger",
+              "data-act": "delete",
+              "aria-label": `Delete ${of}`,
+              onclick: gone,
+            },
+            "Delete this run",
+          ),
+        ),
+        { name: `More for ${of}`, act: "more" },
+      ),
   ].filter(Boolean);
 }
 
@@ -67,12 +122,18 @@ export function actions(job, changed, { primary = false } = {}) {
  */
 function confirmed(question, consequence, yes) {
   return new Promise((answer) => {
-    const dialog = h("dialog", { "aria-labelledby": "question" },
+    const dialog = h(
+      "dialog",
+      { "aria-labelledby": "question" },
       h("h2", { id: "question" }, question),
       h("p", {}, consequence),
-      h("form", { method: "dialog", class: "row" },
+      h(
+        "form",
+        { method: "dialog", class: "row" },
         h("button", { value: "no", autofocus: true }, "Keep it"),
-        h("button", { value: "yes", class: "danger" }, yes)));
+        h("button", { value: "yes", class: "danger" }, yes),
+      ),
+    );
     dialog.addEventListener("close", () => {
       dialog.remove();
       answer(dialog.returnValue === "yes");

@@ -16,7 +16,8 @@ const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs 
  */
 export function downloads(job, { designs, own, signal }) {
   /** @param {string} path @param {string} name */
-  const file = (path, name) => h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
+  const file = (path, name) =>
+    h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
   // In the units that the reader prefers at the moment.
   /** @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name */
   const shown = (path, attributes, name) => {
@@ -29,23 +30,37 @@ export function downloads(job, { designs, own, signal }) {
   const files = h("ul");
   const exported = h("ul");
   const figures = h("ul");
-  const list = h("div", { class: "chooser-list panel" },
+  const list = h(
+    "div",
+    { class: "chooser-list panel" },
     designs && [h("h2", {}, "Front"), exported, own],
-    h("h2", {}, "Files of the job"), files,
-    designs && [h("h2", {}, "Figures"), figures]);
+    h("h2", {}, "Files of the job"),
+    files,
+    designs && [h("h2", {}, "Figures"), figures],
+  );
   let asked = false;
-  const node = menu("Download", list, { opened: () => {
-    if (asked) return;
-    asked = true;
-    listFiles();
-    if (designs) listFigures();
-  } });
+  const node = menu("Download", list, {
+    opened: () => {
+      if (asked) return;
+      asked = true;
+      listFiles();
+      if (designs) listFigures();
+    },
+  });
 
   async function listFiles() {
     try {
       const found = await get(`jobs/${job.id}/files`, {}, signal);
-      fill(exported, found.exports.map((ending) => h("li", {}, shown(`export.${ending}`, { download: "" }, FRONT[ending]))));
-      fill(files, found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)));
+      fill(
+        exported,
+        found.exports.map((ending) =>
+          h("li", {}, shown(`export.${ending}`, { download: "" }, FRONT[ending])),
+        ),
+      );
+      fill(
+        files,
+        found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)),
+      );
     } catch (problem) {
       fill(files, h("li", {}, sentenceOf(problem)));
     }
@@ -56,8 +71,18 @@ export function downloads(job, { designs, own, signal }) {
     try {
       const found = await get(`jobs/${job.id}/figures`, {}, signal);
       /** @param {string} name @param {string} kind */
-      const as = (name, kind) => shown(`figures/${name}.${kind}`, { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` }, kind.toUpperCase());
-      fill(figures, found.figures.map(({ name, title }) => h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg"))));
+      const as = (name, kind) =>
+        shown(
+          `figures/${name}.${kind}`,
+          { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` },
+          kind.toUpperCase(),
+        );
+      fill(
+        figures,
+        found.figures.map(({ name, title }) =>
+          h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg")),
+        ),
+      );
     } catch (problem) {
       fill(figures, h("li", {}, sentenceOf(problem)));
     }

@@ -19,7 +19,15 @@ export function gallery(signal) {
     const { presets } = await get("presets", {}, signal);
     for (const { name, title, sentence, design } of presets) {
       const picture = h("span", { class: "machine-picture" });
-      node.append(h("a", { class: "panel", href: link(["new"], { preset: name }) }, picture, h("strong", {}, title), h("span", { class: "quiet" }, sentence)));
+      node.append(
+        h(
+          "a",
+          { class: "panel", href: link(["new"], { preset: name }) },
+          picture,
+          h("strong", {}, title),
+          h("span", { class: "quiet" }, sentence),
+        ),
+      );
       move(picture, title, design, signal);
     }
   };
@@ -33,8 +41,23 @@ function move(place, title, { from_deg: from, to_deg: to, outlines, ...linkage }
   const { slider_position_mm: positions } = motionOf(linkage);
   /** @type {Page.Point | null} */
   const ends = from !== null && to !== null ? [from, to] : null;
-  const within = positions.map((position, angle) => (!Number.isFinite(position) || (ends && (angle < Math.floor(ends[0]) || angle > Math.ceil(ends[1]))) ? null : position));
-  drawn.show(linkage, { slider_position_mm: within }, { direction: 0, small: true, outlines, angle: ends ? ends[0] : START, ...(ends ? { dead_centres_deg: ends } : {}) });
+  const within = positions.map((position, angle) =>
+    !Number.isFinite(position) ||
+    (ends && (angle < Math.floor(ends[0]) || angle > Math.ceil(ends[1])))
+      ? null
+      : position,
+  );
+  drawn.show(
+    linkage,
+    { slider_position_mm: within },
+    {
+      direction: 0,
+      small: true,
+      outlines,
+      angle: ends ? ends[0] : START,
+      ...(ends ? { dead_centres_deg: ends } : {}),
+    },
+  );
   if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
   /** @param {number} now */
   const step = (now) => {
@@ -42,7 +65,12 @@ function move(place, title, { from_deg: from, to_deg: to, outlines, ...linkage }
     requestAnimationFrame(step);
     if (document.hidden || !place.checkVisibility()) return;
     const share = (now / TURN) % 1;
-    drawn.turn(ends ? ends[0] + (ends[1] - ends[0]) * (0.5 - 0.5 * Math.cos(2 * Math.PI * share)) : (START + 360 * share) % 360, false);
+    drawn.turn(
+      ends
+        ? ends[0] + (ends[1] - ends[0]) * (0.5 - 0.5 * Math.cos(2 * Math.PI * share))
+        : (START + 360 * share) % 360,
+      false,
+    );
   };
   requestAnimationFrame(step);
 }

@@ -11,5 +11,13 @@ export function growth(hypervolumes) {
   if (known.length < 2) return null;
   const percent = 100 * (Number(known[known.length - 1]) / Number(known[0]) - 1);
   const places = percent >= 10 ? 0 : percent >= 1 ? 1 : 2;
-  return { rounds: known.length - 1, text: percent === 0 ? "nothing" : percent < 0.005 ? "under 0.01 %" : `+${percent.toFixed(places)} %` };
+  return {
+    rounds: known.length - 1,
+    text:
+      percent === 0
+        ? "nothing"
+        : percent < 0.005
+          ? "under 0.01 %"
+          : `+${percent.toFixed(places)} %`,
+  };
 }

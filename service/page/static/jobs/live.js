@@ -32,11 +32,19 @@ export function watch(place, job, { signal, changed }) {
   const figures = h("dl", { class: "figures" });
   const course = stages();
   const extent = steady();
-  const lost = h("p", { class: "lost", role: "status", hidden: true }, "The connection to the service was lost. The page goes on when it is back.");
+  const lost = h(
+    "p",
+    { class: "lost", role: "status", hidden: true },
+    "The connection to the service was lost. The page goes on when it is back.",
+  );
   const curve = h("div", { class: "course" });
   const front = h("div");
   const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
-  const why = h("p", { class: "quiet", hidden: true }, "The first search after an installation compiles the model of the machine. That takes a minute or two, once.");
+  const why = h(
+    "p",
+    { class: "quiet", hidden: true },
+    "The first search after an installation compiles the model of the machine. That takes a minute or two, once.",
+  );
   /** @type {{ x: number, y: number }} */
   const axes = { x: 0, y: 1 };
   const pickers = h("div", { class: "row picks" });
@@ -62,13 +70,42 @@ export function watch(place, job, { signal, changed }) {
     why.hidden = over || job.state !== "running" || rounds.length > 2;
   }
 
-  fill(place,
+  fill(
+    place,
     lost,
-    h("section", { class: "panel", "aria-labelledby": "progress-title" }, h("h2", { id: "progress-title" }, "Progress"), figures, bar, course.node, why),
-    h("div", { class: "growing" },
-      h("section", { class: "panel", "aria-labelledby": "so-far-title" }, h("h2", { id: "so-far-title" }, "Front so far"), pickers, front),
-      h("section", { class: "panel", "aria-labelledby": "history-title" }, h("h2", { id: "history-title" }, "Hypervolume of the front"), curve)),
-    h("section", { class: "panel", "aria-labelledby": "log-title" }, h("h2", { id: "log-title" }, "Log"), log));
+    h(
+      "section",
+      { class: "panel", "aria-labelledby": "progress-title" },
+      h("h2", { id: "progress-title" }, "Progress"),
+      figures,
+      bar,
+      course.node,
+      why,
+    ),
+    h(
+      "div",
+      { class: "growing" },
+      h(
+        "section",
+        { class: "panel", "aria-labelledby": "so-far-title" },
+        h("h2", { id: "so-far-title" }, "Front so far"),
+        pickers,
+        front,
+      ),
+      h(
+        "section",
+        { class: "panel", "aria-labelledby": "history-title" },
+        h("h2", { id: "history-title" }, "Hypervolume of the front"),
+        curve,
+      ),
+    ),
+    h(
+      "section",
+      { class: "panel", "aria-labelledby": "log-title" },
+      h("h2", { id: "log-title" }, "Log"),
+      log,
+    ),
+  );
 
   /** @param {Api.Event} event */
   function told(event) {
@@ -101,7 +138,14 @@ export function watch(place, job, { signal, changed }) {
     // Once for all events that are told again together.
     drawing ??= requestAnimationFrame(() => {
       drawing = null;
-      fill(curve, history(rounds.map(({ round, hypervolume }) => [round, hypervolume]), "Hypervolume", data.rounds));
+      fill(
+        curve,
+        history(
+          rounds.map(({ round, hypervolume }) => [round, hypervolume]),
+          "Hypervolume",
+          data.rounds,
+        ),
+      );
     });
   }
 
@@ -110,7 +154,10 @@ export function watch(place, job, { signal, changed }) {
     bar.max = data.rounds;
     bar.value = data.round;
     const each = (data.seconds ?? 0) / data.round;
-    const left = running && !data.steps && data.round > 1 && data.round < data.rounds ? each * (data.rounds - data.round) : null;
+    const left =
+      running && !data.steps && data.round > 1 && data.round < data.rounds
+        ? each * (data.rounds - data.round)
+        : null;
     clearTimeout(stale);
     show(left);
     if (left !== null) stale = setTimeout(show, Math.max(AT_LEAST, 1000 * STALE * each), null);
@@ -122,11 +169,19 @@ export function watch(place, job, { signal, changed }) {
         ["round", `${grouped(data.round)} of ${grouped(data.rounds)}`],
         ["evaluated", grouped(data.evaluations)],
         ["feasible", grouped(data.feasible)],
-        [gained && gained.rounds > 1 ? `gained in the last ${gained.rounds} rounds` : "gained in the last round", gained?.text ?? "–"],
+        [
+          gained && gained.rounds > 1
+            ? `gained in the last ${gained.rounds} rounds`
+            : "gained in the last round",
+          gained?.text ?? "–",
+        ],
         ["so far", duration(data.seconds ?? 0)],
         ["left of the rounds", left === null ? "–" : `about ${duration(left)}`],
       ];
-      fill(figures, shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
+      fill(
+        figures,
+        shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+      );
     }
   }
 
@@ -170,29 +225,73 @@ export function watch(place, job, { signal, changed }) {
     const columns = found.columns.map(columnOf);
     if (columns.length > 2 && !pickers.childElementCount) {
       /** @param {string} label @param {"x" | "y"} name */
-      const pick = (label, name) => h("label", {}, `${label} `, h("select", { onchange: (event) => {
-        axes[name] = Number(event.currentTarget.value);
-        drawFront(found);
-      } }, columns.map(({ title }, index) => h("option", { value: index, selected: index === axes[name] }, title))));
+      const pick = (label, name) =>
+        h(
+          "label",
+          {},
+          `${label} `,
+          h(
+            "select",
+            {
+              onchange: (event) => {
+                axes[name] = Number(event.currentTarget.value);
+                drawFront(found);
+              },
+            },
+            columns.map(({ title }, index) =>
+              h("option", { value: index, selected: index === axes[name] }, title),
+            ),
+          ),
+        );
       fill(pickers, pick("Across", "x"), pick("Up", "y"));
     }
     if (columns.length < 2) {
-      fill(front, h("p", {}, `Best ${columns[0].title} so far: ${withUnit(found.points[0]?.[0], columns[0].unit)}`));
+      fill(
+        front,
+        h(
+          "p",
+          {},
+          `Best ${columns[0].title} so far: ${withUnit(found.points[0]?.[0], columns[0].unit)}`,
+        ),
+      );
       return;
     }
     const shown = found.points.map((point) => [point[axes.x], point[axes.y]]);
     /** @param {"x" | "y"} name @param {0 | 1} place */
     const held = (name, place) => {
       const { title, unit } = columns[axes[name]];
-      return extent(`${title} ${unitOf(unit)}`, shown.map((point) => (typeof point[place] === "number" ? inShown(point[place], unit) : null)));
+      return extent(
+        `${title} ${unitOf(unit)}`,
+        shown.map((point) =>
+          typeof point[place] === "number" ? inShown(point[place], unit) : null,
+        ),
+      );
     };
-    fill(front, points([{ points: shown }], columns[axes.x], columns[axes.y], `The front so far: ${counted(shown.length, "design")}`, [held("x", 0), held("y", 1)]));
+    fill(
+      front,
+      points(
+        [{ points: shown }],
+        columns[axes.x],
+        columns[axes.y],
+        `The front so far: ${counted(shown.length, "design")}`,
+        [held("x", 0), held("y", 1)],
+      ),
+    );
   }
 
   /** @param {Api.Job} now */
   function noFront(now) {
     const waits = now.state === "queued";
-    fill(front, h("p", { class: "quiet" }, waits ? `Waits for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}` : "Nothing yet."));
+    fill(
+      front,
+      h(
+        "p",
+        { class: "quiet" },
+        waits
+          ? `Waits for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
+          : "Nothing yet.",
+      ),
+    );
     if (waits) soon(AGAIN); // what it waits for changes without an event
   }
 

@@ -6,24 +6,50 @@ import { capital, inWords } from "../lib/words.js";
 
 /** Return what to say of a job that has ended otherwise than done; null of one that is done. @param {Api.Job} job */
 export function outcome(job) {
-  const again = h("a", { class: "button", href: link(["new"], { from: job.id }) }, "Change the job");
+  const again = h(
+    "a",
+    { class: "button", href: link(["new"], { from: job.id }) },
+    "Change the job",
+  );
   const found = job.summary?.designs ?? 0;
   if (job.state === "infeasible") {
-    return said("No design meets all requirements", job.reason, ["Relax one of them, or widen a range, and search again. ", again]);
+    return said("No design meets all requirements", job.reason, [
+      "Relax one of them, or widen a range, and search again. ",
+      again,
+    ]);
   }
   if (job.state === "failed") {
-    return said("The run stopped with an error", job.reason, ["Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ", again]);
+    return said("The run stopped with an error", job.reason, [
+      "Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ",
+      again,
+    ]);
   }
   if (job.state === "cancelled" && found) {
-    return said("Stopped early", `What it had found by then is below; a longer search finds better designs. ${capital(job.reason)}.`, ["Resume it, above, to go on from where it was."]);
+    return said(
+      "Stopped early",
+      `What it had found by then is below; a longer search finds better designs. ${capital(job.reason)}.`,
+      ["Resume it, above, to go on from where it was."],
+    );
   }
   if (job.state === "cancelled") {
-    return said(job.progress?.feasible ? "Stopped before its designs were gathered" : "The run was cancelled before it found a design", job.reason, ["Resume it, above, to go on from where it was."]);
+    return said(
+      job.progress?.feasible
+        ? "Stopped before its designs were gathered"
+        : "The run was cancelled before it found a design",
+      job.reason,
+      ["Resume it, above, to go on from where it was."],
+    );
   }
   return null;
 }
 
 /** @param {string} heading @param {string} reason @param {Dom.Child[]} remedy */
 function said(heading, reason, remedy) {
-  return h("section", { class: "panel outcome", "aria-labelledby": "outcome-title" }, h("h2", { id: "outcome-title" }, heading), reason && h("p", {}, capital(inWords(reason)).replace(/[^.!?]$/, "$&.")), h("p", {}, remedy));
+  return h(
+    "section",
+    { class: "panel outcome", "aria-labelledby": "outcome-title" },
+    h("h2", { id: "outcome-title" }, heading),
+    reason && h("p", {}, capital(inWords(reason)).replace(/[^.!?]$/, "$&.")),
+    h("p", {}, remedy),
+  );
 }

@@ -51,7 +51,11 @@ export function pictures(signal) {
     }
     try {
       const jobs = nodes.flatMap((node) => awaited.get(node) ?? []);
-      const { fronts } = await get("front-points", { job: jobs.map(({ id }) => String(id)) }, signal);
+      const { fronts } = await get(
+        "front-points",
+        { job: jobs.map(({ id }) => String(id)) },
+        signal,
+      );
       const found = new Map(fronts.map(({ job, points }) => [job, points]));
       for (const [index, { id, events }] of jobs.entries()) {
         const points = found.get(id) ?? [];
@@ -70,5 +74,7 @@ export function pictures(signal) {
 
 /** @param {Api.FrontPoints["points"]} points */
 function drawn(points) {
-  return points.length ? thumbnail(points, `the front: ${counted(points.length, "design")}`) : h("span", { class: "thumbnail" });
+  return points.length
+    ? thumbnail(points, `the front: ${counted(points.length, "design")}`)
+    : h("span", { class: "thumbnail" });
 }

@@ -15,17 +15,32 @@ import { moment } from "./times.js";
  * @param {{ picture: Element, chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.JobRow | null) => unknown }} given
  */
 export function runRow(job, { picture, chosen, compare, changed }) {
-  return h("li", { class: "panel run" },
-    h("label", { class: "tick" },
-      h("input", { type: "checkbox", "data-act": "tick", checked: chosen, disabled: !job.summary?.designs && !chosen, onchange: (event) => compare(job.id, event.currentTarget.checked) }),
-      h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`)),
-    h("div", { class: "what" },
+  return h(
+    "li",
+    { class: "panel run" },
+    h(
+      "label",
+      { class: "tick" },
+      h("input", {
+        type: "checkbox",
+        "data-act": "tick",
+        checked: chosen,
+        disabled: !job.summary?.designs && !chosen,
+        onchange: (event) => compare(job.id, event.currentTarget.checked),
+      }),
+      h("span", { class: "hidden" }, `Compare run ${job.id}, ${job.name}`),
+    ),
+    h(
+      "div",
+      { class: "what" },
       h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
       h("div", { class: "quiet" }, `run ${job.id} · `, moment(job)),
-      badge(job)),
+      badge(job),
+    ),
     picture,
     h("div", { class: "found" }, standing(job)),
-    h("div", { class: "row acts" }, actions(job, changed)));
+    h("div", { class: "row acts" }, actions(job, changed)),
+  );
 }
 
 /** Return how far a job is, or what it found. @param {Api.JobRow} job */
@@ -34,16 +49,37 @@ function standing(job) {
     const { designs, best } = job.summary;
     return [
       h("div", {}, counted(designs, "design")),
-      h("div", { class: "quiet" }, "best: ", Object.entries(best).map(([key, value]) => named(key, value)).join(" · ")),
+      h(
+        "div",
+        { class: "quiet" },
+        "best: ",
+        Object.entries(best)
+          .map(([key, value]) => named(key, value))
+          .join(" · "),
+      ),
     ];
   }
   if (job.state === "running" && job.progress) {
     const { stage, steps, feasible } = job.progress;
-    const [part, done, of] = steps ? ["", job.progress.step, steps] : ["round ", job.progress.round, job.progress.rounds];
+    const [part, done, of] = steps
+      ? ["", job.progress.step, steps]
+      : ["round ", job.progress.round, job.progress.rounds];
     return [
-      h("progress", { max: of, value: done, "aria-label": `run ${job.id}: ${part}${done} of ${of}` }),
-      h("div", { class: "quiet" }, `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`),
+      h("progress", {
+        max: of,
+        value: done,
+        "aria-label": `run ${job.id}: ${part}${done} of ${of}`,
+      }),
+      h(
+        "div",
+        { class: "quiet" },
+        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`,
+      ),
     ];
   }
-  return h("div", { class: "quiet" }, inWords(job.reason) || (job.state === "queued" ? "waits for a worker" : ""));
+  return h(
+    "div",
+    { class: "quiet" },
+    inWords(job.reason) || (job.state === "queued" ? "waits for a worker" : ""),
+  );
 }

@@ -28,7 +28,10 @@ export function stages() {
   };
 
   function draw() {
-    fill(node, known.map((one, place) => row(one, !over && place === known.length - 1)));
+    fill(
+      node,
+      known.map((one, place) => row(one, !over && place === known.length - 1)),
+    );
   }
 }
 
@@ -41,18 +44,40 @@ export function taken(before, data, seconds) {
   const now = data.seconds ?? 0;
   const known = before.slice();
   const last = known.at(-1);
-  if (last && (now < last.from || round < last.rounds[0])) return taken([], data, Math.min(seconds, now));
-  if (last?.name === name) known[known.length - 1] = { ...last, rounds: [last.rounds[0], round], step, steps, to: now };
-  else known.push({ name, rounds: [round, round], step, steps, from: Math.min(seconds, now), to: now });
+  if (last && (now < last.from || round < last.rounds[0]))
+    return taken([], data, Math.min(seconds, now));
+  if (last?.name === name)
+    known[known.length - 1] = { ...last, rounds: [last.rounds[0], round], step, steps, to: now };
+  else
+    known.push({
+      name,
+      rounds: [round, round],
+      step,
+      steps,
+      from: Math.min(seconds, now),
+      to: now,
+    });
   return known;
 }
 
 /** @param {Stage} stage @param {boolean} now */
 function row({ name, rounds: [first, last], step, steps, from, to }, now) {
-  const counted = steps ? `${grouped(step)} of ${grouped(steps)}` : first === last ? `round ${last}` : `rounds ${first} to ${last}`;
-  return h("li", { "aria-current": now ? "step" : null },
-    h("span", { class: "stage" }, h("span", { "aria-hidden": "true" }, now ? "▸ " : "✓ "), h("span", {}, name)),
+  const counted = steps
+    ? `${grouped(step)} of ${grouped(steps)}`
+    : first === last
+      ? `round ${last}`
+      : `rounds ${first} to ${last}`;
+  return h(
+    "li",
+    { "aria-current": now ? "step" : null },
+    h(
+      "span",
+      { class: "stage" },
+      h("span", { "aria-hidden": "true" }, now ? "▸ " : "✓ "),
+      h("span", {}, name),
+    ),
     now && steps ? h("progress", { max: steps, value: step, "aria-label": name }) : h("span", {}),
     h("span", { class: "quiet number" }, counted),
-    h("span", { class: "quiet number" }, duration(Math.max(0, to - from))));
+    h("span", { class: "quiet number" }, duration(Math.max(0, to - from))),
+  );
 }

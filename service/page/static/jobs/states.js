@@ -3,7 +3,15 @@
 import { h } from "../lib/dom.js";
 
 /** @type {Record<string, string>} */
-const SIGNS = { queued: "…", running: "▶", stopping: "◼", done: "✓", infeasible: "∅", cancelled: "◼", failed: "✕" };
+const SIGNS = {
+  queued: "…",
+  running: "▶",
+  stopping: "◼",
+  done: "✓",
+  infeasible: "∅",
+  cancelled: "◼",
+  failed: "✕",
+};
 /** @type {Record<string, string>} */
 const WORDS = { infeasible: "no solution" };
 /** @type {Api.Job["state"][]} */
@@ -19,5 +27,10 @@ export function stateWord(state) {
 /** Return a badge that says in which state a job is. @param {Api.JobRow} job */
 export function badge(job) {
   const state = job.state === "running" && job.cancel_asked ? "stopping" : job.state;
-  return h("span", { class: `state ${state}` }, h("span", { "aria-hidden": "true" }, SIGNS[state] ?? ""), ` ${stateWord(state)}`);
+  return h(
+    "span",
+    { class: `state ${state}` },
+    h("span", { "aria-hidden": "true" }, SIGNS[state] ?? ""),
+    ` ${stateWord(state)}`,
+  );
 }

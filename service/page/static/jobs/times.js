@@ -10,7 +10,10 @@ const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 export function moment({ state, submitted, started, finished }) {
   if (state === "running" && started) return ["begun ", ago(started)];
   if (!finished) return ["asked for ", ago(submitted)];
-  return [ago(finished), started && finished - started >= LEAST ? `, after ${duration(finished - started)}` : null];
+  return [
+    ago(finished),
+    started && finished - started >= LEAST ? `, after ${duration(finished - started)}` : null,
+  ];
 }
 
 /** Return when a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
@@ -19,9 +22,16 @@ export function ago(seconds) {
   /** @param {{ currentTarget: HTMLElement }} event */
   const exact = (event) => {
     // Only then: a browser takes 50 ms to make itself ready to write dates.
-    event.currentTarget.title = date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "medium" });
+    event.currentTarget.title = date.toLocaleString(undefined, {
+      dateStyle: "medium",
+      timeStyle: "medium",
+    });
   };
-  return h("time", { datetime: date.toISOString(), onpointerenter: exact }, agoText(date, new Date()));
+  return h(
+    "time",
+    { datetime: date.toISOString(), onpointerenter: exact },
+    agoText(date, new Date()),
+  );
 }
 
 /**
@@ -31,17 +41,29 @@ export function ago(seconds) {
 export function agoText(date, now) {
   const passed = (now.getTime() - date.getTime()) / 1000;
   if (passed < MINUTE) return "just now";
-  if (passed < HOUR) return Math.round(passed / MINUTE) === 1 ? "1 minute ago" : `${Math.round(passed / MINUTE)} minutes ago`;
-  const time = [date.getHours(), date.getMinutes()].map((part) => String(part).padStart(2, "0")).join(":");
+  if (passed < HOUR)
+    return Math.round(passed / MINUTE) === 1
+      ? "1 minute ago"
+      : `${Math.round(passed / MINUTE)} minutes ago`;
+  const time = [date.getHours(), date.getMinutes()]
+    .map((part) => String(part).padStart(2, "0"))
+    .join(":");
   if (date.toDateString() === now.toDateString()) return `today ${time}`;
-  if (date.toDateString() === new Date(now.getTime() - 1000 * DAY).toDateString()) return `yesterday ${time}`;
+  if (date.toDateString() === new Date(now.getTime() - 1000 * DAY).toDateString())
+    return `yesterday ${time}`;
   const day = `${date.getDate()} ${MONTHS[date.getMonth()]}`;
-  return date.getFullYear() === now.getFullYear() ? `${day} ${time}` : `${day} ${date.getFullYear()}`;
+  return date.getFullYear() === now.getFullYear()
+    ? `${day} ${time}`
+    : `${day} ${date.getFullYear()}`;
 }
 
 /** Return the time of the day of an event. @param {number} seconds */
 export function clock(seconds) {
-  return new Date(1000 * seconds).toLocaleTimeString(undefined, { hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  return new Date(1000 * seconds).toLocaleTimeString(undefined, {
+    hour: "2-digit",
+    minute: "2-digit",
+    second: "2-digit",
+  });
 }
 
 /** Return a duration in words: "about 3 min". @param {number} seconds */

@@ -3,7 +3,10 @@
 /** Return {parts, query} of the address: "#/jobs/7?x=crank_mm" is {parts: ["jobs", "7"], query: URLSearchParams}. */
 export function read() {
   const [path, query = ""] = location.hash.replace(/^#\/?/, "").split("?");
-  return { parts: path.split("/").filter(Boolean).map(decodeURIComponent), query: new URLSearchParams(query) };
+  return {
+    parts: path.split("/").filter(Boolean).map(decodeURIComponent),
+    query: new URLSearchParams(query),
+  };
 }
 
 /**
@@ -11,7 +14,11 @@ export function read() {
  * @param {readonly (string | number)[]} parts @param {Record<string, Dom.Value>} query
  */
 export function link(parts, query = {}) {
-  const parameters = new URLSearchParams(Object.entries(query).filter(([, value]) => value !== null && value !== undefined && value !== "").map(([key, value]) => [key, String(value)]));
+  const parameters = new URLSearchParams(
+    Object.entries(query)
+      .filter(([, value]) => value !== null && value !== undefined && value !== "")
+      .map(([key, value]) => [key, String(value)]),
+  );
   const text = parameters.toString();
   return `#/${parts.map(encodeURIComponent).join("/")}${text ? `?${text}` : ""}`;
 }

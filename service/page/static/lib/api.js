@@ -86,7 +86,11 @@ export function post(path, body = undefined, { signal, headers } = {}) {
  */
 export async function postFollowed(path, body, { query, signal, told }) {
   const headers = { Accept: "text/event-stream", "Content-Type": "application/json" };
-  const response = await answered("POST", address(path, query), { headers, signal, body: JSON.stringify(body) });
+  const response = await answered("POST", address(path, query), {
+    headers,
+    signal,
+    body: JSON.stringify(body),
+  });
   if (!response.ok) return jsonOf(response);
   const reader = /** @type {ReadableStream<Uint8Array>} */ (response.body).getReader();
   const decoder = new TextDecoder();
@@ -146,7 +150,12 @@ async function jsonOf(response) {
   } catch {
     throw new Problem(response.status, `The answer was no JSON (status ${response.status}).`);
   }
-  if (!response.ok) throw new Problem(response.status, answer?.detail ?? `The service answered ${response.status}.`, answer?.type);
+  if (!response.ok)
+    throw new Problem(
+      response.status,
+      answer?.detail ?? `The service answered ${response.status}.`,
+      answer?.type,
+    );
   return answer;
 }
 
@@ -157,7 +166,13 @@ function parsed(text) {
 
 /** Return the number that JSON has no form for, where a cell of a table stands for it. @param {string} key @param {unknown} value */
 function infinite(key, value) {
-  if ((value !== "inf" && value !== "-inf") || key === "name" || key === "title" || key.startsWith("choice_")) return value;
+  if (
+    (value !== "inf" && value !== "-inf") ||
+    key === "name" ||
+    key === "title" ||
+    key.startsWith("choice_")
+  )
+    return value;
   return value === "inf" ? Infinity : -Infinity;
 }
 

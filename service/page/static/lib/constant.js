@@ -8,5 +8,8 @@ export const SAME = 1e-9; // relative spread of what counts as one number
  */
 export function isConstant(low, high, size = 0) {
   const apart = high - low;
-  return !(apart > (apart === Infinity ? 0 : SAME * Math.max(Math.abs(low), Math.abs(high), Math.abs(size))));
+  return !(
+    apart >
+    (apart === Infinity ? 0 : SAME * Math.max(Math.abs(low), Math.abs(high), Math.abs(size)))
+  );
 }

@@ -48,7 +48,9 @@ export function first(node, selector) {
 /** Return the element that has the focus within a node; null if that is elsewhere. @type {(node: Element) => HTMLElement | null} */
 export function focused(node) {
   const { activeElement } = document;
-  return activeElement instanceof HTMLElement && node.contains(activeElement) ? activeElement : null;
+  return activeElement instanceof HTMLElement && node.contains(activeElement)
+    ? activeElement
+    : null;
 }
 
 /** Put children in place of those that a node has. @param {Element} node @param {...Dom.Child} children */
@@ -66,7 +68,8 @@ function dress(node, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-    else if (name === "value" || name === "checked" || name === "selected" || name === "disabled") Object.assign(node, { [name]: value });
+    else if (name === "value" || name === "checked" || name === "selected" || name === "disabled")
+      Object.assign(node, { [name]: value });
     else node.setAttribute(name, value === true ? "" : value);
   }
   node.append(...kept(children));
@@ -75,5 +78,7 @@ function dress(node, attributes, children) {
 
 /** @type {(children: readonly Dom.Child[]) => (Node | string)[]} */
 function kept(children) {
-  return children.flatMap((child) => (typeof child === "string" || child instanceof Node ? [child] : child ? kept(child) : []));
+  return children.flatMap((child) =>
+    typeof child === "string" || child instanceof Node ? [child] : child ? kept(child) : [],
+  );
 }

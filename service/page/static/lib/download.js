@@ -22,7 +22,15 @@ function save(content, name) {
 export function watchDownloads() {
   document.addEventListener("click", (event) => {
     const link = event.target instanceof Element ? event.target.closest("a[download]") : null;
-    if (!(link instanceof HTMLAnchorElement) || !link.href.includes("/api/") || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+    if (
+      !(link instanceof HTMLAnchorElement) ||
+      !link.href.includes("/api/") ||
+      event.ctrlKey ||
+      event.metaKey ||
+      event.shiftKey ||
+      event.altKey
+    )
+      return;
     event.preventDefault();
     if (link.getAttribute("aria-busy") !== "true") fetched(link).catch(sayProblem);
   });
@@ -37,12 +45,20 @@ async function fetched(link) {
     const response = await answered("GET", link.href);
     if (!response.ok) {
       const problem = await response.json().catch(() => ({}));
-      throw new Problem(response.status, problem.detail ?? `The service answered ${response.status}.`);
+      throw new Problem(
+        response.status,
+        problem.detail ?? `The service answered ${response.status}.`,
+      );
     }
     const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
-    save(await response.blob(), named?.[1] ?? (link.download || new URL(link.href).pathname.split("/").at(-1) || "file"));
+    save(
+      await response.blob(),
+      named?.[1] ?? (link.download || new URL(link.href).pathname.split("/").at(-1) || "file"),
+    );
   } catch (error) {
-    throw error instanceof TypeError || statusOf(error) === 0 ? new Problem(0, "The service does not answer; try again when it is back.") : error;
+    throw error instanceof TypeError || statusOf(error) === 0
+      ? new Problem(0, "The service does not answer; try again when it is back.")
+      : error;
   } finally {
     clearTimeout(told);
     link.removeAttribute("aria-busy");

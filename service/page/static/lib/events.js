@@ -37,7 +37,8 @@ export function follow(job, { after = 0, signal, told, connected = () => {} }) {
     opened.onerror = () => {
       connected(false);
       // A browser comes back by itself unless the answer was no stream, as from a service that is just starting.
-      if (opened.readyState === EventSource.CLOSED && !signal?.aborted) timer = setTimeout(open, AGAIN);
+      if (opened.readyState === EventSource.CLOSED && !signal?.aborted)
+        timer = setTimeout(open, AGAIN);
     };
   };
   signal?.addEventListener("abort", stop, { once: true });

@@ -15,7 +15,14 @@ export function measured(typed, unit) {
   const kind = kindOf(shown);
   const found = read(typed, { unit: shown, ...measureOf(kind) });
   if (found.empty) return { empty: true };
-  const value = found.number !== undefined && found.unit === shown ? fromShown(Number(found.number), unit) : NaN;
+  const value =
+    found.number !== undefined && found.unit === shown
+      ? fromShown(Number(found.number), unit)
+      : NaN;
   if (found.number !== undefined && Number.isFinite(value)) return { value, said: found.said };
-  return { wrong: found.wrong ?? `“${typed.trim()}” is no ${kind ?? "number"}; write a number${shown ? `, in ${unitOf(unit)} or with its unit` : ""}.` };
+  return {
+    wrong:
+      found.wrong ??
+      `“${typed.trim()}” is no ${kind ?? "number"}; write a number${shown ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
+  };
 }

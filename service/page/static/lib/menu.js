@@ -10,14 +10,23 @@ import { h } from "./dom.js";
  */
 export function menu(title, content, { name, opened, act } = {}) {
   const summary = h("summary", { class: "button", "aria-label": name, "data-act": act }, title);
-  const node = h("details", { class: "chooser", ontoggle: () => {
-    if (node.open) opened?.();
-    if (node.open) document.addEventListener("pointerdown", elsewhere);
-    else document.removeEventListener("pointerdown", elsewhere);
-  } }, summary, content);
+  const node = h(
+    "details",
+    {
+      class: "chooser",
+      ontoggle: () => {
+        if (node.open) opened?.();
+        if (node.open) document.addEventListener("pointerdown", elsewhere);
+        else document.removeEventListener("pointerdown", elsewhere);
+      },
+    },
+    summary,
+    content,
+  );
   /** @param {PointerEvent} event */
   const elsewhere = (event) => {
-    if (!(event.target instanceof Node && node.isConnected && node.contains(event.target))) node.open = false;
+    if (!(event.target instanceof Node && node.isConnected && node.contains(event.target)))
+      node.open = false;
   };
   node.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !node.open) return;
@@ -25,7 +34,8 @@ export function menu(title, content, { name, opened, act } = {}) {
     summary.focus();
   });
   node.addEventListener("focusout", (event) => {
-    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget)) node.open = false;
+    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget))
+      node.open = false;
   });
   return node;
 }

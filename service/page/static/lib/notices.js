@@ -9,7 +9,9 @@ const SHOWN = 6000; // ms
 /** Say something. kind: "info" goes away by itself, "error" stays until it is closed. @param {string} sentence @param {"info" | "error"} kind */
 export function say(sentence, kind = "info") {
   const notice = h("div", { class: `notice ${kind}` }, h("p", {}, sentence));
-  notice.append(h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"));
+  notice.append(
+    h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"),
+  );
   byId("notices").append(notice);
   if (kind === "info") setTimeout(() => notice.remove(), SHOWN);
 }

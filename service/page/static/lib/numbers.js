@@ -62,7 +62,9 @@ export function valueOf(record, name) {
 
 /** Return {name, unit} of a key of the API: "crank" and "mm" of crank_mm. Needs `readySystem`. @param {string} key */
 export function keyOf(key) {
-  const [unit, suffix] = suffixes.find(([, end]) => end && key.endsWith(end) && key.length > end.length) ?? ["", ""];
+  const [unit, suffix] = suffixes.find(
+    ([, end]) => end && key.endsWith(end) && key.length > end.length,
+  ) ?? ["", ""];
   return { name: key.slice(0, key.length - suffix.length), unit };
 }
 
@@ -72,11 +74,20 @@ export function keyOf(key) {
  * @param {string} sentence
  */
 export function inShownUnits(sentence) {
-  const units = Object.keys(SYSTEMS[system()] ?? {}).sort((one, other) => other.length - one.length);
+  const units = Object.keys(SYSTEMS[system()] ?? {}).sort(
+    (one, other) => other.length - one.length,
+  );
   if (!units.length) return sentence;
   const number = "[-−]?\\d[\\d.]*(?:e[-+]?\\d+)?";
-  const values = new RegExp(`(?<!["“\\w.^])((?:${number}(?:, | to | and | or | x ))*${number}\\)?) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`, "g");
-  return sentence.replace(values, (_, given, unit) => `${given.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`);
+  const values = new RegExp(
+    `(?<!["“\\w.^])((?:${number}(?:, | to | and | or | x ))*${number}\\)?) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`,
+    "g",
+  );
+  return sentence.replace(
+    values,
+    (_, given, unit) =>
+      `${given.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`,
+  );
 }
 
 /** Choose a system; everything that shows numbers is drawn again (event "units" of the window). @param {string} name */
@@ -118,7 +129,11 @@ export function text(value, unit = "", digits = 5) {
   if (shown === 0) return "0";
   const size = Math.abs(shown);
   if (size === Infinity) return shown > 0 ? "∞" : "−∞";
-  if (size >= 1e6 || size < 1e-4) return shown.toExponential(digits - 1).replace(/\.?0+e/, "e").replaceAll("-", "−");
+  if (size >= 1e6 || size < 1e-4)
+    return shown
+      .toExponential(digits - 1)
+      .replace(/\.?0+e/, "e")
+      .replaceAll("-", "−");
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
 }
@@ -134,7 +149,11 @@ export function limitText(value, unit, side, digits = 5) {
   const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
   const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one
   const scaled = (shown + (side === "up" ? -rounding : rounding)) * 10 ** places;
-  return String(Number(((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places))).replaceAll("-", "−");
+  return String(
+    Number(
+      ((side === "up" ? Math.ceil(scaled) : Math.floor(scaled)) / 10 ** places).toFixed(places),
+    ),
+  ).replaceAll("-", "−");
 }
 
 /** Return a number with its unit: "41.2 mm", "38°". @param {Api.Row[string] | undefined} value @param {string} unit @param {number} digits */
@@ -149,7 +168,9 @@ export function withUnit(value, unit = "", digits = 5) {
  * @param {Page.Range} given @param {string} unit @param {number} digits
  */
 export function ends({ low, high }, unit, digits = 4) {
-  return [low, high].map((value) => text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits));
+  return [low, high].map((value) =>
+    text(Math.abs(value) < 1e-6 * Math.abs(high - low) ? 0 : value, unit, digits),
+  );
 }
 
 /** Return how many of something there are: "1 design", "2,000 designs". @param {number} count @param {string} one */

@@ -17,11 +17,16 @@ function note() {
 /** Keep the place from now on; what leads elsewhere notes it before. */
 export function keepPlaces() {
   history.scrollRestoration = "manual";
-  window.addEventListener("scroll", () => {
-    clearTimeout(timer);
-    timer = setTimeout(note, SETTLED);
-  }, { passive: true });
-  for (const name of ["click", "keydown"]) document.addEventListener(name, () => timer && note(), { capture: true });
+  window.addEventListener(
+    "scroll",
+    () => {
+      clearTimeout(timer);
+      timer = setTimeout(note, SETTLED);
+    },
+    { passive: true },
+  );
+  for (const name of ["click", "keydown"])
+    document.addEventListener(name, () => timer && note(), { capture: true });
 }
 
 /**
@@ -50,10 +55,13 @@ export function lookForPlace(signal) {
     else if (Math.abs(scrollY - top) <= 1) whole = setTimeout(end, QUIET);
   };
   const longer = new ResizeObserver(reach);
-  signal.addEventListener("abort", () => [longer.disconnect(), clearTimeout(whole)], { once: true });
+  signal.addEventListener("abort", () => [longer.disconnect(), clearTimeout(whole)], {
+    once: true,
+  });
   return () => {
     if (signal.aborted) return;
-    for (const name of ["wheel", "touchstart", "pointerdown", "keydown"]) window.addEventListener(name, end, { signal: ended.signal, passive: true });
+    for (const name of ["wheel", "touchstart", "pointerdown", "keydown"])
+      window.addEventListener(name, end, { signal: ended.signal, passive: true });
     reach();
     if (looking) longer.observe(document.body);
   };

@@ -9,12 +9,19 @@ const VALUE = /\b(at least|at most|above|below|got) "?(-?\d[\d.]*(?:e[+-]?\d+)?)
 
 /** Return an error as a sentence, a refusal of the service in the words of the page. @type {(error: unknown) => string} */
 export function sentenceOf(error) {
-  return error instanceof Problem ? refusalInWords(error.message) : error instanceof Error ? error.message : String(error);
+  return error instanceof Problem
+    ? refusalInWords(error.message)
+    : error instanceof Error
+      ? error.message
+      : String(error);
 }
 
 /** Return a refusal in words, each of its lines a sentence. @param {string} detail */
 export function refusalInWords(detail) {
-  return detail.split("\n").map((line) => capital(inWords(ofField(line.trim())))).join(". ");
+  return detail
+    .split("\n")
+    .map((line) => capital(inWords(ofField(line.trim()))))
+    .join(". ");
 }
 
 /** @param {string} line */
@@ -22,6 +29,9 @@ function ofField(line) {
   const found = OF_A_FIELD.exec(line);
   if (!found) return line;
   const { name, unit } = keyOf(found[1]);
-  const rule = found[2].replace(VALUE, (_, word, value) => `${word} ${withUnit(Number(value), unit, 7)}`);
+  const rule = found[2].replace(
+    VALUE,
+    (_, word, value) => `${word} ${withUnit(Number(value), unit, 7)}`,
+  );
   return `${name.replaceAll("_", " ").replaceAll(".", ", ")}${/^(?:must|is) /.test(rule) ? "" : ":"} ${rule}`;
 }

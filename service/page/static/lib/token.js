@@ -14,16 +14,47 @@ export function letIn() {
 /** @returns {Promise<boolean>} */
 function ask() {
   return new Promise((told) => {
-    const field = h("input", { id: "token", type: "password", required: true, autofocus: true, autocomplete: "current-password" });
+    const field = h("input", {
+      id: "token",
+      type: "password",
+      required: true,
+      autofocus: true,
+      autocomplete: "current-password",
+    });
     const wrong = h("p", { class: "error", role: "alert" });
-    const dialog = h("dialog", { "aria-labelledby": "locked" },
+    const dialog = h(
+      "dialog",
+      { "aria-labelledby": "locked" },
       h("h2", { id: "locked" }, "This service asks for its token"),
-      h("p", {}, "It has started anew, or the browser has lost the token. The end of the address that the service printed has it; what you have typed here stays."),
-      h("form", { class: "row", onsubmit: (event) => { event.preventDefault(); send(); } }, h("label", { for: "token" }, "Token"), field, h("button", { class: "primary" }, "Open")), wrong);
+      h(
+        "p",
+        {},
+        "It has started anew, or the browser has lost the token. The end of the address that the service printed has it; what you have typed here stays.",
+      ),
+      h(
+        "form",
+        {
+          class: "row",
+          onsubmit: (event) => {
+            event.preventDefault();
+            send();
+          },
+        },
+        h("label", { for: "token" }, "Token"),
+        field,
+        h("button", { class: "primary" }, "Open"),
+      ),
+      wrong,
+    );
     async function send() {
-      const answer = await fetch(`./?token=${encodeURIComponent(field.value)}`, { headers: { Accept: "application/json" } }).catch(() => null);
+      const answer = await fetch(`./?token=${encodeURIComponent(field.value)}`, {
+        headers: { Accept: "application/json" },
+      }).catch(() => null);
       if (answer?.ok) dialog.close("in");
-      else wrong.textContent = answer ? "That was not the token of this service." : "The service does not answer; try again when it is back.";
+      else
+        wrong.textContent = answer
+          ? "That was not the token of this service."
+          : "The service does not answer; try again when it is back.";
     }
     dialog.addEventListener("close", () => {
       dialog.remove();

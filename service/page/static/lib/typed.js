@@ -20,7 +20,18 @@ const MIXED = /^(\d+)\s+(\d+)\s*\/\s*(\d+)(?![\d.,])/; // one and a half, as on 
 const SPACED = /^\d{1,3}(?:[ \u00a0\u202f]\d{3})+(?![\d])(?:[.,]\d+)?/;
 const DIGITS = /^(?:\d|[.,](?=\d))[\d.,]*(?:e[+-]?\d{1,3})?/i;
 /** Other spellings of units. @type {Record<string, string>} */
-const SPELLINGS = { '"': "in", "″": "in", inch: "in", "'": "foot", "′": "foot", ft: "foot", feet: "foot", um: "µm", "μm": "µm", "°": "deg" };
+const SPELLINGS = {
+  '"': "in",
+  "″": "in",
+  inch: "in",
+  "'": "foot",
+  "′": "foot",
+  ft: "foot",
+  feet: "foot",
+  um: "µm",
+  μm: "µm",
+  "°": "deg",
+};
 const SPREAD = /^(?:\+\/?-|±)/; // between the middle of a range and half its width
 const SIGN = /^(?!\+\/?-)[+-]/;
 const WORD = /^[^\d\s.,+\-*/×·÷()±]/;
@@ -44,16 +55,26 @@ export function read(typed, field) {
   try {
     const parser = new Parser(text, field);
     const { value, unit, half } = parser.whole();
-    if (!Number.isFinite(value + (half ?? 0))) return { wrong: `${shown(typed)} has no finite value.` };
-    const same = unit === null || unit === field.unit || !(unit in field.factors) || !(field.unit in field.factors);
+    if (!Number.isFinite(value + (half ?? 0)))
+      return { wrong: `${shown(typed)} has no finite value.` };
+    const same =
+      unit === null ||
+      unit === field.unit ||
+      !(unit in field.factors) ||
+      !(field.unit in field.factors);
     /** @param {number} of */
-    const converted = (of) => tidy(same ? of : (of * field.factors[unit]) / field.factors[field.unit]);
+    const converted = (of) =>
+      tidy(same ? of : (of * field.factors[unit]) / field.factors[field.unit]);
     const number = converted(value);
     const into = same ? (unit ?? field.unit) : field.unit;
     /** @type {[string, string] | null} */
     const ends = half === null ? null : [converted(value - half), converted(value + half)];
     const result = `${ends ? ends.join(" to ") : number}${into ? ` ${into}` : ""}`;
-    const said = parser.doubtful ? `${shown(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.` : result === text ? null : `${shown(typed)} = ${result}`;
+    const said = parser.doubtful
+      ? `${shown(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.`
+      : result === text
+        ? null
+        : `${shown(typed)} = ${result}`;
     return ends ? { ends, unit: into, said: said ?? result } : { number, unit: into, said };
   } catch (problem) {
     if (problem instanceof Unreadable) return { wrong: problem.message };
@@ -83,10 +104,20 @@ class Parser {
   whole() {
     const { value, unit } = this.sum();
     const by = this.taken(SPREAD) ? this.sum() : null;
-    if (by && !this.field.range) throw new Unreadable(`${shown(this.text)} is a range; write a single value here.`);
-    if (this.rest) throw new Unreadable(this.rest[0] === ")" ? `A bracket is closed in ${shown(this.text)} that was not opened.` : `A sign such as + or * is missing before ${shown(this.rest)}.`);
+    if (by && !this.field.range)
+      throw new Unreadable(`${shown(this.text)} is a range; write a single value here.`);
+    if (this.rest)
+      throw new Unreadable(
+        this.rest[0] === ")"
+          ? `A bracket is closed in ${shown(this.text)} that was not opened.`
+          : `A sign such as + or * is missing before ${shown(this.rest)}.`,
+      );
     if (!by) return { value, unit, half: null };
-    const half = Math.abs(unit === null || by.unit === null || by.unit === unit ? by.value : (by.value * this.factor(by.unit)) / this.factor(unit));
+    const half = Math.abs(
+      unit === null || by.unit === null || by.unit === unit
+        ? by.value
+        : (by.value * this.factor(by.unit)) / this.factor(unit),
+    );
     return { value, unit: unit ?? by.unit, half };
   }
 
@@ -101,17 +132,28 @@ class Parser {
     const last = terms[terms.length - 1].unit;
     const bare = terms.slice(0, -1).every(({ unit }) => unit === null); // 100 + 5 mm: the unit is that of all
     const missing = terms.find(({ unit }) => unit === null);
-    if (!bare && missing) throw new Unreadable(`A part of ${shown(this.text)} has no unit; write one behind each part, or only at the end.`);
-    if (bare) return { value: terms.reduce((all, { value }, n) => all + signs[n] * value, 0), unit: last };
+    if (!bare && missing)
+      throw new Unreadable(
+        `A part of ${shown(this.text)} has no unit; write one behind each part, or only at the end.`,
+      );
+    if (bare)
+      return { value: terms.reduce((all, { value }, n) => all + signs[n] * value, 0), unit: last };
     const { unit } = terms[0];
-    const value = terms.reduce((all, one, n) => all + signs[n] * (one.unit === unit ? one.value : (one.value * this.factor(one.unit)) / this.factor(unit)), 0);
+    const value = terms.reduce(
+      (all, one, n) =>
+        all +
+        signs[n] *
+          (one.unit === unit ? one.value : (one.value * this.factor(one.unit)) / this.factor(unit)),
+      0,
+    );
     return { value, unit };
   }
 
   /** @param {string | null} unit */
   factor(unit) {
     const found = this.field.factors[unit ?? ""];
-    if (found === undefined) throw new Unreadable(`A share and a value cannot be added, as in ${shown(this.text)}.`);
+    if (found === undefined)
+      throw new Unreadable(`A share and a value cannot be added, as in ${shown(this.text)}.`);
     return found;
   }
 
@@ -121,22 +163,33 @@ class Parser {
     for (let sign = this.taken(/^[*/×·÷]/); sign; sign = this.taken(/^[*/×·÷]/)) {
       const other = this.operand();
       const by = sign === "/" || sign === "÷";
-      if (other.unit !== null && (found.unit !== null || by)) throw new Unreadable(`Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`);
+      if (other.unit !== null && (found.unit !== null || by))
+        throw new Unreadable(
+          `Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`,
+        );
       if (by && other.value === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
-      found = this.measured({ value: by ? found.value / other.value : found.value * other.value, unit: found.unit ?? other.unit });
+      found = this.measured({
+        value: by ? found.value / other.value : found.value * other.value,
+        unit: found.unit ?? other.unit,
+      });
     }
     return found;
   }
 
   /** Return a part with the unit behind it, if there is one. @param {Part} part @returns {Part} */
   measured(part) {
-    const found = this.spellings.find(([spelling]) => this.rest.startsWith(spelling) && !(/\w$/.test(spelling) && /^[\w^]/.test(this.rest.slice(spelling.length))));
+    const found = this.spellings.find(
+      ([spelling]) =>
+        this.rest.startsWith(spelling) &&
+        !(/\w$/.test(spelling) && /^[\w^]/.test(this.rest.slice(spelling.length))),
+    );
     if (!found) {
       if (WORD.test(this.rest)) throw new Unknown();
       return part;
     }
     this.rest = this.rest.slice(found[0].length).trimStart();
-    if (part.unit !== null) throw new Unreadable(`${shown(this.text)} has two units in one product.`);
+    if (part.unit !== null)
+      throw new Unreadable(`${shown(this.text)} has two units in one product.`);
     return { value: part.value, unit: found[1] };
   }
 
@@ -149,8 +202,12 @@ class Parser {
     }
     if (this.taken(/^\(/)) {
       const inner = this.sum();
-      if (SPREAD.test(this.rest)) throw new Unreadable(`A range such as 180 mm +- 0.5 mm has no brackets around it; got ${shown(this.text)}.`);
-      if (!this.taken(/^\)/)) throw new Unreadable(`A bracket of ${shown(this.text)} is not closed.`);
+      if (SPREAD.test(this.rest))
+        throw new Unreadable(
+          `A range such as 180 mm +- 0.5 mm has no brackets around it; got ${shown(this.text)}.`,
+        );
+      if (!this.taken(/^\)/))
+        throw new Unreadable(`A bracket of ${shown(this.text)} is not closed.`);
       return inner;
     }
     const mixed = this.matched(MIXED);
@@ -162,21 +219,33 @@ class Parser {
     const digits = this.taken(SPACED) || this.taken(DIGITS);
     if (digits) return { value: this.number(digits.replace(/[\s\u00a0\u202f]/g, "")), unit: null };
     if (WORD.test(this.rest)) throw new Unknown();
-    throw new Unreadable(this.rest ? `A number is missing before ${shown(this.rest)}.` : `A number is missing at the end of ${shown(this.text)}.`);
+    throw new Unreadable(
+      this.rest
+        ? `A number is missing before ${shown(this.rest)}.`
+        : `A number is missing at the end of ${shown(this.text)}.`,
+    );
   }
 
   /** Return the number that digits with points and commas say. @param {string} digits */
   number(digits) {
     const [mantissa, power = "0"] = digits.split(/e/i);
     const [commas, points] = [mantissa.split(",").length - 1, mantissa.split(".").length - 1];
-    const grouped = /^[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?$/.test(mantissa) ? "," : /^[1-9]\d{0,2}(?:\.\d{3})+(?:,\d*)?$/.test(mantissa) ? "." : "";
+    const grouped = /^[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?$/.test(mantissa)
+      ? ","
+      : /^[1-9]\d{0,2}(?:\.\d{3})+(?:,\d*)?$/.test(mantissa)
+        ? "."
+        : "";
     let plain = mantissa;
     if (grouped === "," && (commas > 1 || points || !digits.match(/e/i))) {
       if (commas === 1 && !points) this.doubtful = mantissa.replace(",", ".");
       plain = mantissa.replaceAll(",", "");
-    } else if (grouped === "." && (points > 1 || commas)) plain = mantissa.replaceAll(".", "").replace(",", ".");
+    } else if (grouped === "." && (points > 1 || commas))
+      plain = mantissa.replaceAll(".", "").replace(",", ".");
     else if (commas + points <= 1) plain = mantissa.replace(",", ".");
-    else throw new Unreadable(`${shown(mantissa)} is no number: it has points or commas in more than one place.`);
+    else
+      throw new Unreadable(
+        `${shown(mantissa)} is no number: it has points or commas in more than one place.`,
+      );
     return Number(`${plain}e${power}`);
   }
 
@@ -197,8 +266,16 @@ class Parser {
 function spellingsOf({ factors, spoken, percent }) {
   const units = Object.keys(factors);
   /** @type {[string, string][]} */
-  const found = units.flatMap((unit) => [unit, unit.replaceAll(" ", ""), unit.replaceAll(" ", "·"), unit.replace("^2", "²").replace("^3", "³")].map((one) => /** @type {[string, string]} */ ([one, unit])));
-  for (const [spelling, unit] of Object.entries({ ...SPELLINGS, ...spoken })) if (unit in factors) found.push([spelling, unit]);
+  const found = units.flatMap((unit) =>
+    [
+      unit,
+      unit.replaceAll(" ", ""),
+      unit.replaceAll(" ", "·"),
+      unit.replace("^2", "²").replace("^3", "³"),
+    ].map((one) => /** @type {[string, string]} */ ([one, unit])),
+  );
+  for (const [spelling, unit] of Object.entries({ ...SPELLINGS, ...spoken }))
+    if (unit in factors) found.push([spelling, unit]);
   if (percent) found.push(["%", "%"]);
   return found.sort(([one], [other]) => other.length - one.length);
 }

@@ -14,9 +14,17 @@ const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 /** Make ready to offer units and to read them: the service has the table of kinds. */
 export async function readyKinds() {
   const { kinds: known } = await unitTable();
-  KINDS = Object.fromEntries(known.map(({ name, units }) => [name, Object.fromEntries(units.map(({ unit, factor }) => [unit, factor]))]));
+  KINDS = Object.fromEntries(
+    known.map(({ name, units }) => [
+      name,
+      Object.fromEntries(units.map(({ unit, factor }) => [unit, factor])),
+    ]),
+  );
   SPOKEN = Object.fromEntries(known.map(({ name, spoken }) => [name, spoken]));
-  USUAL = { si: Object.fromEntries(known.map(({ name, si }) => [name, si])), inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])) };
+  USUAL = {
+    si: Object.fromEntries(known.map(({ name, si }) => [name, si])),
+    inch: Object.fromEntries(known.map(({ name, inch }) => [name, inch])),
+  };
 }
 
 /**
@@ -57,7 +65,8 @@ export function usual(kind) {
  */
 export function split(value, kind) {
   if (value === undefined || value === null) return { number: "", unit: kind ? usual(kind) : "" };
-  if (typeof value === "number") return { number: String(value), unit: Object.keys(KINDS[kind ?? ""] ?? { "": 1 })[0] };
+  if (typeof value === "number")
+    return { number: String(value), unit: Object.keys(KINDS[kind ?? ""] ?? { "": 1 })[0] };
   const match = NUMBER.exec(String(value));
   const { factors, spoken } = measureOf(kind);
   const word = match?.[2].trim() ?? "";
@@ -72,7 +81,8 @@ export function split(value, kind) {
  * @param {unknown} value @param {string | null | undefined} kind @returns {[string, string] | null}
  */
 export function spread(value, kind) {
-  const found = typeof value === "string" ? read(value, { unit: "", ...measureOf(kind), range: true }) : {};
+  const found =
+    typeof value === "string" ? read(value, { unit: "", ...measureOf(kind), range: true }) : {};
   if (!found.ends || (kind && !found.unit)) return null;
   const [low, high] = found.ends.map((end) => (found.unit ? `${end} ${found.unit}` : end));
   return [low, high];
@@ -92,6 +102,13 @@ export function join(number, unit) {
  */
 export function convert(number, from, to, kind) {
   const factors = KINDS[kind ?? ""] ?? {};
-  if (from === to || !(from in factors) || !(to in factors) || number.trim() === "" || !Number.isFinite(Number(number))) return number;
+  if (
+    from === to ||
+    !(from in factors) ||
+    !(to in factors) ||
+    number.trim() === "" ||
+    !Number.isFinite(Number(number))
+  )
+    return number;
   return String(Number(((Number(number) * factors[from]) / factors[to]).toPrecision(10)));
 }

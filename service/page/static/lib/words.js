@@ -33,51 +33,103 @@ const OWN = {
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
   [/\bunknown key\b/g, "unknown entry"],
-  [/must be a list of tables, in double brackets; got a single one; write [^;]+/g, "must be a list; got a single entry; put it in a list"],
-  [/must be a single table, in single brackets; got (a list of \d+); write [^;]+/g, "must be a single entry; got $1; keep one of them"],
+  [
+    /must be a list of tables, in double brackets; got a single one; write [^;]+/g,
+    "must be a list; got a single entry; put it in a list",
+  ],
+  [
+    /must be a single table, in single brackets; got (a list of \d+); write [^;]+/g,
+    "must be a single entry; got $1; keep one of them",
+  ],
   [/ unless cycle_time or strokes_per_minute is given/g, ""],
   [/\bcycle_time\b/g, "cycle time"],
   [/\bstrokes_per_minute\b/g, "strokes per minute"],
   [/\bdirection = "([a-z-]+)"/g, (_, way) => `the direction ${way}`],
-  [/(?:add|write|set) \[motion\] kind = "swing" with from and to/g, () => "let the crank swing, under Motion"],
-  [/\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g, (whole, table, key) => (PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole)],
-  [/add gravity = "[^"]+", or gravity = 0/g, () => "give the gravity under “Masses and loads”, 0 for none"],
+  [
+    /(?:add|write|set) \[motion\] kind = "swing" with from and to/g,
+    () => "let the crank swing, under Motion",
+  ],
+  [
+    /\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g,
+    (whole, table, key) =>
+      PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole,
+  ],
+  [
+    /add gravity = "[^"]+", or gravity = 0/g,
+    () => "give the gravity under “Masses and loads”, 0 for none",
+  ],
   [/got \[motion\] kind = "swing"/g, "got one that swings"],
   [/write kind = "swing"/g, "let the crank swing"],
-  [/must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g, (_, count) => `must have two options or more; got ${count}; paste a table of them`],
+  [
+    /must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g,
+    (_, count) => `must have two options or more; got ${count}; paste a table of them`,
+  ],
   [/(?:set )?\[motion\] driver = "(\w+)"/g, (_, end) => `let the ${end} be the driven end`],
-  [/add for example law_times = \[([^\]]+)\], law_shares = \[([^\]]+)\]/g, (_, times, ways) => `give for example the times ${times} and the ways ${ways}`],
+  [
+    /add for example law_times = \[([^\]]+)\], law_shares = \[([^\]]+)\]/g,
+    (_, times, ways) => `give for example the times ${times} and the ways ${ways}`,
+  ],
   [/by slider_from and slider_to\b/g, "by two slider positions"],
   [/\blaw_times\b/g, "shares of the time"],
   [/\blaw_shares\b/g, "shares of the way"],
   [/got driver = "(\w+)"/g, (_, end) => `got the ${end} as the driven end`],
   [/, or as a plain number in [^;.]+/g, ""],
   [/ \(a plain number is in rad\)/g, ""],
-  [/(write|add) (?:it )?for example [a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g, (verb, _, __, value) => `${verb.startsWith("add") ? "add" : "write"} for example ${value}`],
-  [/(min|max|equals|step|target) = "([^"]+)"/g, (_, word, value) => `${WORDS[word] ?? word} ${value}`],
+  [
+    /(write|add) (?:it )?for example [a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g,
+    (verb, _, __, value) => `${verb.startsWith("add") ? "add" : "write"} for example ${value}`,
+  ],
+  [
+    /(min|max|equals|step|target) = "([^"]+)"/g,
+    (_, word, value) => `${WORDS[word] ?? word} ${value}`,
+  ],
   [/\[\[?(\w+)\]\]?/g, (whole, table) => (PARTS[table] ? `“${PARTS[table]}”` : whole)],
   [/got constraints\.\w+ with equals/g, "got “exactly” among the requirements"],
   [/\bgot (equals|min) (?=[\d.−-])/g, (_, word) => `got ${WORDS[word]} `],
   [/\bgot max (?=[\d.−-])/g, "got at most "],
   [/\b(got at least \S+(?: [^\d\s;]\S*)*) and max /g, "$1 and at most "],
-  [/\b(constraints|objectives)\.(\w+)/g, (_, table, name) => `the ${table === "constraints" ? "requirement on" : "objective"} ${name.replaceAll("_", " ")}`],
+  [
+    /\b(constraints|objectives)\.(\w+)/g,
+    (_, table, name) =>
+      `the ${table === "constraints" ? "requirement on" : "objective"} ${name.replaceAll("_", " ")}`,
+  ],
   [/\b(?:variables|mechanism|tolerances|motion)\.(?=[a-z])/g, ""],
-  [/must be an? ([a-z ]+): one number and one unit; got ""; write it like /g, (_, kind) => `needs a number: a ${kind}, such as `],
+  [
+    /must be an? ([a-z ]+): one number and one unit; got ""; write it like /g,
+    (_, kind) => `needs a number: a ${kind}, such as `,
+  ],
   [/is missing, but required; (?:add|write) for example /g, "is missing; give a value, such as "],
-  [/^slow_stroke = "(\w+)" leaves/, (_, stroke) => `a slow stroke that is the ${stroke} one leaves`],
+  [
+    /^slow_stroke = "(\w+)" leaves/,
+    (_, stroke) => `a slow stroke that is the ${stroke} one leaves`,
+  ],
   [/\bat --at\b/g, "at a crank angle"],
   [/--(?=[a-z])/g, ""],
-  [/require slow_stroke = "(\w+)"(?: among the constraints)?/g, (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`],
+  [
+    /require slow_stroke = "(\w+)"(?: among the constraints)?/g,
+    (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`,
+  ],
   [/ \((?:opposes|helps)\)/g, ""],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];
 
 /** Names of bounds, in words. @type {Record<string, string>} */
-export const WORDS = { min: "at least", max: "at most", equals: "exactly", target: "to come near to", step: "by" };
+export const WORDS = {
+  min: "at least",
+  max: "at most",
+  equals: "exactly",
+  target: "to come near to",
+  step: "by",
+};
 
 /** Return a sentence of the service in the words and units of the page. @param {string} sentence */
 export function inWords(sentence) {
-  return inShownUnits(SAID.reduce((text, [found, said]) => text.replace(found, /** @type {string} */ (said)), sentence));
+  return inShownUnits(
+    SAID.reduce(
+      (text, [found, said]) => text.replace(found, /** @type {string} */ (said)),
+      sentence,
+    ),
+  );
 }
 
 /** Return a sentence with a capital at its beginning. @param {string} sentence */

@@ -16,7 +16,12 @@ const HEAD = 7;
 export const ARROWS = [
   { name: "pivot", title: "frame on crank", at: 0, along: ["pivot_x_N", "pivot_y_N"] },
   { name: "crank-pin", title: "crank on rod", at: 1, along: ["crank_pin_x_N", "crank_pin_y_N"] },
-  { name: "slider-pin", title: "rod on slider", at: 2, along: ["slider_pin_x_N", "slider_pin_y_N"] },
+  {
+    name: "slider-pin",
+    title: "rod on slider",
+    at: 2,
+    along: ["slider_pin_x_N", "slider_pin_y_N"],
+  },
   { name: "guide-force", title: "guide on slider", at: 2, along: [null, "guide_N"] },
   { name: "load-force", title: "load on slider", at: 2, along: ["load_N", null] },
 ];
@@ -26,7 +31,8 @@ export function largestForce(curves) {
   let greatest = 0;
   for (const { along } of ARROWS) {
     const [x, y] = along.map((key) => (key === null ? undefined : curves[key]));
-    for (let n = 0; n < (x ?? y ?? []).length; n += 1) greatest = Math.max(greatest, Math.hypot(x?.[n] ?? 0, y?.[n] ?? 0));
+    for (let n = 0; n < (x ?? y ?? []).length; n += 1)
+      greatest = Math.max(greatest, Math.hypot(x?.[n] ?? 0, y?.[n] ?? 0));
   }
   return greatest;
 }
@@ -65,7 +71,9 @@ export function arrows() {
     move(pivot, pin, slider, angle) {
       const places = [pivot, pin, slider];
       ARROWS.forEach(({ at, along }, n) => {
-        const [x, y] = along.map((key) => (key && curves[key] ? (between(curves[key], angle) ?? 0) : 0));
+        const [x, y] = along.map((key) =>
+          key && curves[key] ? (between(curves[key], angle) ?? 0) : 0,
+        );
         lines[n].setAttribute("d", arrow(places[at], unit * x, -unit * y));
       });
     },
@@ -76,10 +84,12 @@ export function arrows() {
 function arrow([x, y], right, down) {
   const size = Math.hypot(right, down);
   if (!(size > 0)) return "M0 0";
-  if (size < SHORTEST) return `M${(x - DOT).toFixed(1)} ${y.toFixed(1)}a${DOT} ${DOT} 0 1 0 ${2 * DOT} 0a${DOT} ${DOT} 0 1 0 ${-2 * DOT} 0`;
+  if (size < SHORTEST)
+    return `M${(x - DOT).toFixed(1)} ${y.toFixed(1)}a${DOT} ${DOT} 0 1 0 ${2 * DOT} 0a${DOT} ${DOT} 0 1 0 ${-2 * DOT} 0`;
   const [tip, turn] = [[x + right, y + down], Math.atan2(down, right)];
   const head = Math.min(HEAD, size);
   /** @param {number} by */
-  const wing = (by) => `${(tip[0] - head * Math.cos(turn + by)).toFixed(1)} ${(tip[1] - head * Math.sin(turn + by)).toFixed(1)}`;
+  const wing = (by) =>
+    `${(tip[0] - head * Math.cos(turn + by)).toFixed(1)} ${(tip[1] - head * Math.sin(turn + by)).toFixed(1)}`;
   return `M${x.toFixed(1)} ${y.toFixed(1)}L${tip[0].toFixed(1)} ${tip[1].toFixed(1)}M${wing(0.45)}L${tip[0].toFixed(1)} ${tip[1].toFixed(1)}L${wing(-0.45)}`;
 }

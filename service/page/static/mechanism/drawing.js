@@ -34,7 +34,10 @@ export function drawing(place, { label }) {
   const parts = movingParts();
   const handle = svg("circle", { class: "handle" });
   // What stands still is a picture of its own, so that it is not painted again in every frame.
-  const [still, moving] = [svg("svg", { class: "still" }), svg("svg", { class: "moving" }, parts.nodes, handle)];
+  const [still, moving] = [
+    svg("svg", { class: "still" }),
+    svg("svg", { class: "moving" }, parts.nodes, handle),
+  ];
   const node = h("div", { class: "mechanism", role: "img", "aria-label": label }, still, moving);
   place.append(node);
   /** @type {{ linkage: Page.Lengths, motion: Api.Curves, options: Options } | null} */
@@ -52,12 +55,37 @@ export function drawing(place, { label }) {
     const own = frameOf(linkage, motion, outlines);
     const { block, tall } = own;
     view = fitted(options.frame ?? own, width, options.small);
-    for (const one of [still, moving]) one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
+    for (const one of [still, moving])
+      one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     const { turns = 1 } = options;
-    fill(still, scenery({ linkage, ends: options.slider_ends_mm, centres: deadCentres(motion, options.dead_centres_deg, turns), view, block, tall, link, direction: options.direction ?? 1, written: !options.small, swings: turns === 0, outlines }));
+    fill(
+      still,
+      scenery({
+        linkage,
+        ends: options.slider_ends_mm,
+        centres: deadCentres(motion, options.dead_centres_deg, turns),
+        view,
+        block,
+        tall,
+        link,
+        direction: options.direction ?? 1,
+        written: !options.small,
+        swings: turns === 0,
+        outlines,
+      }),
+    );
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
-    parts.size({ linkage, view, block, tall, outlines, link, written: !options.small, crossed: crossed(linkage, motion, turns) });
+    parts.size({
+      linkage,
+      view,
+      block,
+      tall,
+      outlines,
+      link,
+      written: !options.small,
+      crossed: crossed(linkage, motion, turns),
+    });
     parts.forces.size(motion, view, options.largest_force);
     // Where the slider drives, the angle that counts is between rod and crank: not the one that is marked.
     parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N));
@@ -70,15 +98,27 @@ export function drawing(place, { label }) {
     if (!view || !shown) return;
     const { linkage, motion } = shown;
     const position = between(motion.slider_position_mm, angle) ?? NaN;
-    const radians = (crankAt({ curves: motion, turns: shown.options.turns ?? 1 }, angle) * Math.PI) / 180;
-    const pin = /** @type {Page.Point} */ ([view.x(linkage.crank_mm * Math.cos(radians)), view.y(linkage.crank_mm * Math.sin(radians))]);
+    const radians =
+      (crankAt({ curves: motion, turns: shown.options.turns ?? 1 }, angle) * Math.PI) / 180;
+    const pin = /** @type {Page.Point} */ ([
+      view.x(linkage.crank_mm * Math.cos(radians)),
+      view.y(linkage.crank_mm * Math.sin(radians)),
+    ]);
     const slider = /** @type {Page.Point} */ ([view.x(position), view.y(linkage.offset_mm)]);
     const pivot = /** @type {Page.Point} */ ([view.x(0), view.y(0)]);
-    parts.move(pivot, pin, slider, motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle), settled);
+    parts.move(
+      pivot,
+      pin,
+      slider,
+      motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle),
+      settled,
+    );
     if (arrowed) parts.forces.move(pivot, pin, slider, angle);
   }
 
-  const watcher = new ResizeObserver(() => Math.round(place.clientWidth) !== view?.width && arrange());
+  const watcher = new ResizeObserver(
+    () => Math.round(place.clientWidth) !== view?.width && arrange(),
+  );
   watcher.observe(place);
   return {
     node,
@@ -103,7 +143,11 @@ export function drawing(place, { label }) {
       if (!view) return angle;
       const box = node.getBoundingClientRect();
       const factor = view.width / box.width;
-      return (Math.atan2(view.y(0) - (y - box.top) * factor, (x - box.left) * factor - view.x(0)) * 180) / Math.PI;
+      return (
+        (Math.atan2(view.y(0) - (y - box.top) * factor, (x - box.left) * factor - view.x(0)) *
+          180) /
+        Math.PI
+      );
     },
     close: () => watcher.disconnect(),
   };
@@ -113,13 +157,19 @@ export function drawing(place, { label }) {
 function deadCentres(motion, angles, turns) {
   const { low, high } = reachOf(motion);
   const found = angles ?? [low.angle, high.angle];
-  return found.map((angle) => ({ angle: crankAt({ curves: motion, turns }, angle), position: between(motion.slider_position_mm, angle) ?? NaN }));
+  return found.map((angle) => ({
+    angle: crankAt({ curves: motion, turns }, angle),
+    position: between(motion.slider_position_mm, angle) ?? NaN,
+  }));
 }
 
 /** Whether the slider is on the other side of the crank pin. @param {Page.Lengths} linkage @param {Api.Curves} motion @param {number} turns */
 function crossed({ crank_mm: r }, motion, turns) {
   const place = turns === 2 ? 45 : 90;
-  return (between(motion.slider_position_mm, place) ?? 0) < r * Math.cos((crankAt({ curves: motion, turns }, place) * Math.PI) / 180) - 1e-9 * r;
+  return (
+    (between(motion.slider_position_mm, place) ?? 0) <
+    r * Math.cos((crankAt({ curves: motion, turns }, place) * Math.PI) / 180) - 1e-9 * r
+  );
 }
 
 /** Give an element numbers as attributes. @type {(node: Element, numbers: Record<string, number>) => void} */
@@ -130,11 +180,19 @@ function measure(node, numbers) {
 /** Few elements are moved in a frame: what is joined to a link is drawn in the link's own coordinates. */
 function movingParts() {
   const pin = () => svg("circle", { class: "pin" });
-  const [crank, rod, block] = [svg("path", { class: "link crank" }), svg("path", { class: "link rod" }), svg("rect", { class: "slider", rx: 2 })];
+  const [crank, rod, block] = [
+    svg("path", { class: "link crank" }),
+    svg("path", { class: "link rod" }),
+    svg("rect", { class: "slider", rx: 2 }),
+  ];
   const pins = [pin(), pin(), pin()];
   const length = svg("text", { class: "length", "text-anchor": "middle" });
   const more = attached();
-  const [crankGroup, rodGroup, sliderGroup] = [svg("g", {}, crank, more.body, pins[0], pins[1]), svg("g", {}, rod, pins[2], length), svg("g", {}, block)];
+  const [crankGroup, rodGroup, sliderGroup] = [
+    svg("g", {}, crank, more.body, pins[0], pins[1]),
+    svg("g", {}, rod, pins[2], length),
+    svg("g", {}, block),
+  ];
   const normal = svg("path", { class: "transmission normal" });
   const arc = svg("path", { class: "transmission" });
   const value = svg("text", { class: "transmission" });
@@ -160,7 +218,10 @@ function movingParts() {
       const long = linkage.rod_mm * view.unit;
       length.textContent = written && long > 110 ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
       // Along the rod, which never stands on its head: on the crossed branch it points the other way.
-      length.setAttribute("transform", `translate(${long / 2} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`);
+      length.setAttribute(
+        "transform",
+        `translate(${long / 2} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`,
+      );
       const line = view.y(linkage.offset_mm);
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
       radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));
@@ -188,7 +249,10 @@ function movingParts() {
   function angleBetween(along, degrees, settled) {
     const [away, up] = [along[0] < 0 ? 1 : -1, along[1] < 0 ? -1 : 1];
     const size = Math.hypot(...along) / radius;
-    arc.setAttribute("d", `M0 ${up * radius}A${radius} ${radius} 0 0 ${up * away > 0 ? 1 : 0} ${(along[0] / size).toFixed(1)} ${(along[1] / size).toFixed(1)}`);
+    arc.setAttribute(
+      "d",
+      `M0 ${up * radius}A${radius} ${radius} 0 0 ${up * away > 0 ? 1 : 0} ${(along[0] / size).toFixed(1)} ${(along[1] / size).toFixed(1)}`,
+    );
     if (side !== `${up} ${away}`) {
       side = `${up} ${away}`;
       normal.setAttribute("d", `M0 0v${up * (radius + 8)}`);

@@ -17,7 +17,8 @@ const LOW = 96; // least height of a small drawing
  */
 export function reachOf(motion) {
   const found = extremes(motion.slider_position_mm);
-  if (!found) throw new Error("A mechanism that is drawn must turn; this one has no slider position.");
+  if (!found)
+    throw new Error("A mechanism that is drawn must turn; this one has no slider position.");
   return found;
 }
 
@@ -32,7 +33,10 @@ export function frameOf(linkage, motion, outlines) {
   if (!outlines) return own;
   const [left, bottom, right, top] = outlines.extent_mm;
   const [block, tall] = [outlines.slider_length_mm / 1.5, outlines.slider_height_mm];
-  return around([own, { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall }]);
+  return around([
+    own,
+    { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall },
+  ]);
 }
 
 /**
@@ -73,7 +77,9 @@ export function around(frames) {
 export function fitted(frame, width, small = false) {
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
   const across = (width - 2 * MARGIN) / wide;
-  const height = Math.round(Math.min(Math.max(across * tall + 2 * MARGIN, small ? LOW : HEIGHTS[0]), HEIGHTS[1]));
+  const height = Math.round(
+    Math.min(Math.max(across * tall + 2 * MARGIN, small ? LOW : HEIGHTS[0]), HEIGHTS[1]),
+  );
   const unit = Math.min(across, (height - 2 * MARGIN) / tall);
   const left = (width - unit * wide) / 2;
   const top = (height - unit * tall) / 2;

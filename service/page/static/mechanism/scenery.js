@@ -19,18 +19,36 @@ const PITCH = 9; // pixels between the strokes of a hatching
  *   swings?: boolean, outlines?: Api.Outlines,
  * }} given
  */
-export function scenery({ linkage, centres, ends, view, block, tall, link, direction, written, swings = false, outlines }) {
+export function scenery({
+  linkage,
+  centres,
+  ends,
+  view,
+  block,
+  tall,
+  link,
+  direction,
+  written,
+  swings = false,
+  outlines,
+}) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
   const positions = centres.map((centre) => centre.position);
   /** @param {string} kind @param {Page.Point} from @param {Page.Point} to */
-  const line = (kind, from, to) => svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
-  const [start, end] = [x(Math.min(...positions) - 1.2 * block), x(Math.max(...positions) + 1.2 * block)];
+  const line = (kind, from, to) =>
+    svg("line", { class: kind, x1: from[0], y1: from[1], x2: to[0], y2: to[1] });
+  const [start, end] = [
+    x(Math.min(...positions) - 1.2 * block),
+    x(Math.max(...positions) + 1.2 * block),
+  ];
   const reach = [Math.min(x(-1.15 * r), start), Math.max(x(1.15 * r), end)];
   return [
     line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
-    swings ? arcOf(view, r, centres) : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
+    swings
+      ? arcOf(view, r, centres)
+      : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
     line("path", [x(positions[0]), y(e)], [x(positions[1]), y(e)]),
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * tall * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, tall, link)),
@@ -38,7 +56,9 @@ export function scenery({ linkage, centres, ends, view, block, tall, link, direc
     outlines?.actuator ? barrel(view, outlines.actuator, e) : null,
     swings ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
-    written && ends && strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
+    written &&
+      ends &&
+      strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
     written && !swings && crankOf(view, r, e),
     bearing(x(0), y(0), link),
   ];
@@ -47,15 +67,21 @@ export function scenery({ linkage, centres, ends, view, block, tall, link, direc
 /** Way of the crank pin between the ends of a swing. @param {View} view @param {number} r @param {Centre[]} ends */
 function arcOf(view, r, ends) {
   const [first, last] = ends.map(({ angle }) => (angle * Math.PI) / 180).sort((a, b) => a - b);
-  const at = [first, last].map((angle) => `${view.x(r * Math.cos(angle))} ${view.y(r * Math.sin(angle))}`);
+  const at = [first, last].map(
+    (angle) => `${view.x(r * Math.cos(angle))} ${view.y(r * Math.sin(angle))}`,
+  );
   const radius = view.unit * r;
-  return svg("path", { class: "path", d: `M${at[0]}A${radius} ${radius} 0 ${last - first > Math.PI ? 1 : 0} 0 ${at[1]}` });
+  return svg("path", {
+    class: "path",
+    d: `M${at[0]}A${radius} ${radius} 0 ${last - first > Math.PI ? 1 : 0} 0 ${at[1]}`,
+  });
 }
 
 /** @param {number} start @param {number} end @param {number} y @param {number} side */
 function guide(start, end, y, side) {
   const strokes = [];
-  for (let foot = start + PITCH; foot <= end; foot += PITCH) strokes.push(`M${foot} ${y}l${-PITCH * 0.8} ${-side * PITCH * 0.8}`);
+  for (let foot = start + PITCH; foot <= end; foot += PITCH)
+    strokes.push(`M${foot} ${y}l${-PITCH * 0.8} ${-side * PITCH * 0.8}`);
   return svg("path", { class: "guide", d: `M${start} ${y}H${end}${strokes.join("")}` });
 }
 
@@ -68,9 +94,21 @@ function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, 
   return svg(
     "g",
     { class: "ghost" },
-    svg("path", { d: bar(Math.hypot(pin[0] - view.x(0), pin[1] - view.y(0)), link), transform: placed([view.x(0), view.y(0)], pin) }),
-    svg("path", { d: bar(Math.hypot(slider[0] - pin[0], slider[1] - pin[1]), link), transform: placed(pin, slider) }),
-    svg("rect", { x: slider[0] - long / 2, y: slider[1] - high / 2, width: long, height: high, rx: 2 }),
+    svg("path", {
+      d: bar(Math.hypot(pin[0] - view.x(0), pin[1] - view.y(0)), link),
+      transform: placed([view.x(0), view.y(0)], pin),
+    }),
+    svg("path", {
+      d: bar(Math.hypot(slider[0] - pin[0], slider[1] - pin[1]), link),
+      transform: placed(pin, slider),
+    }),
+    svg("rect", {
+      x: slider[0] - long / 2,
+      y: slider[1] - high / 2,
+      width: long,
+      height: high,
+      rx: 2,
+    }),
   );
 }
 
@@ -78,7 +116,10 @@ function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, 
 function rotation(view, r, direction) {
   if (!direction) return null;
   /** @param {number} degrees @returns {Page.Point} */
-  const at = (degrees) => [view.x(0) + view.unit * r * Math.cos(degrees), view.y(0) - view.unit * r * Math.sin(degrees)];
+  const at = (degrees) => [
+    view.x(0) + view.unit * r * Math.cos(degrees),
+    view.y(0) - view.unit * r * Math.sin(degrees),
+  ];
   const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
   const [start, end] = [at(from), at(to)];
   const radius = view.unit * r;
@@ -100,7 +141,16 @@ function offset(view, e, x, written) {
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
     // Beside the line, not over it to the right: there the crank passes.
-    !written || view.width < 330 ? null : svg("text", { transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`, "text-anchor": "middle" }, `offset ${withUnit(e, "mm", 4)}`),
+    !written || view.width < 330
+      ? null
+      : svg(
+          "text",
+          {
+            transform: `translate(${x - 6} ${(from + to) / 2}) rotate(-90)`,
+            "text-anchor": "middle",
+          },
+          `offset ${withUnit(e, "mm", 4)}`,
+        ),
   );
 }
 
@@ -111,8 +161,22 @@ function strokeOf(view, ends, y, swings) {
   const words = swings ? `travel ${long}` : `stroke ${long}`;
   const room = to - from > 90;
   const heads = `M${from + 6} ${y - 3}L${from} ${y}L${from + 6} ${y + 3}M${to - 6} ${y - 3}L${to} ${y}L${to - 6} ${y + 3}`;
-  return svg("g", { class: "dimension stroke" }, svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),
-    !room && to + 92 > view.width ? null : svg("text", { x: room ? (from + to) / 2 : to + 6, y: room ? y - 4 : y + 4, "text-anchor": room ? "middle" : "start" }, words));
+  return svg(
+    "g",
+    { class: "dimension stroke" },
+    svg("path", { d: `M${from} ${y}H${to}${heads}M${from} ${y - 5}v10M${to} ${y - 5}v10` }),
+    !room && to + 92 > view.width
+      ? null
+      : svg(
+          "text",
+          {
+            x: room ? (from + to) / 2 : to + 6,
+            y: room ? y - 4 : y + 4,
+            "text-anchor": room ? "middle" : "start",
+          },
+          words,
+        ),
+  );
 }
 
 /** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e */
@@ -124,9 +188,14 @@ function crankOf(view, r, e) {
   const [x, y] = [view.x(0) + radius * Math.cos(turn), view.y(0) + down * radius * Math.sin(turn)];
   const side = Math.atan2(y - view.y(0), x - view.x(0));
   /** @param {number} by */
-  const wing = (by) => `${(x - 7 * Math.cos(side + by)).toFixed(1)} ${(y - 7 * Math.sin(side + by)).toFixed(1)}`;
-  return svg("g", { class: "dimension radius" }, svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
-    svg("text", { x: x + 8, y: y + (down > 0 ? 6 : 2) }, `crank ${withUnit(r, "mm", 4)}`));
+  const wing = (by) =>
+    `${(x - 7 * Math.cos(side + by)).toFixed(1)} ${(y - 7 * Math.sin(side + by)).toFixed(1)}`;
+  return svg(
+    "g",
+    { class: "dimension radius" },
+    svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
+    svg("text", { x: x + 8, y: y + (down > 0 ? 6 : 2) }, `crank ${withUnit(r, "mm", 4)}`),
+  );
 }
 
 /** @param {number} x @param {number} y @param {number} link */
@@ -138,7 +207,10 @@ function bearing(x, y, link) {
     "g",
     { class: "bearing" },
     svg("path", { d: `M${x} ${y}L${x - 0.7 * foot} ${ground}H${x + 0.7 * foot}Z` }),
-    svg("path", { class: "guide", d: `M${x - 1.15 * foot} ${ground}H${x + 1.15 * foot}${strokes}` }),
+    svg("path", {
+      class: "guide",
+      d: `M${x - 1.15 * foot} ${ground}H${x + 1.15 * foot}${strokes}`,
+    }),
   );
 }
 

@@ -21,9 +21,17 @@ export function turning(rpm, signal, cycle = "one turn") {
   const direction = rpm < 0 ? -1 : 1;
   let frame = 0;
   let last = 0;
-  const state = { angle: 0, playing: false, pace: paces.find((pace) => pace.chosen) ?? paces[0], paces };
+  const state = {
+    angle: 0,
+    playing: false,
+    pace: paces.find((pace) => pace.chosen) ?? paces[0],
+    paces,
+  };
 
-  const tell = () => listeners.forEach((told) => told({ angle: state.angle, playing: state.playing, settled: !state.playing }));
+  const tell = () =>
+    listeners.forEach((told) =>
+      told({ angle: state.angle, playing: state.playing, settled: !state.playing }),
+    );
   /** @param {number} now */
   const step = (now) => {
     const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a pause of the browser it goes on where it was
@@ -72,7 +80,10 @@ export function turning(rpm, signal, cycle = "one turn") {
  */
 function pacesOf(rpm, cycle) {
   const real = rpm ? 60 / Math.abs(rpm) : null;
-  const paces = TURNS.map((seconds) => ({ seconds, title: `${turn(seconds, cycle)}${real ? `, ${share(real / seconds)}` : ""}` }));
+  const paces = TURNS.map((seconds) => ({
+    seconds,
+    title: `${turn(seconds, cycle)}${real ? `, ${share(real / seconds)}` : ""}`,
+  }));
   if (real && real >= SHORTEST) {
     const same = paces.findIndex(({ seconds }) => Math.abs(seconds / real - 1) < 1e-9);
     if (same >= 0) paces.splice(same, 1);
@@ -92,5 +103,7 @@ function turn(seconds, cycle) {
 /** @param {number} ratio */
 function share(ratio) {
   if (Math.abs(ratio - 1) < 1e-9) return "real speed";
-  return ratio < 1 ? `1/${Number((1 / ratio).toPrecision(3))} of real speed` : `${Number(ratio.toPrecision(3))} times real speed`;
+  return ratio < 1
+    ? `1/${Number((1 / ratio).toPrecision(3))} of real speed`
+    : `${Number(ratio.toPrecision(3))} times real speed`;
 }

@@ -16,31 +16,53 @@ const SHOWN = 300; // designs of each run in the picture
 
 /** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
-  const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter((number) => Number.isInteger(number) && number > 0);
+  const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter(
+    (number) => Number.isInteger(number) && number > 0,
+  );
   if (asked.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
   /** @type {string[]} */
   const missing = [];
-  const runs = (await Promise.all(asked.slice(0, MOST).map(async (number) => {
-    try {
-      const [job, front] = await Promise.all([get(`jobs/${number}`, {}, signal), get(`jobs/${number}/front`, {}, signal)]);
-      if (front.count) return [{ job, front, data: new FrontData(number, front, signal) }];
-      missing.push(`Run ${number} has no designs.`);
-    } catch (problem) {
-      if (isAbort(problem)) throw problem;
-      missing.push(statusOf(problem) === 404 ? `Run ${number} is not there any more.` : sentenceOf(problem));
-    }
-    return [];
-  }))).flat();
+  const runs = (
+    await Promise.all(
+      asked.slice(0, MOST).map(async (number) => {
+        try {
+          const [job, front] = await Promise.all([
+            get(`jobs/${number}`, {}, signal),
+            get(`jobs/${number}/front`, {}, signal),
+          ]);
+          if (front.count) return [{ job, front, data: new FrontData(number, front, signal) }];
+          missing.push(`Run ${number} has no designs.`);
+        } catch (problem) {
+          if (isAbort(problem)) throw problem;
+          missing.push(
+            statusOf(problem) === 404
+              ? `Run ${number} is not there any more.`
+              : sentenceOf(problem),
+          );
+        }
+        return [];
+      }),
+    )
+  ).flat();
   if (asked.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
 
-  const objectives = new Map(runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])));
-  const shared = runs.length ? [...objectives.keys()].filter((key) => runs.every(({ data }) => data.knows(key))) : [];
+  const objectives = new Map(
+    runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])),
+  );
+  const shared = runs.length
+    ? [...objectives.keys()].filter((key) => runs.every(({ data }) => data.knows(key)))
+    : [];
   /** @type {{ x: string, y: string }} */
   const axes = { x: chosen("x", shared[0]), y: chosen("y", shared[1]) };
   const picture = h("div");
   const readout = h("p", { class: "quiet readout" });
   const words = h("ul");
-  const differences = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of differences" });
+  const differences = h("div", {
+    class: "scroll",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Table of differences",
+  });
   const table = h("div", { class: "scroll" });
 
   /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
@@ -57,11 +79,17 @@ export async function show(place, { query, signal }) {
   function drawPicture() {
     const [x, y] = [axes.x, axes.y].map(known);
     const shown = runs.map(({ data }) => spread(data.count));
-    const series = runs.map(({ data, job }, n) => ({ name: job.name, points: shown[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]) }));
-    fill(picture, points(series, x, y, `The fronts of ${runs.length} runs`, null, {
-      at: (n, place) => tell(n === null ? null : { n, row: shown[n][place] }),
-      open: (n, place) => go(["jobs", runs[n].job.id, "designs", shown[n][place] + 1]),
+    const series = runs.map(({ data, job }, n) => ({
+      name: job.name,
+      points: shown[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]),
     }));
+    fill(
+      picture,
+      points(series, x, y, `The fronts of ${runs.length} runs`, null, {
+        at: (n, place) => tell(n === null ? null : { n, row: shown[n][place] }),
+        open: (n, place) => go(["jobs", runs[n].job.id, "designs", shown[n][place] + 1]),
+      }),
+    );
     tell(null);
   }
 
@@ -69,7 +97,16 @@ export async function show(place, { query, signal }) {
   function tell(one) {
     if (!one) return fill(readout, "Point at a design to read it; click to open it.");
     const { job, data } = runs[one.n];
-    fill(readout, h("strong", {}, `Run ${job.id}, design ${one.row + 1}`), ` ${[...objectives.keys()].filter((key) => data.has(key)).map((key) => `${known(key).title} ${withUnit(data.cell(key, one.row), known(key).unit, 4)}`).join(" · ")}`);
+    fill(
+      readout,
+      h("strong", {}, `Run ${job.id}, design ${one.row + 1}`),
+      ` ${[...objectives.keys()]
+        .filter((key) => data.has(key))
+        .map(
+          (key) => `${known(key).title} ${withUnit(data.cell(key, one.row), known(key).unit, 4)}`,
+        )
+        .join(" · ")}`,
+    );
   }
 
   function drawTable() {
@@ -79,31 +116,94 @@ export async function show(place, { query, signal }) {
       return own ? front.extremes[own.quantity] : null;
     };
     /** @param {string} key @param {string} sense @param {number | null | undefined} target @returns {Api.Row[string][]} */
-    const best = (key, sense, target) => runs.map(({ front, data }) => {
-      const own = front.objectives.find((objective) => objective.column === key);
-      if (own) return data.cell(key, front.extremes[own.quantity]);
-      const { low, high } = data.range(key);
-      return target === undefined ? (sense === "maximise" ? high : low) : null;
-    });
-    const rows = [...objectives.values()].filter(({ column }) => runs.every(({ data }) => data.knows(column))).map(({ column, sense, target }) => {
-      const values = best(column, sense, target);
-      /** @param {Api.Row[string]} value */
-      const rank = (value) => (typeof value !== "number" ? Infinity : target !== undefined && target !== null ? Math.abs(value - target) : sense === "maximise" ? -value : value);
-      const least = Math.min(...values.map(rank));
-      const { unit } = known(column);
-      return h("tr", {},
-        h("th", { scope: "row" }, h("a", { href: helpLink(column) }, `best ${headed(known(column))}`)),
-        values.map((value, n) => h("td", { class: "number", "data-key": column, "data-value": String(value) }, toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)), isConstant(least, rank(value), target ?? 0) && values.some((other) => !isConstant(least, rank(other), target ?? 0)) ? h("strong", { class: "best" }, " best") : null)));
-    });
+    const best = (key, sense, target) =>
+      runs.map(({ front, data }) => {
+        const own = front.objectives.find((objective) => objective.column === key);
+        if (own) return data.cell(key, front.extremes[own.quantity]);
+        const { low, high } = data.range(key);
+        return target === undefined ? (sense === "maximise" ? high : low) : null;
+      });
+    const rows = [...objectives.values()]
+      .filter(({ column }) => runs.every(({ data }) => data.knows(column)))
+      .map(({ column, sense, target }) => {
+        const values = best(column, sense, target);
+        /** @param {Api.Row[string]} value */
+        const rank = (value) =>
+          typeof value !== "number"
+            ? Infinity
+            : target !== undefined && target !== null
+              ? Math.abs(value - target)
+              : sense === "maximise"
+                ? -value
+                : value;
+        const least = Math.min(...values.map(rank));
+        const { unit } = known(column);
+        return h(
+          "tr",
+          {},
+          h(
+            "th",
+            { scope: "row" },
+            h("a", { href: helpLink(column) }, `best ${headed(known(column))}`),
+          ),
+          values.map((value, n) =>
+            h(
+              "td",
+              { class: "number", "data-key": column, "data-value": String(value) },
+              toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)),
+              isConstant(least, rank(value), target ?? 0) &&
+                values.some((other) => !isConstant(least, rank(other), target ?? 0))
+                ? h("strong", { class: "best" }, " best")
+                : null,
+            ),
+          ),
+        );
+      });
     /** @param {string} name @param {(run: (typeof runs)[0]) => Dom.Child} value */
-    const plain = (name, value) => h("tr", {}, h("th", { scope: "row" }, name), runs.map((run) => h("td", { class: "number" }, value(run))));
-    fill(table, h("table", {}, h("caption", { class: "hidden" }, "Runs side by side"),
-      h("thead", {}, h("tr", {}, h("td", {}), runs.map(({ job }, index) => h("th", { scope: "col", class: "number" }, sign(index), " ", h("a", { href: link(["jobs", job.id]) }, job.name), h("div", { class: "quiet" }, `run ${job.id}`))))),
-      h("tbody", {}, plain("state", ({ job }) => badge(job)), rows,
-        plain("designs", ({ front }) => grouped(front.count)),
-        plain("evaluated", ({ front }) => grouped(front.evaluations)),
-        plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
-        plain("seed", ({ front }) => String(front.seed)))));
+    const plain = (name, value) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, name),
+        runs.map((run) => h("td", { class: "number" }, value(run))),
+      );
+    fill(
+      table,
+      h(
+        "table",
+        {},
+        h("caption", { class: "hidden" }, "Runs side by side"),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("td", {}),
+            runs.map(({ job }, index) =>
+              h(
+                "th",
+                { scope: "col", class: "number" },
+                sign(index),
+                " ",
+                h("a", { href: link(["jobs", job.id]) }, job.name),
+                h("div", { class: "quiet" }, `run ${job.id}`),
+              ),
+            ),
+          ),
+        ),
+        h(
+          "tbody",
+          {},
+          plain("state", ({ job }) => badge(job)),
+          rows,
+          plain("designs", ({ front }) => grouped(front.count)),
+          plain("evaluated", ({ front }) => grouped(front.evaluations)),
+          plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
+          plain("seed", ({ front }) => String(front.seed)),
+        ),
+      ),
+    );
   }
 
   /** Return words that lead to a design, counted from 0; alone without one. @param {number} job @param {number | null} row @param {string} words */
@@ -114,35 +214,135 @@ export async function show(place, { query, signal }) {
   /** Say who is better where, and what differs between the jobs. */
   async function drawWords() {
     try {
-      const found = await get("comparison", { job: runs.map(({ job }) => String(job.id)), units: apiSystem() }, signal);
-      fill(words, found.sentences.map((sentence) => h("li", {}, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`)));
-      if (!found.differences.length) return fill(differences, h("p", { class: "quiet" }, "The jobs are the same but for their names."));
-      fill(differences, h("table", {}, h("caption", { class: "hidden" }, "What differs between the jobs"),
-        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Place in the job"), runs.map(({ job }) => h("th", { scope: "col" }, `run ${job.id}`)))),
-        h("tbody", {}, found.differences.map(({ place, values }) => h("tr", {}, h("th", { scope: "row" }, place), values.map((value) => h("td", {}, value ?? "–")))))));
+      const found = await get(
+        "comparison",
+        { job: runs.map(({ job }) => String(job.id)), units: apiSystem() },
+        signal,
+      );
+      fill(
+        words,
+        found.sentences.map((sentence) =>
+          h("li", {}, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`),
+        ),
+      );
+      if (!found.differences.length)
+        return fill(
+          differences,
+          h("p", { class: "quiet" }, "The jobs are the same but for their names."),
+        );
+      fill(
+        differences,
+        h(
+          "table",
+          {},
+          h("caption", { class: "hidden" }, "What differs between the jobs"),
+          h(
+            "thead",
+            {},
+            h(
+              "tr",
+              {},
+              h("th", { scope: "col" }, "Place in the job"),
+              runs.map(({ job }) => h("th", { scope: "col" }, `run ${job.id}`)),
+            ),
+          ),
+          h(
+            "tbody",
+            {},
+            found.differences.map(({ place, values }) =>
+              h(
+                "tr",
+                {},
+                h("th", { scope: "row" }, place),
+                values.map((value) => h("td", {}, value ?? "–")),
+              ),
+            ),
+          ),
+        ),
+      );
     } catch (problem) {
       if (!isAbort(problem)) fill(words, h("li", { class: "error" }, sentenceOf(problem)));
     }
   }
 
   /** @param {string} label @param {"x" | "y"} name */
-  const pick = (label, name) => h("label", {}, `${label} `, h("select", { name, onchange: (event) => {
-    axes[name] = event.currentTarget.value;
-    keep({ jobs: asked.join(","), ...axes });
-    drawPicture();
-  } }, shared.map((key) => h("option", { value: key, selected: key === axes[name] }, known(key).title))));
+  const pick = (label, name) =>
+    h(
+      "label",
+      {},
+      `${label} `,
+      h(
+        "select",
+        {
+          name,
+          onchange: (event) => {
+            axes[name] = event.currentTarget.value;
+            keep({ jobs: asked.join(","), ...axes });
+            drawPicture();
+          },
+        },
+        shared.map((key) =>
+          h("option", { value: key, selected: key === axes[name] }, known(key).title),
+        ),
+      ),
+    );
 
-  await Promise.all(runs.map(({ data }) => data.need([...objectives.keys()].filter((key) => data.knows(key)))));
+  await Promise.all(
+    runs.map(({ data }) => data.need([...objectives.keys()].filter((key) => data.knows(key)))),
+  );
   if (signal.aborted) return;
-  fill(place, h("h1", {}, title),
+  fill(
+    place,
+    h("h1", {}, title),
     missing.map((sentence) => h("p", { class: "error" }, sentence)),
-    runs.length < 2 ? h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")) : h("div", { class: "columns compare" },
-      h("section", { class: "panel", "aria-labelledby": "fronts-title" }, h("h2", { id: "fronts-title" }, "Fronts"),
-        shared.length > 1 ? [h("div", { class: "row picks" }, pick("Across", "x"), pick("Up", "y")), picture, readout,
-          h("div", { class: "legend" }, runs.map(({ job }, index) => h("span", {}, sign(index), ` ${job.name} (run ${job.id})`)))] : h("p", {}, "These runs share fewer than two objectives, so their fronts have no picture in common.")),
-      h("section", { class: "panel", "aria-labelledby": "best-title" }, h("h2", { id: "best-title" }, "Side by side"), table),
-      h("section", { class: "panel", "aria-labelledby": "words-title" }, h("h2", { id: "words-title" }, "Who is better where"), words),
-      h("section", { class: "panel", "aria-labelledby": "differences-title" }, h("h2", { id: "differences-title" }, "What differs between the jobs"), differences)));
+    runs.length < 2
+      ? h("p", {}, h("a", { class: "button", href: "#/" }, "All runs"))
+      : h(
+          "div",
+          { class: "columns compare" },
+          h(
+            "section",
+            { class: "panel", "aria-labelledby": "fronts-title" },
+            h("h2", { id: "fronts-title" }, "Fronts"),
+            shared.length > 1
+              ? [
+                  h("div", { class: "row picks" }, pick("Across", "x"), pick("Up", "y")),
+                  picture,
+                  readout,
+                  h(
+                    "div",
+                    { class: "legend" },
+                    runs.map(({ job }, index) =>
+                      h("span", {}, sign(index), ` ${job.name} (run ${job.id})`),
+                    ),
+                  ),
+                ]
+              : h(
+                  "p",
+                  {},
+                  "These runs share fewer than two objectives, so their fronts have no picture in common.",
+                ),
+          ),
+          h(
+            "section",
+            { class: "panel", "aria-labelledby": "best-title" },
+            h("h2", { id: "best-title" }, "Side by side"),
+            table,
+          ),
+          h(
+            "section",
+            { class: "panel", "aria-labelledby": "words-title" },
+            h("h2", { id: "words-title" }, "Who is better where"),
+            words,
+          ),
+          h(
+            "section",
+            { class: "panel", "aria-labelledby": "differences-title" },
+            h("h2", { id: "differences-title" }, "What differs between the jobs"),
+            differences,
+          ),
+        ),
+  );
   const draw = () => {
     if (runs.length < 2) return;
     if (shared.length > 1) drawPicture();
@@ -156,5 +356,7 @@ export async function show(place, { query, signal }) {
 /** Return at most `SHOWN` rows, evenly spread. @param {number} count */
 function spread(count) {
   const shown = Math.min(count, SHOWN);
-  return Array.from({ length: shown }, (_, index) => Math.floor((index * (count - 1)) / Math.max(1, shown - 1)));
+  return Array.from({ length: shown }, (_, index) =>
+    Math.floor((index * (count - 1)) / Math.max(1, shown - 1)),
+  );
 }

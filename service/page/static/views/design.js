@@ -33,17 +33,34 @@ const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 export async function show(place, { parts, query, signal }) {
   const [, job, , given] = parts;
   const number = Number(given);
-  if (!Number.isInteger(number) || number < 1) throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
+  if (!Number.isInteger(number) || number < 1)
+    throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
   const [front, main, requirements] = await Promise.all([
-    get(`jobs/${job}/front`, {}, signal), loadDesign(job, number, 1, signal), get(`${path}/requirements`, {}, signal)]);
+    get(`jobs/${job}/front`, {}, signal),
+    loadDesign(job, number, 1, signal),
+    get(`${path}/requirements`, {}, signal),
+  ]);
   const { names } = requirements;
   const [rows, ...others] = await Promise.all([
-    loadFront(job, front, signal), ...besideOf(query, number).map((other, n) => loadDesign(job, other, n + 2, signal))]);
+    loadFront(job, front, signal),
+    ...besideOf(query, number).map((other, n) => loadDesign(job, other, n + 2, signal)),
+  ]);
   if (signal.aborted) return;
 
   const objectives = front.objectives;
-  const shared = { job, number, front, objectives, rows, main, others, requirements, names, signal };
+  const shared = {
+    job,
+    number,
+    front,
+    objectives,
+    rows,
+    main,
+    others,
+    requirements,
+    names,
+    signal,
+  };
   const { turns, seconds } = main;
   const rpm = seconds ? (Math.sign(requirements.speed_rpm) || 1) * (60 / seconds) : 0; // cycles a minute
   const angle = turning(rpm, signal, CYCLES[turns]);
@@ -52,19 +69,71 @@ export async function show(place, { parts, query, signal }) {
     if (taken && angle.playing) angle.pause();
     if (!angle.playing) angle.set(at);
   };
-  const places = Object.fromEntries(["objectives", "beyond", "stage", "what-if", "rounding", "curves", "way-back", "numbers", "trade-offs", "topics", "analyses"].map((name) => [name, h("section", { class: name })]));
+  const places = Object.fromEntries(
+    [
+      "objectives",
+      "beyond",
+      "stage",
+      "what-if",
+      "rounding",
+      "curves",
+      "way-back",
+      "numbers",
+      "trade-offs",
+      "topics",
+      "analyses",
+    ].map((name) => [name, h("section", { class: name })]),
+  );
   const files = takeAway(job, number, { signal });
-  const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () => h("p", { class: "quiet unchanged", hidden: true }, `Of design ${number} itself, without the change:`));
+  const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
+    h(
+      "p",
+      { class: "quiet unchanged", hidden: true },
+      `Of design ${number} itself, without the change:`,
+    ),
+  );
   const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
-  fill(place, top(shared), files.node, places.objectives, places.beyond,
-    h("div", { class: "design-columns" }, h("div", {}, places.stage, ofPlace, places["trade-offs"], places.rounding), places["what-if"]), strip, places.curves, ofWay, places["way-back"], places.numbers, ofTopics, places.topics, places.analyses);
-  for (const name of ["stage", "what-if", "trade-offs", "rounding"]) places[name].classList.add("panel");
+  fill(
+    place,
+    top(shared),
+    files.node,
+    places.objectives,
+    places.beyond,
+    h(
+      "div",
+      { class: "design-columns" },
+      h("div", {}, places.stage, ofPlace, places["trade-offs"], places.rounding),
+      places["what-if"],
+    ),
+    strip,
+    places.curves,
+    ofWay,
+    places["way-back"],
+    places.numbers,
+    ofTopics,
+    places.topics,
+    places.analyses,
+  );
+  for (const name of ["stage", "what-if", "trade-offs", "rounding"])
+    places[name].classList.add("panel");
   const machines = stage(places.stage, strip, angle, turns);
   let over = query.get("over") ?? "";
   let tab = query.get("tab") ?? ""; // of the analyses
-  const charts = overCycle(places.curves, { path, rpm, turns, over, turned: hold, told: (now) => { over = now; keepAll(); } });
+  const charts = overCycle(places.curves, {
+    path,
+    rpm,
+    turns,
+    over,
+    turned: hold,
+    told: (now) => {
+      over = now;
+      keepAll();
+    },
+  });
   angle.listen(charts.turn);
-  signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), { once: true });
+  signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()), {
+    once: true,
+  });
   signal.addEventListener("abort", () => clearTimeout(later), { once: true });
 
   /** @type {Api.WhatIf | null} */
@@ -74,21 +143,65 @@ export async function show(place, { parts, query, signal }) {
   const linked = startOf(query);
   /** @type {Page.Numbers | null} */
   let kept = linked.lengths ?? null; // of the changed design
-  const keepAll = () => keep({ beside: others.map((one) => one.number).join(","), over, tab, ...kept, value: kept?.value?.join(",") });
-  const further = turns ? analyses(places.analyses, { job, number, drawn: DRAWN, tab, told: (now) => { tab = now; keepAll(); }, signal }) : null; // all are of full turns
+  const keepAll = () =>
+    keep({
+      beside: others.map((one) => one.number).join(","),
+      over,
+      tab,
+      ...kept,
+      value: kept?.value?.join(","),
+    });
+  const further = turns
+    ? analyses(places.analyses, {
+        job,
+        number,
+        drawn: DRAWN,
+        tab,
+        told: (now) => {
+          tab = now;
+          keepAll();
+        },
+        signal,
+      })
+    : null; // all are of full turns
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
   let refused = false; // whether the last change cannot be had, so that all is of the design itself
   /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
   const glance = (designs) => {
     const [shown] = designs;
-    const whose = shown !== main ? `What if: design ${number}, changed` : refused ? `Design ${number} itself: the change is not possible` : "";
-    showObjectives(places.objectives, { objectives, front: rows, row: shown.row, changed: shown === main ? null : { broken: Boolean(changed?.broken.length) }, whose, names });
-    fill(places.beyond, designs.flatMap(({ name, violations }) => violations.map((sentence) => h("p", { class: "error" }, `${name}, beyond what is allowed: ${inShownUnits(sentence)}.`))));
+    const whose =
+      shown !== main
+        ? `What if: design ${number}, changed`
+        : refused
+          ? `Design ${number} itself: the change is not possible`
+          : "";
+    showObjectives(places.objectives, {
+      objectives,
+      front: rows,
+      row: shown.row,
+      changed: shown === main ? null : { broken: Boolean(changed?.broken.length) },
+      whose,
+      names,
+    });
+    fill(
+      places.beyond,
+      designs.flatMap(({ name, violations }) =>
+        violations.map((sentence) =>
+          h("p", { class: "error" }, `${name}, beyond what is allowed: ${inShownUnits(sentence)}.`),
+        ),
+      ),
+    );
     for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
   };
   const draw = () => {
-    const asked = changed?.cycle && { name: "What if", series: "what-if", row: changed.design, violations: changed.violations, ...cycleOf(changed.cycle) };
+    const asked = changed?.cycle && {
+      name: "What if",
+      series: "what-if",
+      row: changed.design,
+      violations: changed.violations,
+      ...cycleOf(changed.cycle),
+    };
     const moving = [asked ?? main, ...others];
     glance(moving);
     machines.show(moving);
@@ -98,12 +211,27 @@ export async function show(place, { parts, query, signal }) {
     legend(places.curves, series);
     return () => {
       further?.show(changed && kept);
-      showNumbers(places.numbers, { designs: asked ? [main, asked, ...others] : moving, columns: main.columns, requirements: requirements.requirements, slow: requirements.slow_stroke, names });
+      showNumbers(places.numbers, {
+        designs: asked ? [main, asked, ...others] : moving,
+        columns: main.columns,
+        requirements: requirements.requirements,
+        slow: requirements.slow_stroke,
+        names,
+      });
     };
   };
   const sliders = whatIf(places["what-if"], {
-    job, path, base: main.row, columns: main.columns, ranges: requirements.ranges, requirements: requirements.requirements, objectives, front: rows, signal,
-    start: linked.lengths ?? null, wrong: linked.wrong ?? "",
+    job,
+    path,
+    base: main.row,
+    columns: main.columns,
+    ranges: requirements.ranges,
+    requirements: requirements.requirements,
+    objectives,
+    front: rows,
+    signal,
+    start: linked.lengths ?? null,
+    wrong: linked.wrong ?? "",
     /** @param {Api.WhatIf | null} answer @param {{ lengths?: Page.Numbers, impossible?: boolean }} [how] */
     changed(answer, { lengths, impossible = false } = {}) {
       changed = answer;
@@ -115,22 +243,45 @@ export async function show(place, { parts, query, signal }) {
       keepAll();
     },
   });
-  const steps = rounding(places.rounding, { job, number, base: main.row, columns: main.columns, requirements, objectives, applied: sliders.apply, signal });
+  const steps = rounding(places.rounding, {
+    job,
+    number,
+    base: main.row,
+    columns: main.columns,
+    requirements,
+    objectives,
+    applied: sliders.apply,
+    signal,
+  });
   const drawAll = () => draw()();
   drawAll();
   tradeOffs(places["trade-offs"], shared);
-  wayBack(places["way-back"], { path, positions: main.curves.slider_position_mm, turnTo: (at) => hold(placeOf(main, at, angle.angle), true), signal });
+  wayBack(places["way-back"], {
+    path,
+    positions: main.curves.slider_position_mm,
+    turnTo: (at) => hold(placeOf(main, at, angle.angle), true),
+    signal,
+  });
   /** @type {Record<string, Promise<Record<string, unknown>>>} */
   const asked = {};
-  const analysis = (/** @type {string} */ name) => (asked[name] ??= get(`${path}/analysis`, { show: name }, signal).then((found) => found.analysis));
+  const analysis = (/** @type {string} */ name) =>
+    (asked[name] ??= get(`${path}/analysis`, { show: name }, signal).then(
+      (found) => found.analysis,
+    ));
   if (turns) {
     topics(places.topics, { ...shared, analysis });
-    analysis("extremes").then(({ extremes }) => {
-      main.exact = endsOf(/** @type {Api.Extremes} */ (extremes), main);
-      charts.show(series);
-    }).catch(() => {}); // the topic says so
+    analysis("extremes")
+      .then(({ extremes }) => {
+        main.exact = endsOf(/** @type {Api.Extremes} */ (extremes), main);
+        charts.show(series);
+      })
+      .catch(() => {}); // the topic says so
   } else swinging(places.topics, shared);
-  window.addEventListener("units", () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()), { signal });
+  window.addEventListener(
+    "units",
+    () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()),
+    { signal },
+  );
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
   goOn(place);
 }
@@ -141,9 +292,19 @@ function startOf(query) {
   if (given.every(([, text]) => text === null)) return {};
   const bad = given.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
   const value = query.get("value")?.split(",");
-  if (!bad) return { lengths: /** @type {Page.Numbers} */ (/** @type {unknown} */ ({ ...Object.fromEntries(given.map(([key, text]) => [key, Number(text)])), ...(value && { value }) })) };
+  if (!bad)
+    return {
+      lengths: /** @type {Page.Numbers} */ (
+        /** @type {unknown} */ ({
+          ...Object.fromEntries(given.map(([key, text]) => [key, Number(text)])),
+          ...(value && { value }),
+        })
+      ),
+    };
   const [name, text] = [bad[0].replace("_mm", ""), bad[1]];
-  return { wrong: `The link gives crank, rod and offset, each as a number; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. This is the design itself.` };
+  return {
+    wrong: `The link gives crank, rod and offset, each as a number; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. This is the design itself.`,
+  };
 }
 
 /** @param {HTMLElement} place @param {{ series: number | string, name: string }[]} series */

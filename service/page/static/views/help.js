@@ -11,13 +11,36 @@ export const title = "Help";
 
 /** @type {[string, string, string | null, string | null][]} */
 const STEPS = [
-  ["Ask", "Say what the machine must do: speed, stroke, loads, what the dimensions may be, and what is wanted. Begin with a shipped job if one is near.", "#/new", "New run"],
-  ["Watch", "The search runs on its own. The front of best compromises grows while you look; it can be cancelled and goes on later.", "#/", "Runs"],
-  ["Explore", "Narrow the front down to what you can accept, and look at single designs: how they move, what they need, what you would give up for more.", null, null],
-  ["Decide", "Take the design along: a drawing for CAD, its numbers, the motion, a report for the review.", null, null],
+  [
+    "Ask",
+    "Say what the machine must do: speed, stroke, loads, what the dimensions may be, and what is wanted. Begin with a shipped job if one is near.",
+    "#/new",
+    "New run",
+  ],
+  [
+    "Watch",
+    "The search runs on its own. The front of best compromises grows while you look; it can be cancelled and goes on later.",
+    "#/",
+    "Runs",
+  ],
+  [
+    "Explore",
+    "Narrow the front down to what you can accept, and look at single designs: how they move, what they need, what you would give up for more.",
+    null,
+    null,
+  ],
+  [
+    "Decide",
+    "Take the design along: a drawing for CAD, its numbers, the motion, a report for the review.",
+    null,
+    null,
+  ],
 ];
 const DOCUMENTS = [
-  ["docs/jobs.md", "job files beyond the basics: friction, motors, choices, wanted motions, robust designs"],
+  [
+    "docs/jobs.md",
+    "job files beyond the basics: friction, motors, choices, wanted motions, robust designs",
+  ],
   ["docs/theory.md", "every equation, derived, with its source"],
   ["docs/optimisers.md", "how the search works, and when another method helps"],
   ["docs/own-quantities.md", "quantities of your own as Python functions"],
@@ -40,15 +63,31 @@ export async function show(place, { parts, query, signal }) {
 function overview(place, quantities, sought) {
   const list = h("ul", { class: "quantities" });
   const none = h("p", { class: "quiet", role: "status" });
-  const search = h("input", { type: "search", id: "help-search", value: sought, autocomplete: "off", placeholder: "torque, error, stroke …" });
+  const search = h("input", {
+    type: "search",
+    id: "help-search",
+    value: sought,
+    autocomplete: "off",
+    placeholder: "torque, error, stroke …",
+  });
   const draw = () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     const found = quantities.filter((quantity) => {
-      const all = [quantity.title, quantity.name, quantity.column, quantity.sentence, quantity.advice].join(" ").toLowerCase();
+      const all = [
+        quantity.title,
+        quantity.name,
+        quantity.column,
+        quantity.sentence,
+        quantity.advice,
+      ]
+        .join(" ")
+        .toLowerCase();
       return words.every((word) => all.includes(word));
     });
     fill(list, found.map(card));
-    none.textContent = found.length ? `${found.length} of ${quantities.length} quantities` : "No quantity has these words.";
+    none.textContent = found.length
+      ? `${found.length} of ${quantities.length} quantities`
+      : "No quantity has these words.";
   };
   search.addEventListener("input", () => {
     draw();
@@ -60,9 +99,42 @@ function overview(place, quantities, sought) {
       "div",
       { class: "help" },
       h("h1", {}, title),
-      h("section", { "aria-labelledby": "how" }, h("h2", { id: "how" }, "How it works"), h("ol", { class: "steps" }, STEPS.map(([verb, sentence, href, link]) => h("li", { class: "panel" }, h("h3", {}, verb), h("p", {}, sentence), href ? h("p", {}, h("a", { href }, link)) : null)))),
-      h("section", { "aria-labelledby": "all" }, h("h2", { id: "all" }, "Quantities"), h("p", { class: "row" }, h("label", { for: "help-search" }, "Search"), search, none), list),
-      h("section", { "aria-labelledby": "more" }, h("h2", { id: "more" }, "The documentation"), h("p", {}, "These files come with the software:"), h("ul", {}, DOCUMENTS.map(([file, what]) => h("li", {}, h("code", {}, file), ` – ${what}`)))),
+      h(
+        "section",
+        { "aria-labelledby": "how" },
+        h("h2", { id: "how" }, "How it works"),
+        h(
+          "ol",
+          { class: "steps" },
+          STEPS.map(([verb, sentence, href, link]) =>
+            h(
+              "li",
+              { class: "panel" },
+              h("h3", {}, verb),
+              h("p", {}, sentence),
+              href ? h("p", {}, h("a", { href }, link)) : null,
+            ),
+          ),
+        ),
+      ),
+      h(
+        "section",
+        { "aria-labelledby": "all" },
+        h("h2", { id: "all" }, "Quantities"),
+        h("p", { class: "row" }, h("label", { for: "help-search" }, "Search"), search, none),
+        list,
+      ),
+      h(
+        "section",
+        { "aria-labelledby": "more" },
+        h("h2", { id: "more" }, "The documentation"),
+        h("p", {}, "These files come with the software:"),
+        h(
+          "ul",
+          {},
+          DOCUMENTS.map(([file, what]) => h("li", {}, h("code", {}, file), ` – ${what}`)),
+        ),
+      ),
     ),
   );
   draw();
@@ -70,7 +142,17 @@ function overview(place, quantities, sought) {
 
 /** @param {Api.Quantity} quantity */
 function card(quantity) {
-  return h("li", { class: "panel" }, picture(quantity.picture, quantity.title), h("div", {}, h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)), h("p", {}, quantity.sentence)));
+  return h(
+    "li",
+    { class: "panel" },
+    picture(quantity.picture, quantity.title),
+    h(
+      "div",
+      {},
+      h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)),
+      h("p", {}, quantity.sentence),
+    ),
+  );
 }
 
 /** @param {HTMLElement} place @param {Api.Quantity} quantity @param {Api.Quantity[]} quantities */
@@ -79,7 +161,9 @@ function one(place, quantity, quantities) {
   /** @param {string} term @param {Dom.Child} text */
   const row = (term, text) => [h("dt", {}, term), h("dd", {}, text)];
   const symbols = symbolsOf(quantity.formula, quantities);
-  const alike = quantities.filter((other) => other.picture === quantity.picture && other.name !== quantity.name);
+  const alike = quantities.filter(
+    (other) => other.picture === quantity.picture && other.name !== quantity.name,
+  );
   fill(
     place,
     h(
@@ -94,14 +178,37 @@ function one(place, quantity, quantities) {
         "dl",
         { class: "terms" },
         row("formula", formula(quantity.formula)),
-        symbols.length ? row("with", symbols.map(([symbol, meaning, name], place) => [place ? ", " : "", symbol, " ", name && name !== quantity.name ? h("a", { href: `#/help/${name}` }, meaning) : meaning])) : null,
+        symbols.length
+          ? row(
+              "with",
+              symbols.map(([symbol, meaning, name], place) => [
+                place ? ", " : "",
+                symbol,
+                " ",
+                name && name !== quantity.name
+                  ? h("a", { href: `#/help/${name}` }, meaning)
+                  : meaning,
+              ]),
+            )
+          : null,
         row("unit", unit || "none, a ratio"),
         row("in job files", h("code", {}, quantity.name)),
         row("in tables and JSON", h("code", {}, quantity.column)),
         row("derived in", [h("code", {}, "docs/theory.md"), `, section ${quantity.section}`]),
         row("source", quantity.source),
       ),
-      alike.length ? h("p", {}, "See also ", alike.map((other, place) => [place ? ", " : "", h("a", { href: `#/help/${other.name}` }, other.title)]), ".") : null,
+      alike.length
+        ? h(
+            "p",
+            {},
+            "See also ",
+            alike.map((other, place) => [
+              place ? ", " : "",
+              h("a", { href: `#/help/${other.name}` }, other.title),
+            ]),
+            ".",
+          )
+        : null,
     ),
   );
 }

@@ -21,15 +21,31 @@ export const title = "New run";
 const IMPOSSIBLE = "Impossible: no design can meet this job.";
 
 /** Return the remedy for the marked fields. @param {Api.Wrong[]} wrong */
-const correction = (wrong) => wrong.every(({ infeasible }) => infeasible) ? `${IMPOSSIBLE} Change the marked fields.` : "Correct the marked fields first.";
+const correction = (wrong) =>
+  wrong.every(({ infeasible }) => infeasible)
+    ? `${IMPOSSIBLE} Change the marked fields.`
+    : "Correct the marked fields first.";
 
 /** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
-  const [schema, { quantities, functions }, shipped] = await Promise.all([get("schema", {}, signal), get("quantities", {}, signal), presets(signal), readyKinds()]);
+  const [schema, { quantities, functions }, shipped] = await Promise.all([
+    get("schema", {}, signal),
+    get("quantities", {}, signal),
+    presets(signal),
+    readyKinds(),
+  ]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
   const before = kept();
-  build(place, { draft, before: before?.key === draft.key ? null : before, schema: reader(schema), quantities, functions, shipped, signal });
+  build(place, {
+    draft,
+    before: before?.key === draft.key ? null : before,
+    schema: reader(schema),
+    quantities,
+    functions,
+    shipped,
+    signal,
+  });
 }
 
 /**
@@ -41,7 +57,11 @@ async function first(query, shipped, signal) {
   const source = preset ? `preset ${preset}` : from ? `job ${from}` : null;
   const before = kept();
   if (before && (source === null || before.source === source)) return before;
-  if (from) return { ...begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`), submission: history.state?.submission ?? {} };
+  if (from)
+    return {
+      ...begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`),
+      submission: history.state?.submission ?? {},
+    };
   if (!preset) return begin(firstJob(system()), "");
   const found = shipped.find(({ name }) => name === preset);
   if (!found) throw new Error(`No shipped job is called "${preset}".`);
@@ -73,12 +93,21 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   const general = h("ul", { class: "error", hidden: true });
   const refusal = h("p", { class: "error", role: "alert", hidden: true });
   const start = h("button", { type: "submit", class: "primary" }, "Start the search");
-  const undo = h("button", { type: "button", hidden: undone === null, onclick: () => undone && take(undone) }, "Bring back what was there");
+  const undo = h(
+    "button",
+    { type: "button", hidden: undone === null, onclick: () => undone && take(undone) },
+    "Bring back what was there",
+  );
   const body = h("div", { class: "sections" });
 
   /** @type {Form.Whole} */
   const form = {
-    ...{ schema, fields: [], quantities: new Map(quantities.map((one) => [one.name, one])), submission: draft.submission },
+    ...{
+      schema,
+      fields: [],
+      quantities: new Map(quantities.map((one) => [one.name, one])),
+      submission: draft.submission,
+    },
     job: draft.job,
     at: (path) => at(form.job, path),
     put: (path, value) => {
@@ -103,13 +132,25 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     register: (one) => void form.fields.push(one),
     forget: (which) => void (form.fields = form.fields.filter((one) => !which(one))),
     said: null,
-    names: () => [...quantities, ...(form.said?.names ?? []), ...functions.map(({ name }) => ({ name, title: "function", unit: null, behind: "(" }))],
+    names: () => [
+      ...quantities,
+      ...(form.said?.names ?? []),
+      ...functions.map(({ name }) => ({ name, title: "function", unit: null, behind: "(" })),
+    ],
     quantity: (name) => /** @type {Api.Quantity} */ (form.quantities.get(name)), // those that the form names itself
     judging: () => quantities.filter(({ name }) => schema.property(["objectives", name])),
     why: (name) => ({ sentence: form.quantity(name).sentence, name }),
     redraw,
   };
-  const file = jobFile(form, (job, source) => take({ ...begin(job, source === null ? draft.source : `file ${source}`), submission: form.submission }, { text: source === null }));
+  const file = jobFile(form, (job, source) =>
+    take(
+      {
+        ...begin(job, source === null ? draft.source : `file ${source}`),
+        submission: form.submission,
+      },
+      { text: source === null },
+    ),
+  );
   const check = checker(({ answer, problem }) => {
     checked = answer ?? null;
     if (answer) tell(answer);
@@ -159,7 +200,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given */
   function mark(wrong, given = {}) {
     const { elsewhere, first: worst } = showWrong(form.fields, wrong, given);
-    fill(general, elsewhere.map((sentence) => h("li", {}, sentence)));
+    fill(
+      general,
+      elsewhere.map((sentence) => h("li", {}, sentence)),
+    );
     general.hidden = !elsewhere.length;
     return worst;
   }
@@ -197,7 +241,16 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     const { priority, ...limits } = form.submission;
     const { from } = addressOf(draft.source);
     try {
-      const job = await post("jobs", { job: form.job, ...(priority === undefined ? {} : { priority }), limits, origin: from ? Number(from) : null }, { headers: { "Idempotency-Key": draft.key } });
+      const job = await post(
+        "jobs",
+        {
+          job: form.job,
+          ...(priority === undefined ? {} : { priority }),
+          limits,
+          origin: from ? Number(from) : null,
+        },
+        { headers: { "Idempotency-Key": draft.key } },
+      );
       keepDraft(null);
       if (signal.aborted) return;
       history.replaceState({ ...history.state, submission: form.submission }, ""); // back leads to the form as it was sent
@@ -205,11 +258,21 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       go(["jobs", String(job.id)]);
     } catch (error) {
       start.disabled = false;
-      const lines = (error instanceof Error ? error.message : "").split("\n").map((line) => line.trim()).filter((line) => line && !/^\d+ problems$/.test(line));
-      const wrong = lines.flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []]).filter((found) => found.length);
+      const lines = (error instanceof Error ? error.message : "")
+        .split("\n")
+        .map((line) => line.trim())
+        .filter((line) => line && !/^\d+ problems$/.test(line));
+      const wrong = lines
+        .flatMap((line) => [/^([^:]+): (.+)$/s.exec(line.replace(/^body (limits\.)?/, "")) ?? []])
+        .filter((found) => found.length);
       const infeasible = isInfeasible(error);
-      const refused = wrong.map(([, path, sentence]) => ({ path: path in form.submission ? `submission.${path}` : path, sentence, infeasible }));
-      const { first: marked, elsewhere } = statusOf(error) === 422 ? showWrong(form.fields, refused) : { first: null, elsewhere: [] };
+      const refused = wrong.map(([, path, sentence]) => ({
+        path: path in form.submission ? `submission.${path}` : path,
+        sentence,
+        infeasible,
+      }));
+      const { first: marked, elsewhere } =
+        statusOf(error) === 422 ? showWrong(form.fields, refused) : { first: null, elsewhere: [] };
       refuse(marked && !elsewhere.length ? correction(refused) : sentenceOf(error));
     }
   }
@@ -219,7 +282,12 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     refusal.hidden = false;
   }
 
-  const from = h("select", { id: "preset" }, h("option", { value: "" }, "choose …"), shipped.map(({ name, title: text }) => h("option", { value: name }, text)));
+  const from = h(
+    "select",
+    { id: "preset" },
+    h("option", { value: "" }, "choose …"),
+    shipped.map(({ name, title: text }) => h("option", { value: name }, text)),
+  );
   from.addEventListener("change", () => {
     const chosen = shipped.find(({ name }) => name === from.value);
     if (!chosen) return;
@@ -235,8 +303,33 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   const whole = h(
     "form",
     { class: "new-run", novalidate: true, autocomplete: "off", onsubmit: submit },
-    h("div", { class: "head" }, h("h1", {}, title), h("div", { class: "row" }, h("label", { for: "preset" }, "Begin with a shipped job"), from, over, undo)),
-    h("div", { class: "both" }, h("div", {}, body, file.node), h("aside", { class: "beside panel", "aria-label": "What this allows" }, h("h2", {}, "What this allows"), drawn.node, facts, general, h("div", { class: "go" }, status, start, refusal))),
+    h(
+      "div",
+      { class: "head" },
+      h("h1", {}, title),
+      h(
+        "div",
+        { class: "row" },
+        h("label", { for: "preset" }, "Begin with a shipped job"),
+        from,
+        over,
+        undo,
+      ),
+    ),
+    h(
+      "div",
+      { class: "both" },
+      h("div", {}, body, file.node),
+      h(
+        "aside",
+        { class: "beside panel", "aria-label": "What this allows" },
+        h("h2", {}, "What this allows"),
+        drawn.node,
+        facts,
+        general,
+        h("div", { class: "go" }, status, start, refusal),
+      ),
+    ),
   );
   whole.addEventListener("value-of", (event) => {
     if (event instanceof CustomEvent) event.detail.value = valueOf(form, event.detail.name);

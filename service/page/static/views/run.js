@@ -15,7 +15,8 @@ const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 /** A run: while it goes on its progress, afterwards the explorer of its front. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
-  if (!Number.isInteger(number) || number < 1) throw new Problem(404, "A run has a number; choose one of the list.");
+  if (!Number.isInteger(number) || number < 1)
+    throw new Problem(404, "A run has a number; choose one of the list.");
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
   const files = h("ul"); // of the front, that its explorer makes
@@ -28,7 +29,12 @@ export async function show(place, { parts, signal }) {
     if (signal.aborted) return;
     if (job === null) {
       inner?.control.abort();
-      fill(place, h("h1", {}, `Run ${number} is not there any more`), h("p", {}, "It was deleted, here or elsewhere."), h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")));
+      fill(
+        place,
+        h("h1", {}, `Run ${number} is not there any more`),
+        h("p", {}, "It was deleted, here or elsewhere."),
+        h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")),
+      );
       return;
     }
     document.title = `${job.name} · slidercrank`;
@@ -59,17 +65,62 @@ export async function show(place, { parts, signal }) {
    */
   function designs(id, best, own) {
     const columns = [...SIZES, ...Object.keys(best)].join(",");
-    return Promise.all([get(`jobs/${id}/front`, {}, own), get(`jobs/${id}/columns`, { columns }, own)]);
+    return Promise.all([
+      get(`jobs/${id}/front`, {}, own),
+      get(`jobs/${id}/columns`, { columns }, own),
+    ]);
   }
 
   /** @param {Api.Job} job */
   function drawHead(job) {
     const { summary } = job;
-    const facts = [`run ${job.id}`, summary && counted(summary.designs, "design"), summary && `${grouped(summary.evaluations)} evaluated`, summary?.seconds && `in ${duration(summary.seconds)}`];
-    fill(head,
-      summary?.designs ? [["the-table", "Skip to the table of designs"], ["kept", "Skip to the kept designs"]].map(([part, words]) => h("button", { type: "button", class: "skip", onclick: () => skipTo(`.${part}`) }, words)) : null,
-      h("div", {}, h("h1", {}, job.name), h("p", { class: "quiet facts" }, badge(job), " · ", facts.filter(Boolean).join(" · "), " · ", job.finished ? ago(job.finished) : moment(job), job.origin ? [" · changed from ", h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`)] : null)),
-      h("div", { class: "row acts" }, actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }), downloads(job, { designs: Boolean(summary?.designs), own: files, signal })));
+    const facts = [
+      `run ${job.id}`,
+      summary && counted(summary.designs, "design"),
+      summary && `${grouped(summary.evaluations)} evaluated`,
+      summary?.seconds && `in ${duration(summary.seconds)}`,
+    ];
+    fill(
+      head,
+      summary?.designs
+        ? [
+            ["the-table", "Skip to the table of designs"],
+            ["kept", "Skip to the kept designs"],
+          ].map(([part, words]) =>
+            h(
+              "button",
+              { type: "button", class: "skip", onclick: () => skipTo(`.${part}`) },
+              words,
+            ),
+          )
+        : null,
+      h(
+        "div",
+        {},
+        h("h1", {}, job.name),
+        h(
+          "p",
+          { class: "quiet facts" },
+          badge(job),
+          " · ",
+          facts.filter(Boolean).join(" · "),
+          " · ",
+          job.finished ? ago(job.finished) : moment(job),
+          job.origin
+            ? [
+                " · changed from ",
+                h("a", { href: link(["jobs", job.origin]) }, `run ${job.origin}`),
+              ]
+            : null,
+        ),
+      ),
+      h(
+        "div",
+        { class: "row acts" },
+        actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }),
+        downloads(job, { designs: Boolean(summary?.designs), own: files, signal }),
+      ),
+    );
   }
 
   /** Past all that can be done with charts, which takes some sixty steps of the Tab key. */

@@ -16,7 +16,11 @@ const PAGE = 25;
 /** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} given */
 export async function show(place, { query, signal }) {
   /** @type {{ state: string, name: string, before: string }} */
-  const asked = { state: query.get("state") ?? "", name: query.get("name") ?? "", before: query.get("before") ?? "" };
+  const asked = {
+    state: query.get("state") ?? "",
+    name: query.get("name") ?? "",
+    before: query.get("before") ?? "",
+  };
   const compared = new Set((query.get("jobs") ?? "").split(",").filter(Boolean).map(Number));
   /** @type {Map<number, { text: string, node: HTMLElement, held: string | null }>} */
   const rows = new Map(); // number: {text, node}
@@ -33,11 +37,36 @@ export async function show(place, { query, signal }) {
   const changed = () => {
     keep({ ...asked, jobs: [...compared].join(",") });
   };
-  const search = h("form", { class: "row search", role: "search", onsubmit: (event) => event.preventDefault() },
-    h("label", {}, "Name ", h("input", { type: "search", name: "name", value: asked.name, maxlength: 200, oninput: (event) => choose("name", event.currentTarget.value) })),
-    h("label", {}, "State ", h("select", { name: "state", onchange: (event) => choose("state", event.currentTarget.value) },
-      h("option", { value: "" }, "all"), STATES.map((state) => h("option", { value: state, selected: state === asked.state }, stateWord(state))))),
-    comparing);
+  const search = h(
+    "form",
+    { class: "row search", role: "search", onsubmit: (event) => event.preventDefault() },
+    h(
+      "label",
+      {},
+      "Name ",
+      h("input", {
+        type: "search",
+        name: "name",
+        value: asked.name,
+        maxlength: 200,
+        oninput: (event) => choose("name", event.currentTarget.value),
+      }),
+    ),
+    h(
+      "label",
+      {},
+      "State ",
+      h(
+        "select",
+        { name: "state", onchange: (event) => choose("state", event.currentTarget.value) },
+        h("option", { value: "" }, "all"),
+        STATES.map((state) =>
+          h("option", { value: state, selected: state === asked.state }, stateWord(state)),
+        ),
+      ),
+    ),
+    comparing,
+  );
   /** @param {"name" | "state"} key @param {string} value */
   const choose = (key, value) => {
     asked[key] = value;
@@ -61,8 +90,16 @@ export async function show(place, { query, signal }) {
   };
   const showComparing = () => {
     const numbers = [...compared].sort((a, b) => a - b);
-    fill(comparing, numbers.length > 1 && h("a", { class: "button primary", href: link(["compare"], { jobs: numbers.join(",") }) }, `Compare ${numbers.length} runs`),
-      numbers.length === 1 && h("span", { class: "quiet" }, "Tick another run to compare"));
+    fill(
+      comparing,
+      numbers.length > 1 &&
+        h(
+          "a",
+          { class: "button primary", href: link(["compare"], { jobs: numbers.join(",") }) },
+          `Compare ${numbers.length} runs`,
+        ),
+      numbers.length === 1 && h("span", { class: "quiet" }, "Tick another run to compare"),
+    );
   };
 
   /** Look once, and again after a while. */
@@ -70,7 +107,14 @@ export async function show(place, { query, signal }) {
     clearTimeout(timer);
     const before = asked.before || null;
     try {
-      const [page] = await Promise.all([get("jobs", { limit: PAGE, state: asked.state || null, name: asked.name || null, before }, signal), readySystem()]);
+      const [page] = await Promise.all([
+        get(
+          "jobs",
+          { limit: PAGE, state: asked.state || null, name: asked.name || null, before },
+          signal,
+        ),
+        readySystem(),
+      ]);
       if (before !== (asked.before || null)) return;
       shown = page;
       draw(page);
@@ -88,11 +132,18 @@ export async function show(place, { query, signal }) {
       const known = rows.get(job.id);
       if (known?.text === text) return known.node;
       const held = (known && focused(known.node)?.dataset.act) ?? null;
-      const node = runRow(job, { picture: picture(job), chosen: compared.has(job.id), compare, changed: look });
+      const node = runRow(job, {
+        picture: picture(job),
+        chosen: compared.has(job.id),
+        compare,
+        changed: look,
+      });
       rows.set(job.id, { text, node, held });
       return node;
     });
-    const same = wanted.length === list.children.length && wanted.every((node, index) => list.children[index] === node);
+    const same =
+      wanted.length === list.children.length &&
+      wanted.every((node, index) => list.children[index] === node);
     if (!same) {
       const held = page.jobs.map(({ id }) => rows.get(id)).find((row) => row?.held);
       fill(list, wanted);
@@ -111,20 +162,52 @@ export async function show(place, { query, signal }) {
     welcome.hidden = !empty;
     first(place, "h1")?.replaceChildren(empty ? "No runs yet" : title);
     if (empty) machines.begin();
-    said.textContent = page.jobs.length || empty ? "" : asked.before ? "There are no older runs." : "No run is like this; change the name or the state.";
+    said.textContent =
+      page.jobs.length || empty
+        ? ""
+        : asked.before
+          ? "There are no older runs."
+          : "No run is like this; change the name or the state.";
     const { next } = page;
-    fill(pages,
+    fill(
+      pages,
       asked.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
-      next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"));
+      next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"),
+    );
   }
 
   const machines = gallery(signal);
-  const welcome = h("section", { class: "welcome", hidden: true },
-    h("p", { class: "lead" }, "Say what a slider-crank must do and what may vary: the search finds the designs that are worth having, and proves how good they are."),
-    h("p", { class: "row" }, h("a", { class: "button primary", href: "#/new" }, "New run"), h("span", { class: "quiet" }, "from nothing, or begin with a machine that ships:")),
-    machines.node);
+  const welcome = h(
+    "section",
+    { class: "welcome", hidden: true },
+    h(
+      "p",
+      { class: "lead" },
+      "Say what a slider-crank must do and what may vary: the search finds the designs that are worth having, and proves how good they are.",
+    ),
+    h(
+      "p",
+      { class: "row" },
+      h("a", { class: "button primary", href: "#/new" }, "New run"),
+      h("span", { class: "quiet" }, "from nothing, or begin with a machine that ships:"),
+    ),
+    machines.node,
+  );
   await new Promise((ready) => {
-    fill(place, h("div", { class: "row spread" }, h("h1", {}, title), h("a", { class: "button primary", href: "#/new" }, "New run")), search, welcome, list, said, pages);
+    fill(
+      place,
+      h(
+        "div",
+        { class: "row spread" },
+        h("h1", {}, title),
+        h("a", { class: "button primary", href: "#/new" }, "New run"),
+      ),
+      search,
+      welcome,
+      list,
+      said,
+      pages,
+    );
     showComparing();
     look().then(ready);
   });

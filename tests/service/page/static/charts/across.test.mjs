@@ -14,22 +14,33 @@ function design({ number }, count = 360) {
   });
   const inner = (180 / Math.PI) * (Math.PI + Math.asin(e / (l - r)));
   const outer = (180 / Math.PI) * Math.asin(e / (l + r));
-  return { curves: { slider_position_mm: position }, centres: [(inner + 360) % 360, (outer + 360) % 360], sliderEnds: [Math.sqrt((l - r) ** 2 - e * e), Math.sqrt((l + r) ** 2 - e * e)] };
+  return {
+    curves: { slider_position_mm: position },
+    centres: [(inner + 360) % 360, (outer + 360) % 360],
+    sliderEnds: [Math.sqrt((l - r) ** 2 - e * e), Math.sqrt((l + r) ** 2 - e * e)],
+  };
 }
 
 test("time goes with the crank, whichever way it turns", () => {
   const draw = draws(90);
   for (let n = 0; n < 200; n += 1) {
-    const [rpm, angle] = [draw.number(5, 3000) * (draw.whole(0, 1) ? 1 : -1), draw.number(0, 359.9)];
+    const [rpm, angle] = [
+      draw.number(5, 3000) * (draw.whole(0, 1) ? 1 : -1),
+      draw.number(0, 359.9),
+    ];
     const over = acrossOf("time", rpm);
     const seconds = over.place({}, angle);
     const turned = (((6 * rpm * seconds) % 360) + 360) % 360; // 6 deg/s in one rpm
     assert.ok(Math.min(Math.abs(turned - angle), 360 - Math.abs(turned - angle)) < 1e-6);
     assert.ok(Math.abs(over.angle(seconds) - angle) < 1e-6 || angle < 1e-6);
     const path = over.path({}, 12);
-    assert.deepEqual(path.map(({ n: at }) => at).sort((a, b) => a - b), [0, ...Array.from({ length: 12 }, (_, k) => k)]);
+    assert.deepEqual(
+      path.map(({ n: at }) => at).sort((a, b) => a - b),
+      [0, ...Array.from({ length: 12 }, (_, k) => k)],
+    );
     assert.ok(path.every(({ x }, k) => k === 0 || x > path[k - 1].x));
-    for (const { x, n: at } of path.slice(0, 12)) assert.ok(Math.abs(over.place({}, 30 * at) - x) < 1e-9);
+    for (const { x, n: at } of path.slice(0, 12))
+      assert.ok(Math.abs(over.place({}, 30 * at) - x) < 1e-9);
   }
 });
 

@@ -10,9 +10,15 @@ test("keys go through all designs that are let through, once each, in the order 
     const count = whole(1, 30);
     const values = Array.from({ length: count }, () => Math.round(number(0, 8))); // with ties
     const mask = values.map(() => (number(0, 1) < 0.7 ? 1 : 0));
-    const order = values.map((_, row) => row).filter((row) => mask[row]).sort((a, b) => values[a] - values[b] || a - b);
+    const order = values
+      .map((_, row) => row)
+      .filter((row) => mask[row])
+      .sort((a, b) => values[a] - values[b] || a - b);
     if (!order.length) continue;
-    for (const [list, by] of [[order, 1], [order.toReversed(), -1]]) {
+    for (const [list, by] of [
+      [order, 1],
+      [order.toReversed(), -1],
+    ]) {
       let here = list[0];
       for (const expected of [...list.slice(1), list.at(-1)]) {
         here = following(here, mask, { of: (row) => values[row], by });

@@ -42,7 +42,10 @@ test("the extremes are the least and greatest value, the first of equal ones, ga
       assert.equal(found, null);
       continue;
     }
-    for (const [end, value] of [["low", Math.min(...known)], ["high", Math.max(...known)]]) {
+    for (const [end, value] of [
+      ["low", Math.min(...known)],
+      ["high", Math.max(...known)],
+    ]) {
       assert.deepEqual(found[end], { angle: (360 * values.indexOf(value)) / values.length, value });
     }
   }

@@ -8,9 +8,14 @@ import { draws } from "../draws.mjs";
 function distance(across, heights, row, x, y) {
   const at = Math.min(Math.max(x, across[0]), across[across.length - 1]);
   for (let axis = 1; axis < across.length; axis += 1) {
-    const [from, to] = [heights[row * across.length + axis - 1], heights[row * across.length + axis]];
+    const [from, to] = [
+      heights[row * across.length + axis - 1],
+      heights[row * across.length + axis],
+    ];
     if (at < across[axis - 1] || at > across[axis] || from < 0 || to < 0) continue;
-    return Math.abs(from + ((at - across[axis - 1]) / (across[axis] - across[axis - 1])) * (to - from) - y);
+    return Math.abs(
+      from + ((at - across[axis - 1]) / (across[axis] - across[axis - 1])) * (to - from) - y,
+    );
   }
   return Infinity;
 }
@@ -21,10 +26,14 @@ test("the nearest line under the pointer is the one that a search of all finds, 
   for (let n = 0; n < 500; n += 1) {
     const [axes, rows] = [whole(2, 5), whole(0, 12)];
     const across = Array.from({ length: axes }, (_, axis) => 30 + 100 * axis);
-    const heights = Int16Array.from({ length: axes * rows }, () => (number(0, 1) < 0.1 ? -1 : whole(0, 200)));
+    const heights = Int16Array.from({ length: axes * rows }, () =>
+      number(0, 1) < 0.1 ? -1 : whole(0, 200),
+    );
     const mask = Uint8Array.from({ length: rows }, () => whole(0, 3) && 1);
     const [x, y] = [number(30.5, 30 + 100 * (axes - 1)), number(0, 200)];
-    const distances = [...mask].map((one, row) => (one ? distance(across, heights, row, x, y) : Infinity));
+    const distances = [...mask].map((one, row) =>
+      one ? distance(across, heights, row, x, y) : Infinity,
+    );
     const least = Math.min(Infinity, ...distances);
     const nearest = nearestLine({ across, heights }, mask, x, y);
     if (least >= 8) assert.equal(nearest, null);

@@ -11,19 +11,30 @@ const COUNT = 360;
 
 /** Crank angles of a swing at even times, at a speed that is not constant. @param {number} from @param {number} to */
 function swing(from, to) {
-  const crank_angle_deg = Array.from({ length: COUNT }, (_, n) => from + (to - from) * (0.5 - 0.5 * Math.cos((2 * Math.PI * n) / COUNT)));
-  return { turns: 0, centres: [0, 180], curves: { crank_angle_deg, slider_position_mm: crank_angle_deg.map((angle) => 200 - angle) } };
+  const crank_angle_deg = Array.from(
+    { length: COUNT },
+    (_, n) => from + (to - from) * (0.5 - 0.5 * Math.cos((2 * Math.PI * n) / COUNT)),
+  );
+  return {
+    turns: 0,
+    centres: [0, 180],
+    curves: { crank_angle_deg, slider_position_mm: crank_angle_deg.map((angle) => 200 - angle) },
+  };
 }
 
 test("a place of a swing is where the crank stands, in the way that it is on", () => {
-  for (const [from, to] of [[11.16, 101.16], [100, -30], [350, 420]]) {
+  for (const [from, to] of [
+    [11.16, 101.16],
+    [100, -30],
+    [350, 420],
+  ]) {
     const one = swing(from, to);
     for (let share = 0.05; share < 1; share += 0.1) {
       const angle = from + (to - from) * share;
       for (const now of [10, 200]) {
         const place = placeOf(one, angle - 360, now);
         assert.ok(now < 180 ? place <= 180 : place >= 180);
-        assert.ok(Math.abs(crankAt(one, place) - angle) < 0.3 * Math.abs(to - from) / 90);
+        assert.ok(Math.abs(crankAt(one, place) - angle) < (0.3 * Math.abs(to - from)) / 90);
       }
     }
     assert.ok(Math.abs(crankAt(one, placeOf(one, to + Math.sign(to - from) * 20, 10)) - to) < 1);
@@ -45,7 +56,10 @@ test("a place of turns is the crank angle over their number", () => {
 test("curves of a swing are over both ways, time, crank angle or slider position", () => {
   const one = swing(10, 100);
   const both = acrossOf("angle", 0, 0);
-  assert.deepEqual(both.ticks?.map(({ text }) => text), ["start", "end", "start"]);
+  assert.deepEqual(
+    both.ticks?.map(({ text }) => text),
+    ["start", "end", "start"],
+  );
   assert.equal(both.path(one, COUNT).length, COUNT + 1);
   const crank = acrossOf("crank", 0, 0);
   const { low, high } = crank.span([one]);
@@ -58,6 +72,12 @@ test("curves of a swing are over both ways, time, crank angle or slider position
 });
 
 test("a cycle of two turns has its crank angles to 720 deg below it", () => {
-  assert.deepEqual(acrossOf("angle", 60, 2).ticks?.map(({ text }) => text), ["0°", "180°", "360°", "540°", "720°"]);
-  assert.deepEqual(acrossOf("angle", 60).ticks?.map(({ text }) => text), ["0°", "90°", "180°", "270°", "360°"]);
+  assert.deepEqual(
+    acrossOf("angle", 60, 2).ticks?.map(({ text }) => text),
+    ["0°", "180°", "360°", "540°", "720°"],
+  );
+  assert.deepEqual(
+    acrossOf("angle", 60).ticks?.map(({ text }) => text),
+    ["0°", "90°", "180°", "270°", "360°"],
+  );
 });

@@ -11,7 +11,14 @@ function drawn(count = 2000) {
     const wide = Math.abs(size(-7, 8));
     const low = number(-1, 1) * wide * 10 ** whole(0, 4);
     const [start, end, ticks] = [number(0, 50), number(100, 900), whole(3, 8)];
-    return { low, high: low + wide, start, end, ticks, made: scale(low, low + wide, start, end, ticks) };
+    return {
+      low,
+      high: low + wide,
+      start,
+      end,
+      ticks,
+      made: scale(low, low + wide, start, end, ticks),
+    };
   });
 }
 
@@ -21,14 +28,18 @@ test("the ends of a range lie on the ends of the pixels, and pixels lead back to
     assert.ok(Math.abs(made.at(high) - end) < 1e-6);
     for (const share of [0, 0.25, 0.7, 1]) {
       const value = low + share * (high - low);
-      assert.ok(Math.abs(made.value(made.at(value)) - value) <= 1e-9 * (Math.abs(low) + Math.abs(high)));
+      assert.ok(
+        Math.abs(made.value(made.at(value)) - value) <= 1e-9 * (Math.abs(low) + Math.abs(high)),
+      );
     }
   }
 });
 
 test("ticks are all multiples of 1, 2 or 5 times a power of ten within the range, the finest that are few enough", () => {
   for (const { low, high, ticks: count, made } of drawn()) {
-    const steps = Array.from({ length: 60 }, (_, n) => n - 30).flatMap((power) => [1, 2, 5].map((factor) => Number(`${factor}e${power}`)));
+    const steps = Array.from({ length: 60 }, (_, n) => n - 30).flatMap((power) =>
+      [1, 2, 5].map((factor) => Number(`${factor}e${power}`)),
+    );
     const step = steps.find((one) => one * (1 + 1e-9) >= (high - low) / count);
     const room = 1e-9 * step;
     const wanted = [];
@@ -47,13 +58,18 @@ test("the text of a tick is the tick, and no other tick has it", () => {
     texts.forEach((text, n) => {
       assert.doesNotMatch(text, /^-/);
       const read = Number(text.replaceAll("−", "-"));
-      assert.ok(Math.abs(read - made.ticks[n]) <= 1e-6 * (high - low), `${text} for ${made.ticks[n]}`);
+      assert.ok(
+        Math.abs(read - made.ticks[n]) <= 1e-6 * (high - low),
+        `${text} for ${made.ticks[n]}`,
+      );
     });
   }
 });
 
 test("zero has no sign", () => {
-  assert.ok(scale(-0.3, 0.3, 0, 100).ticks.some((tick) => scale(-0.3, 0.3, 0, 100).text(tick) === "0.0"));
+  assert.ok(
+    scale(-0.3, 0.3, 0, 100).ticks.some((tick) => scale(-0.3, 0.3, 0, 100).text(tick) === "0.0"),
+  );
 });
 
 test("one value alone lies in the middle", () => {
@@ -65,19 +81,30 @@ test("one value alone lies in the middle", () => {
 });
 
 test("ends that are no numbers have no ticks, and the loop for them ends", () => {
-  for (const [low, high] of [[NaN, NaN], [0, NaN], [-Infinity, Infinity], [0, Infinity]]) assert.deepEqual(scale(low, high, 0, 100).ticks, []);
+  for (const [low, high] of [
+    [NaN, NaN],
+    [0, NaN],
+    [-Infinity, Infinity],
+    [0, Infinity],
+  ])
+    assert.deepEqual(scale(low, high, 0, 100).ticks, []);
 });
 
 test("the range of values is their least and greatest finite one with room on both sides", () => {
   const { number, whole, one } = draws(2);
   for (let n = 0; n < 500; n += 1) {
-    const values = Array.from({ length: whole(1, 40) }, () => (number(0, 1) < 0.2 ? one([NaN, Infinity, -Infinity, null]) : number(-9, 9)));
+    const values = Array.from({ length: whole(1, 40) }, () =>
+      number(0, 1) < 0.2 ? one([NaN, Infinity, -Infinity, null]) : number(-9, 9),
+    );
     const finite = values.filter((value) => Number.isFinite(value)).sort((a, b) => a - b);
     const { low, high } = range(values, 0.1);
     if (!finite.length) assert.deepEqual({ low, high }, { low: 0, high: 1 });
     else {
       const wide = finite.at(-1) - finite[0];
-      assert.ok(Math.abs(low - (finite[0] - 0.1 * wide)) < 1e-12 && Math.abs(high - (finite.at(-1) + 0.1 * wide)) < 1e-12);
+      assert.ok(
+        Math.abs(low - (finite[0] - 0.1 * wide)) < 1e-12 &&
+          Math.abs(high - (finite.at(-1) + 0.1 * wide)) < 1e-12,
+      );
     }
   }
   assert.deepEqual(range([]), { low: 0, high: 1 });
@@ -98,7 +125,10 @@ test("on a logarithmic scale equal ratios are equally long, pixels lead back, an
     assert.ok(made.ticks.length > 0 && made.ticks.length <= 20);
     for (const tick of made.ticks) {
       assert.ok(tick >= low * (1 - 1e-6) && tick <= high * (1 + 1e-6));
-      assert.ok(Math.abs(Number(made.text(tick).replace("−", "-")) - tick) <= 1e-6 * tick, made.text(tick));
+      assert.ok(
+        Math.abs(Number(made.text(tick).replace("−", "-")) - tick) <= 1e-6 * tick,
+        made.text(tick),
+      );
     }
   }
 });

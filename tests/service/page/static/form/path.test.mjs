@@ -1,7 +1,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { at, idOf, isTable, put, renamed, valueOf, written } from "../../../../../service/page/static/form/path.js";
+import {
+  at,
+  idOf,
+  isTable,
+  put,
+  renamed,
+  valueOf,
+  written,
+} from "../../../../../service/page/static/form/path.js";
 import { draws } from "../draws.mjs";
 
 const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
@@ -9,7 +17,8 @@ const KEYS = ["load", "force", "mechanism", "crank_angle", "rod", "min"];
 /** Return a drawn path: a key first, places of lists only behind keys. */
 function path({ whole, one, number }) {
   const found = [one(KEYS)];
-  while (found.length < whole(1, 5)) found.push(typeof found.at(-1) === "string" && number(0, 1) < 0.4 ? 0 : one(KEYS));
+  while (found.length < whole(1, 5))
+    found.push(typeof found.at(-1) === "string" && number(0, 1) < 0.4 ? 0 : one(KEYS));
   return found;
 }
 
@@ -17,7 +26,9 @@ test("a path is written as the service writes it, places counted from 1", () => 
   const draw = draws(5);
   for (let n = 0; n < 1000; n += 1) {
     const one = path(draw).map((key) => (key === 0 ? draw.whole(0, 30) : key));
-    const read = written(one).split(".").flatMap((part) => part.split(" #").map((key, place) => (place ? Number(key) - 1 : key)));
+    const read = written(one)
+      .split(".")
+      .flatMap((part) => part.split(" #").map((key, place) => (place ? Number(key) - 1 : key)));
     assert.deepEqual(read, one);
   }
   assert.equal(written(["load", 0, "force"]), "load #1.force");
@@ -44,7 +55,10 @@ test("what is put is there, and nothing is left once it is taken away", () => {
 });
 
 test("others stay as they are", () => {
-  const job = { load: [{ force: "1 N" }, { force: "2 N" }], constraints: { stroke: { min: 1, max: 2 } } };
+  const job = {
+    load: [{ force: "1 N" }, { force: "2 N" }],
+    constraints: { stroke: { min: 1, max: 2 } },
+  };
   put(job, ["load", 0], undefined);
   put(job, ["constraints", "stroke", "max"], undefined);
   assert.deepEqual(job, { load: [{ force: "2 N" }], constraints: { stroke: { min: 1 } } });
@@ -53,27 +67,43 @@ test("others stay as they are", () => {
 });
 
 test("nothing stands behind a value that is no table", () => {
-  for (const value of [null, 4, "text", undefined, NaN]) assert.equal(at({ name: value }, ["name", "further"]), undefined);
+  for (const value of [null, 4, "text", undefined, NaN])
+    assert.equal(at({ name: value }, ["name", "further"]), undefined);
 });
 
 test("ids of different paths of a form differ, and are names in a document", () => {
-  const ids = [["load", 0, "force"], ["load", 1, "force"], ["load", 0], ["rod"]].flatMap((one) => ["c", "u"].map((part) => idOf(one, part)));
+  const ids = [["load", 0, "force"], ["load", 1, "force"], ["load", 0], ["rod"]].flatMap((one) =>
+    ["c", "u"].map((part) => idOf(one, part)),
+  );
   assert.equal(new Set(ids).size, ids.length);
   assert.match(idOf(["choice of", "µ"], "c"), /^[\w-]+$/);
 });
 
 test("keys that are formulas are written in quotes, long ones as far as the service writes them", () => {
-  assert.equal(written(["constraints", "2 * crank + rod", "max"]), 'constraints."2 * crank + rod".max');
+  assert.equal(
+    written(["constraints", "2 * crank + rod", "max"]),
+    'constraints."2 * crank + rod".max',
+  );
   assert.equal(written(["quantity", "room", "formula"]), "quantity.room.formula");
   assert.equal(written(["constraints", "x+".repeat(40)]), `constraints."${"x+".repeat(30)}..."`);
 });
 
 test("a key that is called otherwise stays in its place", () => {
-  assert.deepEqual(Object.keys(renamed({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), ["a", "b c + 1", "d"]);
+  assert.deepEqual(Object.keys(renamed({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), [
+    "a",
+    "b c + 1",
+    "d",
+  ]);
 });
 
 test("a name has the value that its length or requirement has, and none where that is a range", () => {
-  const job = { constraints: { stroke: { equals: "90 mm" }, time_ratio: { equals: "1.2 +- 0.1" } }, variables: { rod: "150 mm", crank: "40 mm ± 1 mm", offset: ["0 mm", "5 mm"] } };
+  const job = {
+    constraints: { stroke: { equals: "90 mm" }, time_ratio: { equals: "1.2 +- 0.1" } },
+    variables: { rod: "150 mm", crank: "40 mm ± 1 mm", offset: ["0 mm", "5 mm"] },
+  };
   const form = { at: (path) => at(job, path) };
-  assert.deepEqual(["stroke", "rod", "time_ratio", "crank", "offset", "height"].map((name) => valueOf(form, name)), ["90 mm", "150 mm", null, null, null, null]);
+  assert.deepEqual(
+    ["stroke", "rod", "time_ratio", "crank", "offset", "height"].map((name) => valueOf(form, name)),
+    ["90 mm", "150 mm", null, null, null, null],
+  );
 });

@@ -4,19 +4,40 @@ import { test } from "node:test";
 import { pointsOf } from "../../../../../service/page/static/form/points.js";
 import { draws } from "../draws.mjs";
 
-const KNOWN = [["rad", "deg"], ["N", "kN"]];
+const KNOWN = [
+  ["rad", "deg"],
+  ["N", "kN"],
+];
 
 test("rows are the same whatever stands between their cells, with decimal points or commas", () => {
   const { number } = draws(8);
   for (let n = 0; n < 300; n += 1) {
-    const rows = Array.from({ length: 1 + (n % 7) }, () => [number(0, 360).toFixed(2), number(-900, 900).toFixed(3)]);
-    for (const between of ["\t", ";", "; ", " ", ", "]) assert.deepEqual(pointsOf(rows.map((row) => row.join(between)).join("\n"), KNOWN).rows, rows, between);
-    for (const between of ["\t", ";", "  "]) assert.deepEqual(pointsOf(rows.map((row) => row.join(between).replaceAll(".", ",")).join("\r\n"), KNOWN).rows, rows, between);
+    const rows = Array.from({ length: 1 + (n % 7) }, () => [
+      number(0, 360).toFixed(2),
+      number(-900, 900).toFixed(3),
+    ]);
+    for (const between of ["\t", ";", "; ", " ", ", "])
+      assert.deepEqual(
+        pointsOf(rows.map((row) => row.join(between)).join("\n"), KNOWN).rows,
+        rows,
+        between,
+      );
+    for (const between of ["\t", ";", "  "])
+      assert.deepEqual(
+        pointsOf(rows.map((row) => row.join(between).replaceAll(".", ",")).join("\r\n"), KNOWN)
+          .rows,
+        rows,
+        between,
+      );
   }
 });
 
 test("a first line names the units, those that there are", () => {
-  assert.deepEqual(pointsOf("angle (deg)\tforce [kN]\n0\t1,5\n", KNOWN), { rows: [["0", "1.5"]], units: ["deg", "kN"], wrong: null });
+  assert.deepEqual(pointsOf("angle (deg)\tforce [kN]\n0\t1,5\n", KNOWN), {
+    rows: [["0", "1.5"]],
+    units: ["deg", "kN"],
+    wrong: null,
+  });
   assert.deepEqual(pointsOf("angle;force (tonnes)\n0;1", KNOWN).units, ["", ""]);
 });
 

@@ -6,11 +6,18 @@ import { draws } from "../draws.mjs";
 
 const OBJECTIVES = ["time_ratio", "peak_torque_Nm", "least_transmission_angle_deg"];
 const KEYS = ["crank_mm", "rod_mm", "offset_mm", ...OBJECTIVES, "slow_stroke", "choice_rod"];
-const FRONT = { columns: KEYS.map((key) => ({ key })), objectives: OBJECTIVES.map((column) => ({ column })), count: 50, strokes_differ: true };
+const FRONT = {
+  columns: KEYS.map((key) => ({ key })),
+  objectives: OBJECTIVES.map((column) => ({ column })),
+  count: 50,
+  strokes_differ: true,
+};
 
 const from = (text) => choicesFrom(new URLSearchParams(text), FRONT);
 const textOf = (chosen, lasso = chosen.lasso) => {
-  const query = Object.entries(queryOf(chosen, lasso)).filter(([, value]) => value !== "" && value !== null);
+  const query = Object.entries(queryOf(chosen, lasso)).filter(
+    ([, value]) => value !== "" && value !== null,
+  );
   return new URLSearchParams(query.map(([key, value]) => [key, String(value)])).toString();
 };
 
@@ -18,7 +25,10 @@ test("an address without choices is the standard view, and the standard view nee
   const chosen = from("");
   assert.equal(textOf(chosen), "");
   assert.deepEqual([chosen.x, chosen.y, chosen.colour], OBJECTIVES);
-  assert.deepEqual(chosen.axes.map(({ key }) => key), ["crank_mm", "rod_mm", "offset_mm", "choice_rod", ...OBJECTIVES]);
+  assert.deepEqual(
+    chosen.axes.map(({ key }) => key),
+    ["crank_mm", "rod_mm", "offset_mm", "choice_rod", ...OBJECTIVES],
+  );
 });
 
 test("what is chosen comes back from its address", () => {
@@ -28,10 +38,30 @@ test("what is chosen comes back from its address", () => {
     const chosen = from("");
     Object.assign(chosen, {
       axes: some().map((key) => ({ key, flipped: number(0, 1) < 0.5 })),
-      x: one(KEYS), y: one(KEYS), colour: one([...KEYS, ""]), columns: some(), sort: one([...KEYS, ""]), page: whole(1, 9),
-      selected: [...new Set([whole(1, 50), whole(1, 50)])], weights: one([null, [0, 10, 3]]),
-      limits: new Map([["crank_mm", { low: one([null, -3.5]), high: 80 }], ["slow_stroke", { words: ["inward", "equal"] }]]),
-      lasso: one([null, { x: "crank_mm", y: "rod_mm", line: [[1.5, 2], [3, -4e-7], [5, 1e6]] }]),
+      x: one(KEYS),
+      y: one(KEYS),
+      colour: one([...KEYS, ""]),
+      columns: some(),
+      sort: one([...KEYS, ""]),
+      page: whole(1, 9),
+      selected: [...new Set([whole(1, 50), whole(1, 50)])],
+      weights: one([null, [0, 10, 3]]),
+      limits: new Map([
+        ["crank_mm", { low: one([null, -3.5]), high: 80 }],
+        ["slow_stroke", { words: ["inward", "equal"] }],
+      ]),
+      lasso: one([
+        null,
+        {
+          x: "crank_mm",
+          y: "rod_mm",
+          line: [
+            [1.5, 2],
+            [3, -4e-7],
+            [5, 1e6],
+          ],
+        },
+      ]),
     });
     chosen.reverse = chosen.sort !== "" && number(0, 1) < 0.5;
     const back = from(textOf(chosen));
@@ -40,7 +70,9 @@ test("what is chosen comes back from its address", () => {
 });
 
 test("what an address says of unknown columns, designs and numbers is left out", () => {
-  const chosen = from("axes=nothing,-crank_mm&x=nothing&sort=-nothing&page=0&selected=0,51,7,7.5,x&weights=1,2&min.crank_mm=abc&min.nothing=1&lasso=crank_mm,rod_mm,1,2,3");
+  const chosen = from(
+    "axes=nothing,-crank_mm&x=nothing&sort=-nothing&page=0&selected=0,51,7,7.5,x&weights=1,2&min.crank_mm=abc&min.nothing=1&lasso=crank_mm,rod_mm,1,2,3",
+  );
   assert.deepEqual(chosen.axes, [{ key: "crank_mm", flipped: true }]);
   assert.equal(chosen.x, "time_ratio");
   assert.deepEqual([chosen.sort, chosen.page, chosen.weights, chosen.lasso], ["", 1, null, null]);

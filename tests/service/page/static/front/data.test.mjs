@@ -6,7 +6,11 @@ import { draws } from "../draws.mjs";
 
 /** Return the data of a front of one column "some". */
 function of(cells) {
-  const data = new FrontData(1, { count: cells.length, columns: [{ key: "some", title: "some", unit: "" }], objectives: [{ column: "best", sense: "maximise" }] });
+  const data = new FrontData(1, {
+    count: cells.length,
+    columns: [{ key: "some", title: "some", unit: "" }],
+    objectives: [{ column: "best", sense: "maximise" }],
+  });
   data.take({ some: cells });
   return data;
 }
@@ -17,7 +21,10 @@ test("cells come back as they were given, numbers, words and gaps", () => {
     const kind = one([() => number(-5, 5), () => one(["b", "a", "c"])]);
     const cells = Array.from({ length: whole(0, 30) }, () => (number(0, 1) < 0.2 ? null : kind()));
     const data = of(cells);
-    assert.deepEqual(cells.map((_, row) => data.cell("some", row)), cells);
+    assert.deepEqual(
+      cells.map((_, row) => data.cell("some", row)),
+      cells,
+    );
     const words = cells.filter((cell) => typeof cell === "string");
     assert.deepEqual(data.words("some"), words.length ? [...new Set(words)].sort() : null);
   }
@@ -26,12 +33,20 @@ test("cells come back as they were given, numbers, words and gaps", () => {
 test("the order is that of the values, ties as they come, gaps last", () => {
   const { number, whole } = draws(41);
   for (let n = 0; n < 300; n += 1) {
-    const cells = Array.from({ length: whole(0, 40) }, () => (number(0, 1) < 0.2 ? null : whole(-4, 4)));
+    const cells = Array.from({ length: whole(0, 40) }, () =>
+      number(0, 1) < 0.2 ? null : whole(-4, 4),
+    );
     const rows = cells.map((cell, row) => ({ cell, row }));
     rows.sort((a, b) => (a.cell ?? Infinity) - (b.cell ?? Infinity) || a.row - b.row);
     const order = [...of(cells).order("some")];
-    assert.deepEqual(order.map((row) => cells[row]), rows.map(({ cell }) => cell));
-    assert.deepEqual(order.filter((row) => cells[row] !== null), rows.filter(({ cell }) => cell !== null).map(({ row }) => row));
+    assert.deepEqual(
+      order.map((row) => cells[row]),
+      rows.map(({ cell }) => cell),
+    );
+    assert.deepEqual(
+      order.filter((row) => cells[row] !== null),
+      rows.filter(({ cell }) => cell !== null).map(({ row }) => row),
+    );
   }
 });
 

@@ -8,12 +8,17 @@ test("the gain of the last ten rounds is that of the last over the eleventh last
   const drawn = draws(5);
   for (let n = 0; n < 200; n += 1) {
     const rounds = [drawn.number(0.1, 1)];
-    for (let round = 1; round < drawn.whole(2, 40); round += 1) rounds.push(rounds.at(-1) * (1 + drawn.number(0.001, 0.2)));
+    for (let round = 1; round < drawn.whole(2, 40); round += 1)
+      rounds.push(rounds.at(-1) * (1 + drawn.number(0.001, 0.2)));
     if (rounds.length < 2) continue;
     const found = growth(rounds);
     assert.equal(found.rounds, Math.min(10, rounds.length - 1));
     const percent = 100 * (rounds.at(-1) / rounds[Math.max(0, rounds.length - 11)] - 1);
-    assert.ok(Math.abs(Number(found.text.slice(1, -2)) - percent) <= (percent >= 10 ? 0.5 : percent >= 1 ? 0.05 : 0.005) + 1e-9, `${found.text} is ${percent}`);
+    assert.ok(
+      Math.abs(Number(found.text.slice(1, -2)) - percent) <=
+        (percent >= 10 ? 0.5 : percent >= 1 ? 0.05 : 0.005) + 1e-9,
+      `${found.text} is ${percent}`,
+    );
   }
 });
 

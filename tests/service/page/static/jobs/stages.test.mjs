@@ -14,7 +14,13 @@ function after(events) {
 }
 
 test("stages follow each other, each with its rounds, its steps and its time", () => {
-  const found = after([["sampling", 1, 0.4], ["zooming", 2, 0.6], ["zooming", 3, 0.9], ["selecting designs", 3, 1.1, 20, 300], ["selecting designs", 3, 1.5, 300, 300]]);
+  const found = after([
+    ["sampling", 1, 0.4],
+    ["zooming", 2, 0.6],
+    ["zooming", 3, 0.9],
+    ["selecting designs", 3, 1.1, 20, 300],
+    ["selecting designs", 3, 1.5, 300, 300],
+  ]);
   assert.deepEqual(found, [
     { name: "sampling", rounds: [1, 1], step: 0, steps: 0, from: 0, to: 0.4 },
     { name: "zooming", rounds: [2, 3], step: 0, steps: 0, from: 0.4, to: 0.9 },
@@ -23,6 +29,17 @@ test("stages follow each other, each with its rounds, its steps and its time", (
 });
 
 test("a search that begins anew has its own stages", () => {
-  const found = after([["sampling", 1, 0.4], ["zooming", 2, 0.6], ["sampling", 1, 0.3], ["zooming", 2, 0.5]]);
-  assert.deepEqual(found.map(({ name, to }) => [name, to]), [["sampling", 0.3], ["zooming", 0.5]]);
+  const found = after([
+    ["sampling", 1, 0.4],
+    ["zooming", 2, 0.6],
+    ["sampling", 1, 0.3],
+    ["zooming", 2, 0.5],
+  ]);
+  assert.deepEqual(
+    found.map(({ name, to }) => [name, to]),
+    [
+      ["sampling", 0.3],
+      ["zooming", 0.5],
+    ],
+  );
 });

@@ -18,6 +18,12 @@ test("a time is said as one would say it", () => {
 });
 
 test("what was in the evening is said by the clock only as long as it is the same day", () => {
-  assert.equal(agoText(new Date(2026, 0, 1, 23, 50), new Date(2026, 0, 2, 0, 10)), "20 minutes ago");
-  assert.equal(agoText(new Date(2025, 11, 31, 23, 0), new Date(2026, 0, 1, 0, 30)), "yesterday 23:00");
+  assert.equal(
+    agoText(new Date(2026, 0, 1, 23, 50), new Date(2026, 0, 2, 0, 10)),
+    "20 minutes ago",
+  );
+  assert.equal(
+    agoText(new Date(2025, 11, 31, 23, 0), new Date(2026, 0, 1, 0, 30)),
+    "yesterday 23:00",
+  );
 });

@@ -12,12 +12,23 @@ await Promise.all([readySystem(), readyKinds()]);
 /** Expect a text to be read as a value in a unit of the API. */
 function reads(text, unit, value) {
   const found = measured(text, unit);
-  assert.ok(Math.abs(found.value - value) <= 1e-11 * Math.abs(value), `${text} in ${unit} is ${JSON.stringify(found)}`);
+  assert.ok(
+    Math.abs(found.value - value) <= 1e-11 * Math.abs(value),
+    `${text} in ${unit} is ${JSON.stringify(found)}`,
+  );
 }
 
 test("commas, products and units are read into the unit of the API, in either system", () => {
   choose("si");
-  for (const [text, value] of [["37,5", 37.5], ["2*19", 38], ["1.5 in", 38.1], ["1 1/2 in", 38.1], ["=76/2", 38], ["3.8 cm", 38]]) reads(text, "mm", value);
+  for (const [text, value] of [
+    ["37,5", 37.5],
+    ["2*19", 38],
+    ["1.5 in", 38.1],
+    ["1 1/2 in", 38.1],
+    ["=76/2", 38],
+    ["3.8 cm", 38],
+  ])
+    reads(text, "mm", value);
 });
 
 test("a number without a unit is in the one that is shown", () => {
@@ -35,11 +46,22 @@ test("a number without a unit is in the one that is shown", () => {
 
 test("what is no value of the kind has a sentence, and nothing is nothing", () => {
   choose("si");
-  for (const [text, unit] of [["abc", "mm"], ["5 kg", "mm"], ["=rod/2", "mm"], ["1e400", "mm"], ["NaN", "N"], ["1/0", "mm"], ["5 mm", "N"]]) {
+  for (const [text, unit] of [
+    ["abc", "mm"],
+    ["5 kg", "mm"],
+    ["=rod/2", "mm"],
+    ["1e400", "mm"],
+    ["NaN", "N"],
+    ["1/0", "mm"],
+    ["5 mm", "N"],
+  ]) {
     const found = measured(text, unit);
     assert.equal(found.value, undefined, text);
     assert.match(found.wrong, /\.$/, text);
   }
-  assert.match(measured("abc", "mm").wrong, /“abc” is no length; write a number, in mm or with its unit/);
+  assert.match(
+    measured("abc", "mm").wrong,
+    /“abc” is no length; write a number, in mm or with its unit/,
+  );
   for (const text of ["", "  ", "="]) assert.deepEqual(measured(text, "mm"), { empty: true });
 });

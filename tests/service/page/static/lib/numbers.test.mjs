@@ -1,7 +1,18 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { ends, fromShown, grouped, inShown, limitText, readySystem, text, unitOf, valueOf, withUnit } from "../../../../../service/page/static/lib/numbers.js";
+import {
+  ends,
+  fromShown,
+  grouped,
+  inShown,
+  limitText,
+  readySystem,
+  text,
+  unitOf,
+  valueOf,
+  withUnit,
+} from "../../../../../service/page/static/lib/numbers.js";
 import { choose, INCH } from "../browser.mjs";
 import { draws } from "../draws.mjs";
 
@@ -19,7 +30,11 @@ test("a number is written with as many digits as asked, and whole ones in full",
   for (const value of drawn()) {
     for (const digits of [3, 5]) {
       const whole = Math.abs(value) >= 10 ** digits && Math.abs(value) < 1e6;
-      assert.equal(read(text(value, "", digits)), whole ? Math.sign(value) * Math.round(Math.abs(value)) : Number(value.toPrecision(digits)), `${value}`);
+      assert.equal(
+        read(text(value, "", digits)),
+        whole ? Math.sign(value) * Math.round(Math.abs(value)) : Number(value.toPrecision(digits)),
+        `${value}`,
+      );
     }
   }
 });
@@ -64,8 +79,14 @@ test("a limit is rounded to the side where all values are possible, by less than
       const step = Math.max(10 ** (Math.floor(Math.log10(Math.abs(shown))) - 4), 1e-12);
       const [up, down] = ["up", "down"].map((side) => read(limitText(value, "mm", side)));
       const room = 1.01e-10 * Math.abs(shown);
-      assert.ok(up >= shown - room && up < shown + 1.001 * Math.min(step, 1), `${up} above ${shown}`);
-      assert.ok(down <= shown + room && down > shown - 1.001 * Math.min(step, 1), `${down} below ${shown}`);
+      assert.ok(
+        up >= shown - room && up < shown + 1.001 * Math.min(step, 1),
+        `${up} above ${shown}`,
+      );
+      assert.ok(
+        down <= shown + room && down > shown - 1.001 * Math.min(step, 1),
+        `${down} below ${shown}`,
+      );
     }
   }
   choose("si");
@@ -88,10 +109,18 @@ test("counts have their thousands apart", () => {
 });
 
 test("a value is found by its name, whatever unit its key ends with", () => {
-  const record = { least_m_s: 1.5, least_m_s2: 2.5, greatest_mm: null, ratio: 3, note: "none", other_deg: "text" };
+  const record = {
+    least_m_s: 1.5,
+    least_m_s2: 2.5,
+    greatest_mm: null,
+    ratio: 3,
+    note: "none",
+    other_deg: "text",
+  };
   assert.deepEqual(valueOf(record, "least"), { value: 2.5, unit: "m/s^2" });
   assert.deepEqual(valueOf({ least_m_s: 1.5 }, "least"), { value: 1.5, unit: "m/s" });
   assert.deepEqual(valueOf(record, "greatest"), { value: null, unit: "mm" });
   assert.deepEqual(valueOf(record, "ratio"), { value: 3, unit: "" });
-  for (const name of ["note", "other", "absent", ""]) assert.deepEqual(valueOf(record, name), { value: null, unit: "" });
+  for (const name of ["note", "other", "absent", ""])
+    assert.deepEqual(valueOf(record, name), { value: null, unit: "" });
 });

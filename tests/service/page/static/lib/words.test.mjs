@@ -5,31 +5,79 @@ globalThis.localStorage = { getItem: () => null };
 const { inWords } = await import("../../../../../service/page/static/lib/words.js");
 
 const SAID = [
-  ["with a least transmission angle of 40 deg it is at most 1.2862; got equals 1.5; lower it to that, or lower constraints.transmission_angle to 27.4576 deg at most",
-    "with a least transmission angle of 40 deg it is at most 1.2862; got exactly 1.5; lower it to that, or lower the requirement on transmission angle to 27.4576 deg at most"],
-  ["within the ranges at most 522.162 mm is possible; got min 900 mm and max 950 mm; ask for less", "within the ranges at most 522.162 mm is possible; got at least 900 mm and at most 950 mm; ask for less"],
-  ["it is at most 1.2; got min 1.5 and max 1.6; lower it", "it is at most 1.2; got at least 1.5 and at most 1.6; lower it"],
+  [
+    "with a least transmission angle of 40 deg it is at most 1.2862; got equals 1.5; lower it to that, or lower constraints.transmission_angle to 27.4576 deg at most",
+    "with a least transmission angle of 40 deg it is at most 1.2862; got exactly 1.5; lower it to that, or lower the requirement on transmission angle to 27.4576 deg at most",
+  ],
+  [
+    "within the ranges at most 522.162 mm is possible; got min 900 mm and max 950 mm; ask for less",
+    "within the ranges at most 522.162 mm is possible; got at least 900 mm and at most 950 mm; ask for less",
+  ],
+  [
+    "it is at most 1.2; got min 1.5 and max 1.6; lower it",
+    "it is at most 1.2; got at least 1.5 and at most 1.6; lower it",
+  ],
   ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
-  ["a quantity that is held at one value cannot be an objective too; got constraints.time_ratio with equals; leave out one of the two",
-    "a quantity that is held at one value cannot be an objective too; got “exactly” among the requirements; leave out one of the two"],
-  ['it comes from masses that move or weigh, and from loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]', "it comes from masses that move or weigh, and from loads; got none that is not zero; give it under “Masses and loads”"],
-  ['it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"', "it needs a crank speed; got none; give it under “Motion”"],
-  ['unknown key "designs"; it belongs in [optimiser]; move it there', 'unknown entry "designs"; it belongs in “Search”; move it there'],
-  ["must be a list of tables, in double brackets; got a single one; write [[load]] for [load]", "must be a list; got a single entry; put it in a list"],
-  ["must be a single table, in single brackets; got a list of 2; write [mechanism] for [[mechanism]]", "must be a single entry; got a list of 2; keep one of them"],
-  ["a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle", "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle"],
-  ["it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md", "it comes from a material and pins; got none; give it under “Material and pins”"],
-  ["forward dynamics needs a motor; got a mechanism without a drive; add a [drive]", "forward dynamics needs a motor; got a mechanism without a drive; give it under “Motor and flywheel”"],
-  ['for a slow loaded stroke require slow_stroke = "outward" among the constraints; if it should be fast, require slow_stroke = "inward"',
-    "for a slow loaded stroke choose “outward” as the slow stroke, under Motion; if it should be fast, choose “inward” as the slow stroke, under Motion"],
-  ['slow_stroke = "inward" leaves only offsets from 0 to 20 mm of the range', "a slow stroke that is the inward one leaves only offsets from 0 to 20 mm of the range"],
-  ['masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0',
-    "masses are given but no gravity, so that nothing weighs; give the gravity under “Masses and loads”, 0 for none"],
-  ["position, velocity and acceleration diagrams at --at", "position, velocity and acceleration diagrams at a crank angle"],
+  [
+    "a quantity that is held at one value cannot be an objective too; got constraints.time_ratio with equals; leave out one of the two",
+    "a quantity that is held at one value cannot be an objective too; got “exactly” among the requirements; leave out one of the two",
+  ],
+  [
+    'it comes from masses that move or weigh, and from loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
+    "it comes from masses that move or weigh, and from loads; got none that is not zero; give it under “Masses and loads”",
+  ],
+  [
+    'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"',
+    "it needs a crank speed; got none; give it under “Motion”",
+  ],
+  [
+    'unknown key "designs"; it belongs in [optimiser]; move it there',
+    'unknown entry "designs"; it belongs in “Search”; move it there',
+  ],
+  [
+    "must be a list of tables, in double brackets; got a single one; write [[load]] for [load]",
+    "must be a list; got a single entry; put it in a list",
+  ],
+  [
+    "must be a single table, in single brackets; got a list of 2; write [mechanism] for [[mechanism]]",
+    "must be a single entry; got a list of 2; keep one of them",
+  ],
+  [
+    "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle",
+    "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle",
+  ],
+  [
+    "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md",
+    "it comes from a material and pins; got none; give it under “Material and pins”",
+  ],
+  [
+    "forward dynamics needs a motor; got a mechanism without a drive; add a [drive]",
+    "forward dynamics needs a motor; got a mechanism without a drive; give it under “Motor and flywheel”",
+  ],
+  [
+    'for a slow loaded stroke require slow_stroke = "outward" among the constraints; if it should be fast, require slow_stroke = "inward"',
+    "for a slow loaded stroke choose “outward” as the slow stroke, under Motion; if it should be fast, choose “inward” as the slow stroke, under Motion",
+  ],
+  [
+    'slow_stroke = "inward" leaves only offsets from 0 to 20 mm of the range',
+    "a slow stroke that is the inward one leaves only offsets from 0 to 20 mm of the range",
+  ],
+  [
+    'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0',
+    "masses are given but no gravity, so that nothing weighs; give the gravity under “Masses and loads”, 0 for none",
+  ],
+  [
+    "position, velocity and acceleration diagrams at --at",
+    "position, velocity and acceleration diagrams at a crank angle",
+  ],
   ["flywheel for a speed --fluctuation", "flywheel for a speed fluctuation"],
-  ["start from rest under [drive], steady running", "start from rest under “Motor and flywheel”, steady running"],
+  [
+    "start from rest under [drive], steady running",
+    "start from rest under “Motor and flywheel”, steady running",
+  ],
 ];
 
 for (const [sentence, words] of SAID) {
-  test(`"${sentence.slice(0, 40)} ..." has the words of the page`, () => assert.equal(inWords(sentence), words));
+  test(`"${sentence.slice(0, 40)} ..." has the words of the page`, () =>
+    assert.equal(inWords(sentence), words));
 }

@@ -17,7 +17,10 @@ test("crank pin and slider are a rod apart, the slider on the outer side, at eve
     const { slider_position_mm, transmission_angle_deg } = motionOf(linkage);
     slider_position_mm.forEach((position, at) => {
       const angle = (at * Math.PI) / 180;
-      const along = [position - linkage.crank_mm * Math.cos(angle), linkage.offset_mm - linkage.crank_mm * Math.sin(angle)];
+      const along = [
+        position - linkage.crank_mm * Math.cos(angle),
+        linkage.offset_mm - linkage.crank_mm * Math.sin(angle),
+      ];
       assert.ok(along[0] > 0);
       assert.ok(Math.abs(Math.hypot(...along) - linkage.rod_mm) < 1e-9 * linkage.rod_mm);
       const fromNormal = (Math.abs(Math.atan2(along[0], Math.abs(along[1]))) * 180) / Math.PI;
