@@ -14,6 +14,7 @@ PRETTIER := $(IN_NODE)/prettier --config $(JAVASCRIPT)/package.json --log-level 
 
 ifneq ($(shell sh -c 'command -v npm'),)
 lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(JAVASCRIPT)/openapi.d.ts
+	$(PRETTIER) --check
 	$(IN_NODE)/eslint --config $(JAVASCRIPT)/eslint.config.js --max-warnings 0 --cache --cache-location $(JS_CACHE)/eslint \
 	  $(JAVASCRIPT) service tests
 	$(IN_NODE)/tsc --project service/page --incremental --tsBuildInfoFile $(JS_CACHE)/types
