@@ -1,0 +1,91 @@
+"""The record of what the doors answer leaves nothing out, and masks what differs each time and nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from slidercrank.service.topics.discovery import TOPICS
+from tests.doors.comparing import Allowance, compare
+from tests.doors.contents import text_of
+from tests.doors.coverage import untried_operations, untried_options
+from tests.doors.masks import masked
+from tests.doors.scripts import Case, all_scripts
+
+CASES = [case for cases in all_scripts().values() for case in cases.values()]
+
+
+def test_every_option_of_every_command_is_recorded() -> None:
+    assert list(untried_options(CASES)) == []
+
+
+def test_an_option_that_no_case_has_is_named() -> None:
+    left = [case for case in CASES if "--lexicographic" not in case.typed]
+    assert {f"{name} --lexicographic" for name in ("export", "front", "report")} <= set(untried_options(left))
+
+
+def test_every_operation_and_every_topic_of_the_api_is_recorded_answered_and_refused() -> None:
+    assert list(untried_operations(CASES)) == []
+    for topic in TOPICS:
+        assert any(f"/topics/{topic}" in case.typed and case.code == 200 for case in CASES), topic
+        assert any(f"--show {topic}" in case.typed and case.code == 0 for case in CASES), topic
+
+
+def test_an_operation_that_no_case_asks_is_named() -> None:
+    left = [case for case in CASES if "/wishes" not in case.typed]
+    path = "GET /api/v1/jobs/{number}/wishes"
+    assert list(untried_operations(left)) == [f"{path} answered", f"{path} refused"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("runs/20260131-142501-feeder/front.csv", "runs/<run>-feeder/front.csv"),
+        ('"submitted": 1795375800.25, "run": ""', '"submitted": <time>, "run": ""'),
+        ('{"at": {"time_ratio": "1.2"}}', '{"at": {"time_ratio": "1.2"}}'),
+        ("Made 2026-01-31 14:25 UTC", "Made <time>"),
+        ('"seconds": 600', '"seconds": 600'),
+        ("http://127.0.0.1:41233/", "http://127.0.0.1:<port>/"),
+        ("/tmp/doors-x1/turn/runs and 12.5 mm", "<folder>/runs and 12.5 mm"),
+        (
+            "00:00:00  loading 0/2: 0 evaluated\n00:00:00  sampling 1/6: 256 evaluated\n",
+            "<time>  sampling 1/6: 256 evaluated\n",
+        ),
+        (
+            "".join(
+                f'    {{\n      "data": {{\n        "stage": "{stage}"\n      }}\n    }}\n'
+                for stage in ("loading", "end")
+            ),
+            '    {\n      "data": {\n        "stage": "end"\n      }\n    }\n',
+        ),
+        ("peak torque 110.25 N m at 120.5 deg", "peak torque 110.25 N m at 120.5 deg"),
+    ],
+)
+def test_what_differs_each_time_is_masked_and_numbers_are_not(text: str, expected: str) -> None:
+    assert masked(text, ["/tmp/doors-x1/turn"]) == expected
+
+
+def test_a_digit_a_key_and_a_missing_case_are_told_and_what_may_differ_is_not(tmp_path: Path) -> None:
+    for folder, digit, key in (("before", 5, "a"), ("after", 6, "c")):
+        record = text_of(f'{{"b": 1, "{key}": [1, 2]}}'.encode(), "application/json")
+        (tmp_path / folder).mkdir()
+        for name, text in (("same", "a"), ("digit", f"rod 12.2{digit} mm"), ("key", record)):
+            (tmp_path / folder / f"{name}.txt").write_text(text, encoding="utf-8")
+    (tmp_path / "before" / "gone.txt").touch()
+    found = compare(tmp_path / "before", tmp_path / "after", [])
+    assert list(found.differences) == ["digit", "gone", "key"]
+    assert "- rod 12.25 mm" in found.differences["digit"]
+    assert '+   "c": [1, 2]' in found.differences["key"]
+    some = [Allowance("d*", "four digits", "rod"), Allowance("gone", "left out"), Allowance("key", "other", "rod")]
+    assert list(compare(tmp_path / "before", tmp_path / "after", some).differences) == ["key"]
+    assert [one.used for one in some] == [2, 1, 0]
+
+
+def test_a_body_has_the_tables_and_the_texts_that_it_names() -> None:
+    case = Case(200, 'POST /check Accept=text/plain {"job": "@plain.toml", "files": {"m": "@@measured.csv"}}')
+    kind, content = case.body() or ("", b"")
+    assert case.rest[0] == {"Accept": "text/plain"}
+    assert kind == "application/json"
+    assert b'"name": "Feeder"' in content
+    assert b"crank_angle_deg,slider_position_mm" in content
