@@ -33,7 +33,7 @@ MASKS = (
     _mask(rf'("(?:{_TIMES})": ?)[0-9.e+]+', r"\1<time>", "times of jobs, events, wishes and kept designs"),
     _mask(r'("seconds": ?)[0-9]+\.(?!0\b)[0-9e.+-]+', r"\1<seconds>", "how long a search took"),
     _mask(
-        r"(, in |boxes in |<dt>Time of the search</dt>\n<dd>|Time of the search )[0-9.]+ s\b",
+        r"(, in |boxes in |<dt>Time of the search</dt>\n<dd>|Time of the search\s+)[0-9.]+\s+s\b",
         r"\1<seconds>",
         "how long a search took",
     ),
