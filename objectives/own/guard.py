@@ -127,14 +127,25 @@ def _end_with(asking: int) -> None:
 
 
 def _relay(printed: int) -> None:
-    """Pass on what is printed, up to `PRINTED`; read the rest too, so that nobody waits for a full pipe."""
-    left = PRINTED
+    """Pass on whole lines of what is printed, up to `PRINTED`; read the rest too, so nobody waits for a full pipe.
+
+    The last line ends even if the function does not end it: others write to the same log.
+    """
+    left, begun = PRINTED, b""
     while piece := os.read(printed, 1 << 16):
-        if left >= 0:
-            rest = _LEFT_OUT.encode() if len(piece) > left else b""
-            with contextlib.suppress(OSError):  # standard error is closed
-                os.write(2, piece[:left] + rest)
-            left -= len(piece)
+        if left < 0:
+            continue
+        rest = _LEFT_OUT.encode() if len(piece) > left else b""
+        lines, end, begun = (begun + piece[:left] + rest).rpartition(b"\n")
+        _write(lines + end)
+        left -= len(piece)
+    if begun:
+        _write(begun + b"\n")
+
+
+def _write(text: bytes) -> None:
+    with contextlib.suppress(OSError):  # standard error is closed
+        os.write(2, text)
 
 
 def _set(attribute: int, value: int) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
@@ -31,8 +30,6 @@ from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
-LONGEST_TOPICS = 30.0
-"""s, for the topics of one design."""
 
 Show = Annotated[
     list[Annotated[str, Field(max_length=500)]],
@@ -127,12 +124,6 @@ def _with_topics(
     """Return the record of a design with its topics, ready for JSON, and notes."""
     row, undefined = numbers_of(mechanism, linkage, own)
     analysed = analysis_of(
-        row, mechanism, linkage, topics, cancelled=over(LONGEST_TOPICS), lenient=lenient, undefined=undefined
+        row, mechanism, linkage, topics, cancelled=lambda: False, lenient=lenient, undefined=undefined
     )
     return json_ready(analysed.record()), analysed.notes + analysed.refused
-
-
-def over(seconds: float) -> Callable[[], bool]:
-    """Return a function that says whether so many s have passed since now."""
-    end = time.monotonic() + seconds
-    return lambda: time.monotonic() > end

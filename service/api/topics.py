@@ -15,7 +15,6 @@ from ..designs.turning import require_turning
 from ..runs.result import json_ready
 from ..topics.discovery import TOPICS
 from ..topics.topic import Topic, TopicOfDesign
-from .analysis import LONGEST_TOPICS, over
 from .computing import LongRoute
 from .exports import SEALED, of_type
 from .figures import require_figures
@@ -115,7 +114,7 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
         from ..render.formatting import plain_blocks
 
         found = asked.of(of, shown)
-        numbers = found.numbers(over(LONGEST_TOPICS))
+        numbers = found.numbers(lambda: False)
         blocks = [BlockModel(**vars(block)) for block in plain_blocks(found.blocks(numbers), asked.units)]
         record = found.numbers_in(json_ready(numbers), asked.units)
         answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
@@ -131,7 +130,7 @@ def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"], asked: As
     def make() -> tuple[tuple[str], bytes]:
         from ..figures.style import image
 
-        return (shown.key,), image(asked.of(topic, shown).figure(over(LONGEST_TOPICS), asked.units), kind)
+        return (shown.key,), image(asked.of(topic, shown).figure(lambda: False, asked.units), kind)
 
     return shown.found.made(shown.key, asked.kind(topic, kind), make)
 

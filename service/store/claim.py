@@ -145,7 +145,14 @@ class Claim:
         ]
         content = None if result.exact is None else packed_exact(result.exact)
 
+        left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
+        found = {"result": text_of(record), "summary": text_of(summary_of(result))}
+
         def rest(connection: Connection) -> None:
+            own = jobs.c.id == self.job.id
+            sums = checksum(connection.scalar(select(jobs.c.tables).where(own)), *found.values())
+            sums += checksum(*(str(row["cells"]) for row in rows), content)
+            connection.execute(update(jobs).where(own).values(checksum=sums))
             for table in (designs, exact):
                 connection.execute(delete(table).where(table.c.job == self.job.id))
             if rows:
@@ -156,10 +163,6 @@ class Claim:
             if result.status != "cancelled":  # a cancelled one can go on
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
-        left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
-        found = {"result": text_of(record), "summary": text_of(summary_of(result))}
-        front = checksum(*(str(row["cells"]) for row in rows), content)
-        found["checksum"] = checksum(found["result"], found["summary"]) + front
         self._end(result.status, result.message, {**found, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:

@@ -106,14 +106,15 @@ def _miscounts(connection: Connection) -> list[str]:
 
 
 def _damaged_results(connection: Connection) -> list[str]:
-    """Return the jobs whose results differ from their checksums."""
-    query = select(jobs.c.id, jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.checksum.is_not(None))
+    """Return the jobs that differ, with their results, from their checksums."""
+    summed = (jobs.c.tables, jobs.c.result, jobs.c.summary)
+    query = select(jobs.c.id, jobs.c.checksum, *summed).where(jobs.c.checksum.is_not(None)).order_by(jobs.c.id)
     found = []
-    for job, result, summary, sums in connection.execute(query.order_by(jobs.c.id)):
+    for job, sums, *parts in connection.execute(query):
         cells = select(designs.c.cells).where(designs.c.job == job).order_by(designs.c.number)
         content = connection.execute(select(exact.c.content).where(exact.c.job == job)).scalar_one_or_none()
         try:
-            require_sum(sums[:64], result, summary)
+            require_sum(sums[:64], *parts)
             require_sum(sums[64:], *connection.execute(cells).scalars(), content)
         except ValueError as error:
             found.append(f"the result of job {job} is damaged: {error}")

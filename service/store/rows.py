@@ -50,12 +50,12 @@ def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
 
     Raises `RunError` if it has no result, or a damaged one.
     """
-    query = select(jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.id == job.id)
-    text, summary, sums = connection.execute(query).one()
+    query = select(jobs.c.tables, jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.id == job.id)
+    tables, text, summary, sums = connection.execute(query).one()
     if text is None:
         raise RunError(f"job {job.id} has no result: it is {job.state}; wait for it, or see its events")
     try:
-        require_sum((sums or "")[:64], text, summary)
+        require_sum((sums or "")[:64], tables, text, summary)
         record = json.loads(text)
     except ValueError as error:
         raise damaged(job.id, error) from error

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from alembic.config import Config
     from alembic.script import ScriptDirectory
 
-LATEST = "0006"
+LATEST = "0007"
 """Version of the tables that this software knows, so that a store of today is opened without Alembic."""
 LOCK = 0x51C7  # PostgreSQL's advisory lock of whoever changes the tables
 

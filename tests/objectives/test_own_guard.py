@@ -115,6 +115,7 @@ def babbles(designs):
     chance = random.Random(1)
     for word in range(2000):
         print(word, "." * chance.randrange(800), file=chance.choice((sys.stdout, sys.stderr)))
+    print("and no more", end="", flush=True)
     return designs.crank
 """
 
@@ -284,7 +285,7 @@ def test_a_printed_line_comes_at_once(worker: Callable[..., Worker], capfd: pyte
     until(lambda: next(others, None) is None)
 
 
-def test_what_is_below_the_bound_is_passed_on_as_it_is(
+def test_what_is_below_the_bound_is_passed_on_with_an_end_of_its_last_line(
     worker: Callable[..., Worker], capfd: pytest.CaptureFixture[str]
 ) -> None:
     chance = random.Random(1)
@@ -296,4 +297,4 @@ def test_what_is_below_the_bound_is_passed_on_as_it_is(
     asked(Mechanism(), DESIGNS, None)
     asked.close()
     assert len(expected) < guard.PRINTED
-    assert capfd.readouterr().err == expected
+    assert capfd.readouterr().err == f"{expected}and no more\n"

@@ -22,7 +22,13 @@ from tests.service.api.serving import client_of
 from tests.service.conftest import Command
 from tests.service.store.contents import add, result, taken
 
-PARTS = {"record": jobs.c.result, "summary": jobs.c.summary, "designs": designs.c.cells, "exact": exact.c.content}
+PARTS = {
+    "job": jobs.c.tables,
+    "record": jobs.c.result,
+    "summary": jobs.c.summary,
+    "designs": designs.c.cells,
+    "exact": exact.c.content,
+}
 SENTENCE = "the result of job 1 is damaged: "
 
 
@@ -71,7 +77,7 @@ def test_a_damaged_result_is_refused_and_named_by_the_doctor(
     change(solved, part, flip_bit if part == "exact" else flip_digit)
     with pytest.raises(RunError, match=f"{SENTENCE}.*; submit the job again"):
         solved.result(1)
-    if part in ("record", "summary"):
+    if part in ("job", "record", "summary"):
         with pytest.raises(RunError, match=SENTENCE):
             solved.record(1)
     assert len(solved.result(2).designs) == 2
