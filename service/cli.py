@@ -101,13 +101,15 @@ class Commands(TyperGroup):
 
 @contextlib.contextmanager
 def _input_warnings_said() -> Iterator[None]:
-    """Say each warning about an input on a line of its own, without file and line of the program."""
+    """Say each warning about an input once, on a line of its own, without file and line of the program."""
     with warnings.catch_warnings():
-        others = warnings.showwarning
+        others, shown = warnings.showwarning, set[str]()
 
         def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
             if issubclass(category, InputWarning):
-                say(f"warning: {message}")
+                if str(message) not in shown:
+                    say(f"warning: {message}")
+                shown.add(str(message))
             else:
                 others(message, category, *place, **more)
 

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
-from ..input_warning import warn_user
 from ..kernel.arithmetic import magnitude
 from ..kinematics import geometry
 from ..kinematics.position import Motion, motion
@@ -27,7 +26,6 @@ from .values import (
     dimensions,
     direction,
     in_a_turn,
-    in_both_units,
     in_mm,
     numbers,
 )
@@ -66,11 +64,9 @@ class Linkage:
     def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
         """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
 
-        Warns of lengths that were probably meant in mm.
+        A linkage by itself has no scale: lengths in another unit serve as well where nothing but it is asked.
         """
         values = dimensions(crank, rod, offset)
-        if (doubt := in_both_units(value.real for value in values)) is not None:
-            warn_user(f"lengths of a linkage are in m: {doubt}")
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
         for name, value in zip(DIMENSIONS, values, strict=True):

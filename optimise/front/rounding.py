@@ -109,7 +109,7 @@ def ranges_or_sizes(values: Array, of: Array, sizes: Sequence[float]) -> Array:
 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
     """Return both readings of allowed misses without a unit that are a great part of what is required."""
-    given, found = {name: value for name, value in allow.items() if not isinstance(value, str)}, []
+    given, found = {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)}, []
     bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
     for name, value in _allowed(part, given).items():
         of = part.quantity(name)
@@ -120,13 +120,11 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
 
 def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float]:
     """Return how far requirements may be missed, SI, by quantity. A slow stroke that is required is not one of them."""
-    if not isinstance(given, Mapping):
-        raise InputError(f'what may be missed comes by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}')
     constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
     known = {name: part.quantity(name) for name in constraints}
     names = {alias: name for name, of in known.items() for alias in (of.field, of.stem, name)}
     found: dict[str, float] = {}
-    for name, value in given.items():
+    for name, value in _require_names(given).items():
         if name not in names:
             raise InputError(
                 f"only requirements of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
@@ -139,6 +137,13 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
         except InputError as error:
             raise InputError(f"the allowed miss of {name} {error}") from None
     return found
+
+
+def _require_names(given: Mapping[str, float | str]) -> Mapping[str, float | str]:
+    """Return allowed misses. Raises `InputError` where they do not come by quantity."""
+    if not isinstance(given, Mapping):
+        raise InputError(f'what may be missed comes by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}')
+    return given
 
 
 def _miss(value: float | str, of: Quantity, constraint: Constraint) -> float:

@@ -179,12 +179,12 @@ class _Process:
         return int(self._process.exitcode or 0)
 
     def is_alive(self) -> bool:
-        """Whether it can be asked: one that nobody asked for long has ended."""
-        return bool(self._process.is_alive())
+        """Whether it can be asked: one that nobody asked for long has ended. Its pipe ends before it is seen to."""
+        return bool(self._process.is_alive()) and not self._connection.poll()
 
     def end(self) -> None:
         """End it, if it has not ended."""
-        if self.is_alive():
+        if self._process.is_alive():
             self._process.kill()
 
 

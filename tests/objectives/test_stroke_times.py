@@ -87,7 +87,7 @@ def times_by_integration(machine: Mechanism, design: Array, lead: float = 0.0) -
         method="DOP853",
         rtol=1e-13,
         atol=1e-13,
-        max_step=period / 60.0,
+        max_step=period / 600.0,  # the events are read from between the steps, where the profile may have knots
         events=velocity,
     )
     assert found.t_events is not None

@@ -135,6 +135,7 @@ def test_a_requirement_that_zero_does_not_meet_is_refused_where_every_design_has
         solve(replace(stated, mechanism=replace(stated.mechanism, loads=())))
 
 
+@pytest.mark.filterwarnings("ignore:requirements are in SI")  # 1e9 of whatever
 def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> None:
     idle = 0
     for causes in ((), ("speed",), ("speed", "masses"), ("speed", "heavy crank"), ("gravity", "masses"), CAUSES):

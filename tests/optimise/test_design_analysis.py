@@ -39,8 +39,8 @@ def test_undefined_quantities_say_why_instead_of_a_number() -> None:
     still = sc.analyse(Mechanism(slider_mass=0.8), DESIGN)
     for name, words in (
         ("position_error", "tolerances"),
-        ("peak_slider_speed", "speed 0"),
-        ("peak_power", "speed 0"),
+        ("peak_slider_speed", "needs a crank speed; got none"),
+        ("peak_power", "needs a crank speed; got none"),
         ("peak_torque", "masses that move or weigh|speed"),
     ):
         assert name not in still or name == "peak_torque"

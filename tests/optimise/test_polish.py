@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.optimise.search.pieces import Rows
-from slidercrank.optimise.search.polish import convex, polish
+from slidercrank.optimise.search.polish import ITERATIONS, convex, polish
+from slidercrank.optimise.search.programme import FIRM, ROUNDING
 
 Array = NDArray[np.float64]
 Function = Callable[[Any, Any], Any]
@@ -238,12 +239,15 @@ def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
 
 
 def test_a_design_that_is_best_in_an_objective_stays_so_where_its_slope_vanishes() -> None:
-    """From the least c x**2 nothing but its curvature holds it: a weight K lets it lose up to 1 / (4 K**2 c)."""
+    """From the least c x**2 nothing but its curvature holds it: a weight K lets it lose up to 1 / (4 K**2 c).
+
+    Each step may besides lose what counts as rounding, which some processors come to use.
+    """
     goals = Analytic([[lambda x, y: 0.1 * (x - 0.5) ** 2], [lambda x, y: -x]])
     given = (goals, np.array([[0.5, 0.0]]), np.ones(2))
     loose, firm = polish(*given), polish(*given, best_in=np.array([0]))
     assert 1e-7 < loose.values[0, 0] < 3e-6
-    assert firm.values[0, 0] < 1e-11
+    assert firm.values[0, 0] < 1.0 / (4.0 * FIRM**2 * 0.1) + ITERATIONS * ROUNDING
 
 
 def test_a_design_that_is_best_in_an_objective_gains_in_others_where_that_costs_nothing() -> None:

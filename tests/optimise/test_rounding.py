@@ -275,7 +275,10 @@ def plain_front() -> ParetoFront:
         (float("inf"), "must be above zero and finite; got inf"),
         (True, "must be above zero and finite; got True"),
         ("1 mm", "must be above zero and finite; got '1 mm'"),
-        (1e-13, "the step of crank must be 1e-09 of its range's greatest number or more; got 1e-13 of 0.2"),
+        (
+            1e-13,
+            "step of crank must be at least 2e-07 mm, 1e-09 of 200 mm, the greatest in its range; got 1e-10 mm",
+        ),
         ({"rod": 0.7}, "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
         ({"rods": 0.001}, "a step is for one of crank, rod, offset; got 'rods'"),
         ({}, "say what to round"),

@@ -143,5 +143,5 @@ def test_a_service_ends_soon_though_a_request_is_at_a_function_that_loops(tmp_pa
         assert serving.process.wait(30.0) == 0
         assert time.monotonic() - begin < 5.0
         asking.join()
-    assert at_work
-    assert not any(map(alive, at_work))
+        assert at_work
+        assert serving.until(lambda: not any(map(alive, at_work)), 5.0)

@@ -449,7 +449,7 @@ def test_a_front_whose_loaded_stroke_is_fast_says_so_and_shows_the_slow_stroke(o
     found = fronts.front(fronts.FOUR[:2], designs=4)
     number = put_in(store, result_of(found, "x"), tomllib.loads(fronts.JOB))
     page = open_page(store, f"#/jobs/{number}")
-    expect(page.locator("main")).to_contain_text("Warning: in 4 of 4 designs the stroke that the load acts against")
+    expect(page.locator("main")).to_contain_text("Warning: in 4 of 4 designs the loaded stroke")
     table = page.locator("table.designs")
     expect(table.get_by_role("columnheader", name="slow stroke")).to_be_visible()
     expect(table.locator("tbody tr td:last-child")).to_have_text(["inward"] * 4)
