@@ -82,6 +82,13 @@ def test_checkout_holds_no_symbolic_links(root: Path) -> None:
     assert [line for line in tracked.stdout.splitlines() if line.startswith("120000")] == []
 
 
+def test_nothing_that_is_ignored_is_in_the_checkout(root: Path) -> None:
+    if not (root / ".git").exists():
+        pytest.skip("no checkout of git")
+    command = ["git", "ls-files", "--cached", "--ignored", "--exclude-standard"]
+    assert subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout == ""
+
+
 @pytest.mark.parametrize("folder", ORDER)
 def test_imports_point_one_way(root: Path, folder: str) -> None:
     allowed = ORDER[: ORDER.index(folder) + 1]
