@@ -59,6 +59,7 @@ def serve(
     from ..api.computing import Computing
     from ..api.server import listen, names_of, run_server, url_of
     from ..api.settings import Settings
+    from ..workers.heartbeat import end_children
     from ..workers.supervisor import Supervisor
 
     secret, made = _token(token, no_token, host)
@@ -80,6 +81,7 @@ def serve(
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
             run_server(app, socket, asked=termination.asked, stopping=supervisor.leave)
+    end_children()  # the fork server, which takes half a second to end by itself
     _leave_requests()
 
 

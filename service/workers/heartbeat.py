@@ -183,6 +183,12 @@ class Heartbeat:
 
 def leave(code: int) -> NoReturn:
     """End this process at once, whatever its other threads do, and before it its children with their groups."""
+    end_children()
+    os._exit(code)
+
+
+def end_children() -> None:
+    """Kill the children of this process, theirs, and their groups."""
     import psutil
 
     waiting = psutil.Process().children()
@@ -195,4 +201,3 @@ def leave(code: int) -> NoReturn:
             if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:
                 os.killpg(child.pid, signal.SIGKILL)
             child.kill()
-    os._exit(code)

@@ -166,11 +166,8 @@ def says(process: psutil.Process, word: str) -> bool:
         return False
 
 
-def left_over(verdict: Verdict, serving: Serving, within: float = 10.0) -> None:
-    """Say which processes are left of a service that has ended.
-
-    A fork server that was just started sees the end of its service when its imports, of some seconds, are done.
-    """
+def left_over(verdict: Verdict, serving: Serving, within: float = 2.0) -> None:
+    """Say which processes are left of a service that has ended."""
     _, left = psutil.wait_procs([process for process in serving.seen.values() if alive(process)], timeout=within)
     for process in left:
         if alive(process):

@@ -25,7 +25,7 @@ from slidercrank.service.api.computing import Computing
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Job, Store
-from tests.faults.serving import Serving, says
+from tests.faults.serving import Serving, alive, says
 from tests.service import fronts as made
 from tests.service.api.demanding import MOST, client_of, demanding, noted
 from tests.service.api.fixed_front import Solved, put_in
@@ -150,6 +150,20 @@ def test_a_service_that_is_killed_leaves_no_process_that_computes(tmp_path: Path
         serving.process.kill()
         assert len(computing) > 1
         assert psutil.wait_procs(computing, timeout=10.0)[1] == []
+
+
+@pytest.mark.slow
+def test_a_service_that_ends_leaves_no_fork_server_for_any_time(tmp_path: Path) -> None:
+    with Serving(f"sqlite:///{tmp_path}/store.db") as serving:
+        serving.until_ready()
+        serving.ask("/check", {"job": EXAMPLE})
+        computing = [process for process in serving.look_at_processes() if says(process, "forkserver")]
+        assert len(computing) > 1
+        serving.stop_watching()
+        serving.process.terminate()
+        assert serving.process.wait(30.0) == 0
+        _, left = psutil.wait_procs(computing, timeout=0.1)  # by itself it takes half a second
+        assert not any(map(alive, left))
 
 
 class _Elsewhere:
