@@ -202,9 +202,8 @@ def _with_a_quote(line: str) -> Iterator[tuple[str, str]]:
 def _with_decimal_points(line: str) -> tuple[str, str]:
     """Return a line of decimal commas between semicolons with points between commas."""
     decimal = re.sub(r"(\d),(\d)", r"\1.\2", line)
-    return "values must be separated by commas, and decimals by a point", line if decimal == line else _COMMAS(decimal)[
-        1
-    ]
+    rule = "values must be separated by commas, and decimals by a point"
+    return rule, line if decimal == line else _COMMAS(decimal)[1]
 
 
 def _with_brackets(line: str) -> tuple[str, str]:
