@@ -1,5 +1,7 @@
 /** Curves of the API that are shown, and those made of several of them. */
 
+import { capital } from "../lib/words.js";
+
 const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
@@ -61,7 +63,7 @@ export function panelsOf(columns, designs) {
   ).filter(some);
   return found.map(({ key, title, unit }) => ({
     key,
-    title: title.charAt(0).toUpperCase() + title.slice(1),
+    title: capital(title),
     unit,
   }));
 }

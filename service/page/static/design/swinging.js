@@ -6,6 +6,7 @@ import { readySystem, text, unitOf, valueOf } from "../lib/numbers.js";
 import { extremeRows, HEADS, table } from "./extremes.js";
 import { scrolled } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
 
 /** @type {Record<string, string>} */
 const TITLES = {
@@ -43,9 +44,7 @@ export async function swinging(place, { job, number, signal }) {
           "Extremes of every curve",
           table("Extremes of every curve", HEADS, extremeRows(found.extremes)),
         ),
-        found.notes.map((note) =>
-          h("p", { class: "quiet hint" }, `${note.charAt(0).toUpperCase()}${note.slice(1)}.`),
-        ),
+        found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)),
       );
     draw();
     window.addEventListener("units", draw, { signal });

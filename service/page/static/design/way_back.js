@@ -6,6 +6,7 @@ import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { scrolled } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
 
 /** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
 /** @type {[Key, string, string][]} */
@@ -102,10 +103,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   /** @param {string} sentence */
   function refuse(sentence) {
     found = null;
-    fill(
-      answer,
-      h("p", { class: "bad", role: "alert" }, sentence.charAt(0).toUpperCase() + sentence.slice(1)),
-    );
+    fill(answer, h("p", { class: "bad", role: "alert" }, capital(sentence)));
   }
 
   const reach = () => `between ${text(ends[0], "mm")} and ${withUnit(ends[1], "mm")}`;
@@ -205,7 +203,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
         "p",
         { class: "quiet hint" },
         "Strokes are those of a crank that turns counter-clockwise.",
-        note ? ` ${note.charAt(0).toUpperCase()}${note.slice(1)}.` : null,
+        note ? ` ${capital(note)}.` : null,
       ),
     );
   }

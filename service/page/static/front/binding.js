@@ -6,6 +6,7 @@ import { fill, h } from "../lib/dom.js";
 import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { measured } from "../lib/measured.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -46,7 +47,7 @@ export function bindingPanel(explorer) {
   function refuse(sentence) {
     place.hidden = false;
     wrong.hidden = sentence === "";
-    wrong.textContent = sentence && `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`;
+    wrong.textContent = sentence && `${capital(sentence)}.`;
   }
 
   function show() {

@@ -1,6 +1,7 @@
 /** How two quantities of designs go together: their rank correlation, in words and for every pair of objectives. */
 
 import { fill, h } from "../lib/dom.js";
+import { capital } from "../lib/words.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -56,7 +57,7 @@ export function inWords(x, y, value, count) {
   const numbers = `(rank correlation ${value.toFixed(2).replace("-", "−")}, ${count} designs)`;
   return often
     ? `With more ${x} comes ${often} ${value > 0 ? "more" : "less"} ${y} ${numbers}.`
-    : `${x.charAt(0).toUpperCase()}${x.slice(1)} and ${y} hardly go together ${numbers}.`;
+    : `${capital(x)} and ${y} hardly go together ${numbers}.`;
 }
 
 /** Return {place, draw()}: the pair of the scatter in words, and every pair of objectives to choose from. @param {Explorer} explorer */

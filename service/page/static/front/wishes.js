@@ -1,5 +1,7 @@
 /** Wishes for the objectives of a front: to and from the address, to the service and from it. */
 
+import { capital } from "../lib/words.js";
+
 /**
  * @typedef {"free" | "value" | "improve" | "keep" | "limit"} Kind
  * @typedef {{ kind: Kind, value?: number }} Wish value: in the unit of the API
@@ -96,7 +98,7 @@ export function placed(detail, objectives) {
     .map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) }))
     .filter(({ at }) => at >= 0);
   named.sort((one, other) => one.at - other.at || other.quantity.length - one.quantity.length);
-  const text = `${detail.charAt(0).toUpperCase()}${detail.slice(1)}.`;
+  const text = `${capital(detail)}.`;
   return { id: named.length === 1 ? named[0].quantity : "", text };
 }
 

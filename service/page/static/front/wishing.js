@@ -11,6 +11,7 @@ import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
@@ -284,11 +285,7 @@ export function wishingPanel(explorer) {
     none.hidden = !chosen.wish;
     if (!found) return fill(answer);
     const [head] = found.sentences;
-    const sentence = h(
-      "p",
-      { class: found.possible ? "good" : null },
-      `${head.charAt(0).toUpperCase()}${head.slice(1)}.`,
-    );
+    const sentence = h("p", { class: found.possible ? "good" : null }, `${capital(head)}.`);
     const { design: wished } = found;
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);

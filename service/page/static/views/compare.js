@@ -8,6 +8,7 @@ import { fill, h } from "../lib/dom.js";
 import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
 
 export const title = "Compare runs";
 
@@ -221,9 +222,7 @@ export async function show(place, { query, signal }) {
       );
       fill(
         words,
-        found.sentences.map((sentence) =>
-          h("li", {}, `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}.`),
-        ),
+        found.sentences.map((sentence) => h("li", {}, `${capital(sentence)}.`)),
       );
       if (!found.differences.length)
         return fill(
