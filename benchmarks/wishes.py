@@ -7,9 +7,9 @@ from time import perf_counter
 
 import numpy as np
 
+from slidercrank.optimise.decisions.wish import Wishes
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.questions.wish import Wishes
 from slidercrank.optimise.solve import solve
 
 from .report import Row

@@ -86,6 +86,9 @@ if TYPE_CHECKING:
     from slidercrank.optimise.adapters.pymoo import pymoo_problem
     from slidercrank.optimise.adapters.standard_form import StandardForm, standard_form
     from slidercrank.optimise.adapters.torch import torch_function
+    from slidercrank.optimise.decisions.like import like
+    from slidercrank.optimise.decisions.quantities import quantities
+    from slidercrank.optimise.decisions.wish import wish
     from slidercrank.optimise.front.front import ParetoFront
     from slidercrank.optimise.front.picking import Priority
     from slidercrank.optimise.job import job_schema, load_job
@@ -93,9 +96,6 @@ if TYPE_CHECKING:
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
     from slidercrank.optimise.problem.problem import Problem
     from slidercrank.optimise.problem.requirements import Constraint, Objective
-    from slidercrank.optimise.questions.like import like
-    from slidercrank.optimise.questions.quantities import quantities
-    from slidercrank.optimise.questions.wish import wish
     from slidercrank.optimise.solve import solve
 
     __version__: str
@@ -120,9 +120,9 @@ else:
         "objectives.tables.evaluate": ("evaluate",),
         "optimise.problem.problem": ("Problem",),
         "optimise.problem.requirements": ("Constraint", "Objective"),
-        "optimise.questions.like": ("like",),
-        "optimise.questions.quantities": ("quantities",),
-        "optimise.questions.wish": ("wish",),
+        "optimise.decisions.like": ("like",),
+        "optimise.decisions.quantities": ("quantities",),
+        "optimise.decisions.wish": ("wish",),
         "optimise.solve": ("solve",),
     }
 

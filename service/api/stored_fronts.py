@@ -30,8 +30,8 @@ from .models import PLAIN_DIGITS, JobNumber
 from .settings import part_of_app
 
 if TYPE_CHECKING:
+    from ...optimise.decisions.wish import Wishes
     from ...optimise.front.front import ParetoFront
-    from ...optimise.questions.wish import Wishes
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
@@ -71,7 +71,7 @@ class StoredFront:
     @cached_property
     def wishes(self) -> Wishes:
         """The starts for wishes on the front. Raises `InputError` where nothing can be wished."""
-        from ...optimise.questions.wish import Wishes
+        from ...optimise.decisions.wish import Wishes
 
         return Wishes(self.front)
 

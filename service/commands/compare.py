@@ -26,7 +26,7 @@ from .ending import NoDesigns
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.questions.compare import Comparison
+    from ...optimise.decisions.compare import Comparison
 
 _COLUMNS = {
     "run": "{place} {run}",
@@ -63,7 +63,7 @@ def compare(
 
     The runs must have the same objectives; their constraints and machines may differ.
     """
-    from ...optimise.questions import compare as comparison
+    from ...optimise.decisions import compare as comparison
 
     compared = _read(run, runs_place(runs))
     found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)

@@ -50,8 +50,8 @@ def like(
     It is Pareto-optimal for the run's job with the conditions added, and of those designs the nearest, objectives by
     their range over the run's front. Nothing is saved.
     """
+    from ...optimise.decisions.like import distance, nearest
     from ...optimise.front.hypervolume import scaling
-    from ...optimise.questions.like import distance, nearest
 
     folder, result, front = front_of_run(run, runs, number)
     problem = replace(front.problem, name=result.name)
@@ -77,8 +77,8 @@ def like(
 
 def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
+    from ...optimise.decisions.like import common
     from ...optimise.problem.requirements import Constraint
-    from ...optimise.questions.like import common
     from ..designs.requirements import names_of
 
     names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}

@@ -25,8 +25,8 @@ from .ending import end_without_design
 from .run_choice import front_of_run
 
 if TYPE_CHECKING:
+    from ...optimise.decisions.wished import Wished
     from ...optimise.front.front import ParetoFront
-    from ...optimise.questions.wished import Wished
     from ..store.wishes import MadeWish
 
 _EXAMPLE = '--at "peak_torque=110 N m"'
@@ -60,7 +60,7 @@ def wish(
     its range over the front. Objectives that are not named are free. The exit code is 3 where no design stays within
     what may worsen. The wish is noted among those of the run, which --list shows.
     """
-    from ...optimise.questions.wish import wish as nearest
+    from ...optimise.decisions.wish import wish as nearest
 
     if earlier == bool(at):
         raise InputError(f"either a wish or --list; got {'both' if at else 'neither'}; write it like {_EXAMPLE}")
@@ -83,7 +83,7 @@ def wish(
 
 def _list(folder: Path, title: str, front: ParetoFront, units: System, *, json: bool) -> None:
     """Write the wishes that were made of a run, the latest first, each solved again."""
-    from ...optimise.questions.wish import Wishes
+    from ...optimise.decisions.wish import Wishes
 
     made = made_wishes(folder)
     with waiting("wishing"):

@@ -10,9 +10,9 @@ from ..runs.result import json_ready, rows_of
 from .shown_units import row_in
 
 if TYPE_CHECKING:
+    from ...optimise.decisions.wished import Outcome, Wished
+    from ...optimise.decisions.wishes import Wish
     from ...optimise.front.front import ParetoFront
-    from ...optimise.questions.wished import Outcome, Wished
-    from ...optimise.questions.wishes import Wish
 
 
 def wished_record(answer: Wished, units: System = "metric") -> dict[str, Any]:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from ...objectives.counted import counted
 from ...objectives.kinds import unit_text
+from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
-from ...optimise.questions.price_of_robustness import robust_cost
 from ..render.numerals import with_unit
 from ..runs.result import Wanted, wanted_of
 from .marks import BETTER, arrowed

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.optimise.decisions.like import like
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
-from slidercrank.optimise.questions.like import like
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem, shipped_front

@@ -11,11 +11,11 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.optimise.decisions.like import Ends, distance, extended, like
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import scaling
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Sense
-from slidercrank.optimise.questions.like import Ends, distance, extended, like
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem
 

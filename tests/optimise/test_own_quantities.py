@@ -17,10 +17,10 @@ from slidercrank.objectives.kinds import Face, kind_in
 from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
+from slidercrank.optimise.decisions.like import like
 from slidercrank.optimise.job import files_beside, load_job, parse_job
 from slidercrank.optimise.job.own import FormulaPart, named
 from slidercrank.optimise.problem.requirements import Constraint, Objective
-from slidercrank.optimise.questions.like import like
 from slidercrank.optimise.solve import solve
 
 PAGE = Path(__file__).parents[2] / "docs" / "own-quantities.md"

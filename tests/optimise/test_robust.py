@@ -11,11 +11,11 @@ import pytest
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.machine.mechanism import Tolerance, Tolerances
 from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.optimise.decisions.price_of_robustness import robust_cost
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, nominal, robust, robust_quantities
-from slidercrank.optimise.questions.price_of_robustness import robust_cost
 from slidercrank.optimise.search.elimination import sheets
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

@@ -9,13 +9,13 @@ import pytest
 
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
+from slidercrank.optimise.decisions.wish import Wishes, wish
+from slidercrank.optimise.decisions.wished import Wished
+from slidercrank.optimise.decisions.wishes import aimed
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job.tables import problem as stated
 from slidercrank.optimise.methods.scalar import SUM
 from slidercrank.optimise.problem.table_columns import choice_field
-from slidercrank.optimise.questions.wish import Wishes, wish
-from slidercrank.optimise.questions.wished import Wished
-from slidercrank.optimise.questions.wishes import aimed
 from slidercrank.optimise.solve import solve
 from tests.optimise.achievement import Independent, Wanted
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped_front

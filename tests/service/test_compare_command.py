@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from slidercrank.optimise.decisions.compare import compare
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.questions.compare import compare
 from slidercrank.service.figures.comparison import GREATEST, Drawn, comparison_matrix
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder

@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from slidercrank.optimise.questions.wish import wish
+from slidercrank.optimise.decisions.wish import wish
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.jobs.stores import open_store
