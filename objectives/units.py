@@ -129,6 +129,7 @@ _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]
 _INVERSE = re.compile(r"^1?\s*/")
 _SPREAD = re.compile(rf"({_NUMBER})\s*(.*?)\s*(?:\+/?-|±)\s*({_NUMBER})\s*(.*)", re.DOTALL)
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
+_IN = re.compile(r"\s*in[\s_]+(?=\S)(?!(?:lbf|ozf)\s*$)", re.IGNORECASE)
 _LONGEST = 60
 _GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
 SPACES = "\u00a0\u2007\u2009\u202f"
@@ -307,6 +308,12 @@ def closest(word: str, words: Iterable[str]) -> str | None:
 def squeezed(unit: str) -> str:
     """Return the letters and digits of a unit: Nm for N_m, N m and N·m."""
     return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
+
+
+def without_in(text: str) -> str:
+    """Return a unit without the "in" of "force in N" before it; no torque but those in lbf and ozf has an inch."""
+    stated = _IN.match(text)
+    return text if stated is None else text[stated.end() :]
 
 
 def symbol_in(text: str, kind: Kind) -> str | None:

@@ -16,7 +16,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ..kinds import ANGLE, SHOWN, TIME, Face, Kind
 from ..quantity import Array
-from ..units import squeezed
+from ..units import squeezed, without_in
 from .curve_extremes import every_curve, undefined_because
 
 if TYPE_CHECKING:
@@ -45,7 +45,8 @@ class Measured:
     """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is none.
 
     left_out: columns that mean nothing here, or are empty. without_angle: rows that were left out, as they have no
-    crank angle. by_time: the crank angle is the crank speed times the time.
+    crank angle. by_time: the crank angle is the crank speed times the time. understood: what was read of a file, in
+    words.
     """
 
     crank_angle: Array
@@ -53,6 +54,7 @@ class Measured:
     left_out: tuple[str, ...] = ()
     without_angle: int = 0
     by_time: bool = False
+    understood: str = ""
 
 
 def columns_of(
@@ -61,8 +63,9 @@ def columns_of(
     """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
 
     A column is called as in the tables of this project: slider_position_mm, slider_position_in, "slider position [m]",
-    torque_N_m. units: further ones than those in which values are shown. Raises `InputError` for a known name without
-    its unit or with one of another kind, for two columns of the same, and without a crank angle or a curve.
+    torque_N_m, "torque in N m". units: further ones than those in which values are shown. Raises `InputError` for a
+    known name without its unit or with one of another kind, for two columns of the same, and without a crank angle or
+    a curve.
     """
     names = [str(name) for name in names]
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
@@ -182,6 +185,9 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     if not unit:
         raise InputError(f"a column has its unit in its name; got {text!r}; write it like {example}")
     factor = _factor(unit, kind)
+    if factor is None:
+        unit = without_in(unit)
+        factor = _factor(unit, kind)
     if factor is None and units is not None:
         factor = units(unit, kind)
     if factor is not None:

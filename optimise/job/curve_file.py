@@ -19,11 +19,10 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import per_si, shown, squeezed, symbol_in
+from ...objectives.units import per_si, shown, squeezed, symbol_in, without_in
 from .table_file import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
-_IN = re.compile(r"\s*in\s+(?=\S)(?!(?:lbf|ozf)\s*$)", re.IGNORECASE)  # "force in N"; no torque has inch and newton
 _CLOSE = 1e-3  # relative: a record that ends this near to whole turns ends with them, unless half its last step is less
 _TURNS = {"deg": 360.0}  # exactly
 SHARE = 5e-4
@@ -117,7 +116,7 @@ def _units(text: str) -> list[str]:
     words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
     units = [*_BRACKETS.findall(text)[::-1], *sorted(endings, key=lambda ending: ending.startswith("in "))]
-    return [_IN.sub("", unit) for unit in units]
+    return [without_in(unit) for unit in units]
 
 
 def _names(text: str, kind: Kind) -> bool:

@@ -42,6 +42,7 @@ from .table_layout import (
 )
 
 _MOST_COLUMNS = 1000
+_NAMED = 6  # columns in what is said of a file
 _AT_ONCE = 50_000  # rows of which the cells are kept as single texts
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -131,19 +132,22 @@ class TableFile:
         return sum(len(portion.lines) for portion in self.portions)
 
     def understood(self, places: Sequence[int]) -> str:
-        """Return what was read in words: rows, some of the columns, first and last row as numbers, signs."""
+        """Return what was read in words: rows, the first columns of some, first and last row as numbers, signs."""
+        more = f" and {counted(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
+        places = places[:_NAMED]
         ends = ((self.portions[0], 0), (self.portions[-1], -1))
         first, last = (
             ", ".join(self._number_in_words(of.columns[place].split("\n")[n]) for place in places) for of, n in ends
         )
-        heads = ", ".join(self.heads[place] for place in places)
+        names = (self.heads[place] for place in places)
+        heads = ", ".join(name if name.isprintable() else shown(name) for name in names)
         rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
-        return "; ".join([f"{rows} of {heads}", f"first {first}", f"last {last}", *self.said])
+        return "; ".join([f"{rows} of {heads}{more}", f"first {first}", f"last {last}", *self.said])
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
         digits = with_plain_signs(cell).replace(grouping, "").replace(decimal, ".")
-        return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell
+        return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell or "empty"
 
     @property
     def rows(self) -> list[int]:

@@ -109,6 +109,7 @@ def find_crank_angles(
 
 _MEASURED_EXAMPLE = {
     "rows": 3,
+    "understood": ("3 rows of crank_angle_deg, slider_position_mm; first 0, 190.5; last 240, 131; separated by commas"),
     "rows_without_crank_angle": 0,
     "crank_angle_from_time": False,
     "left_out": [],

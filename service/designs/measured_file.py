@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,7 +35,8 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
     places = [place for place, name in enumerate(table.heads) if name in meant]
     columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
     nothing = np.full(len(table), np.nan)
-    return measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _any_unit)
+    measured = measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _any_unit)
+    return replace(measured, understood=table.understood(places))
 
 
 def _any_unit(text: str, kind: Kind) -> float | None:

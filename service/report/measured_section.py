@@ -12,7 +12,7 @@ from ..figures.panels import draw_sheet
 from ..figures.sheets import Sheet
 from ..render.blocks import Unit
 from ..render.formatting import format_text
-from ..topics.measured.analysis import curve_value, figure, left_out, numbers
+from ..topics.measured.analysis import curve_value, figure, file_notes, numbers
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -47,7 +47,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
             (0.36, 0.2, 0.17, 0.17, 0.1),
             frozenset({1, 2, 3}),
         ),
-        *(Paragraph(f"{line}.", "note") for line in left_out(found)),
+        *(Paragraph(f"{line}.", "note") for line in file_notes(found)),
         *_pictures(figure(mechanism, linkage, measured=measured), subject.system),
     )
     return Section("Measured curves", blocks)

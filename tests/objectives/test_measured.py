@@ -50,6 +50,7 @@ def test_other_columns_are_left_out(name: str) -> None:
             ["crank_angle_deg", "torque_N_mm"],
             "torque is read in N m or lbf in; got 'torque_N_mm'; write it like torque_Nm",
         ),
+        (["crank_angle_deg", "torque in N"], "torque is a torque; got 'torque in N', a force; write it like torque_Nm"),
         (["crank_angle_deg", "torque_Nm", "torque_N_m"], "a curve is measured once; got the columns 'torque_Nm' and"),
         (["torque_Nm"], "has the column crank_angle_deg, or time_s at constant speed; got neither; add one to 'torque"),
         (["crank_angel_deg", "torque_Nm"], "is 'crank_angel_deg' one of them?"),

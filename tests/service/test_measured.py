@@ -8,6 +8,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +33,23 @@ from tests.service.test_figures import overlaps
 LINKAGE = Linkage(0.14, 0.31, 0.06)
 SIEVE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
 PLAIN = "crank_angle_deg,slider_position_mm\n0,430\n90,300.5\n180,160\n270,240\n"
+LARGE = ("--crank", "1400 mm", "--rod", "3100 mm", "--offset", "600 mm", "--speed", "300 rpm")
+COMMAS = "crank_angle_deg;slider_position_mm\n0,5;4430,25\n90;3000,5\n180;1600\n270;2400,75\n"
+UNNAMED = COMMAS.partition("\n")[2]
+DIALECTS: dict[str, str | bytes] = {
+    "points that part thousands": re.sub(r"(\d)(\d{3}\b)", r"\1.\2", COMMAS),
+    "narrow blanks that part thousands": re.sub(r"(\d)(\d{3}\b)", "\\1\u202f\\2", COMMAS).replace(";", "\t"),
+    "a line sep=": "sep=;\n" + COMMAS,
+    "comments": f"% logger 7\n{COMMAS}// end\n",
+    "names in a comment": "# crank angle (deg);slider position (mm)\n" + UNNAMED,
+    "blanks": COMMAS.replace(";", "   "),
+    "bars": COMMAS.replace(";", "|"),
+    "a line of units": "crank angle;slider position\ndeg;mm\n" + UNNAMED,
+    "units after in": "crank angle in deg;slider_position_in_mm\n" + UNNAMED,
+    "UTF-16": COMMAS.encode("utf-16"),
+    "UTF-16 without a mark": COMMAS.encode("utf-16-be"),
+    "Latin-1": ("crank angle (°);slider position (mm)\n" + UNNAMED).encode("latin-1"),
+}
 ROWS = 120_000
 """More than are kept as text at once."""
 
@@ -84,6 +102,11 @@ def test_a_file_is_read_however_it_was_written(text: str) -> None:
         ("crank_pin_kN", "crank_pin", 1e3),
         ("crank_pin_x_N", "crank_pin_x", 1.0),
         ("power_hp", "power", 745.69987158227),
+        ("slider position in mm", "slider_position", 1e-3),
+        ("slider_position_in", "slider_position", 0.0254),
+        ("slider_velocity_in_s", "slider_velocity", 0.0254),
+        ("Torque in N m", "torque", 1.0),
+        ("torque in lbf", "torque", 4.4482216152605 * 0.0254),
     ],
 )
 def test_a_column_may_have_any_unit_of_its_kind(name: str, curve: str, factor: float) -> None:
@@ -211,6 +234,33 @@ def test_the_cycle_that_is_written_is_read_back_without_a_deviation(tmp_path: Pa
         for name, entry in record["curves"].items():
             (rms,) = (value for key, value in entry.items() if key.startswith("rms_"))
             assert rms < 1e-7, name
+
+
+def test_a_file_of_any_dialect_gives_the_command_the_numbers_of_a_plain_one(tmp_path: Path, command: Command) -> None:
+    file = tmp_path / "run.csv"
+
+    def curves(content: str | bytes) -> Any:
+        file.write_bytes(content if isinstance(content, bytes) else content.encode())
+        done = command("analyse", *LARGE, "--measured", file, "--json")
+        assert done.exit_code == 0, (content, done.stderr)
+        return json.loads(done.stdout)["measured"]["curves"]
+
+    plain = curves(COMMAS.replace(",", ".").replace(";", ","))
+    assert plain["slider_position"]["samples"] == 4
+    for name, content in DIALECTS.items():
+        assert curves(content) == plain, name
+
+
+def test_the_command_says_what_it_read_and_which_sign_is_decimal(tmp_path: Path, command: Command) -> None:
+    file = tmp_path / "run.csv"
+    file.write_text("crank_angle_deg;slider_position_m;room\n0;;20\n90;1.300;20\n180;2.500;20\n")
+    arguments = ("analyse", *LARGE, "--measured", file)
+    expected = (
+        "3 rows of crank_angle_deg, slider_position_m; first 0, empty; last 180, 2.5; separated by semicolons; the "
+        "point is read as a decimal point, so 1.300 is 1.3; if it separates thousands, write 1300"
+    )
+    assert json.loads(command(*arguments, "--json").stdout)["measured"]["understood"] == expected
+    assert f"Read from the file: {expected}" in " ".join(command(*arguments).stdout.split())
 
 
 def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: Command) -> None:

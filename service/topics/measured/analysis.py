@@ -37,6 +37,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> di
     found = deviations(mechanism, linkage, measured.crank_angle, measured.values)
     return {
         "rows": len(measured.crank_angle),
+        "understood": measured.understood,
         "rows_without_crank_angle": measured.without_angle,
         "crank_angle_from_time": measured.by_time,
         "left_out": list(measured.left_out),
@@ -90,7 +91,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
             tuple(fits),
             ruled=True,
         ),
-        *map(Sentence, left_out(numbers)),
+        *map(Sentence, file_notes(numbers)),
     ]
 
 
@@ -99,10 +100,12 @@ def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
     return recorded(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
 
 
-def left_out(numbers: Mapping[str, Any]) -> list[str]:
-    """Return sentences on the rows and columns that were left out."""
+def file_notes(numbers: Mapping[str, Any]) -> list[str]:
+    """Return sentences on what was read of a file, and on the rows and columns that were left out."""
     rows, names = numbers["rows_without_crank_angle"], numbers["left_out"]
-    lines = [f"Rows without a crank angle, left out: {rows}"] if rows else []
+    lines = [f"Read from the file: {numbers['understood']}"] if numbers["understood"] else []
+    if rows:
+        lines.append(f"Rows without a crank angle, left out: {rows}")
     if names:
         some = [name if name.isprintable() else ascii(name) for name in names[:_NAMED]]
         more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""

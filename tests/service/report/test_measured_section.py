@@ -93,3 +93,4 @@ def test_the_command_writes_them_and_refuses_a_bad_file(tmp_path: Path, kept: Pa
     file.write_text("crank_angle_deg,slider_position_mm\n0,300\n90,200\n")
     assert command(*arguments).exit_code == 0
     assert "Measured minus computed, 2 rows" in out.read_text()
+    assert "Read from the file: 2 rows of crank_angle_deg, slider_position_mm; first 0, 300; " in out.read_text()
