@@ -98,12 +98,12 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
 
 
 def _store(address: str, named: bool) -> Iterator[Check]:
-    from ..store.address import file_of, is_there
+    from ..store.address import file_of, has_content
     from ..store.database import Database
 
     try:
         file = file_of(address)
-        if file is not None and not is_there(file):
+        if file is not None and not has_content(file):
             text = f"there is none at {file}: the first job makes a new one; put it back, or restore a backup, see "
             fresh = f"there is none at {file} yet; the first job makes it"
             yield Check("store", "problem", f"{text}docs/service.md") if named else Check("store", "ok", fresh)

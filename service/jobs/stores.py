@@ -66,15 +66,16 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 def has_store(option: str | None, runs: Path | None = None) -> bool:
     """Whether there is a store to look into, without making one.
 
-    Raises `InputError` for an address that is none, `StoreError` for a file that can be none, see `is_there`.
+    Raises `InputError` for an address that is none, `StoreError` for a file that can be none, see `has_content`.
     """
     address = store_address(option, runs)
-    if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
-        return False  # as is usual, and then without SQLAlchemy
-    from ..store.address import file_of, is_there
+    with disk(Path(address).parent):
+        if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
+            return False  # as is usual, and then without SQLAlchemy
+    from ..store.address import file_of, has_content
 
     file = file_of(address)
-    return file is None or is_there(file)
+    return file is None or has_content(file)
 
 
 def tell_idle(store: Store) -> None:

@@ -80,16 +80,36 @@ def file_of(address: str | PathLike[str]) -> Path | None:
 def is_there(file: Path) -> bool:
     """Whether the file of a store is there.
 
-    Raises `StoreError` for what can be no such file, and for one that was deleted and has left its write-ahead log:
-    SQLite would delete that, too, with the latest jobs in it.
+    Raises `StoreError` for what can be no such file, and for one that was deleted or emptied and has left its
+    write-ahead log: SQLite would delete that, too, with the latest jobs in it.
     """
+    try:
+        size = file.stat().st_size
+    except FileNotFoundError:
+        size = 0
+    except OSError as error:
+        raise StoreError(
+            f"a store is a file in a folder that may be looked into; {path_text(file)} gave: {error.strerror}; name "
+            "another file, or permit it"
+        ) from None
     if file.exists() and not file.is_file():
         what = "a folder" if file.is_dir() else "no regular file"
         raise StoreError(f"a store is a file; {path_text(file)} is {what}; name a file")
     log = Path(f"{file}-wal")
-    if log.exists() and not file.exists():
+    if log.exists() and not size:
         raise StoreError(
-            f"a store is a file and its write-ahead log; {path_text(log)} is left of one that was deleted; put "
-            f"{path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
+            f"a store is a file and its write-ahead log; {path_text(log)} is left of one that was deleted or cut off; "
+            f"put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
         )
     return file.is_file()
+
+
+def has_content(file: Path) -> bool:
+    """Whether the file of a store is there, to look into it. Raises `StoreError` if it is empty, or as `is_there`."""
+    there = is_there(file)
+    if there and not file.stat().st_size:
+        raise StoreError(
+            f"a store to look into has tables; {path_text(file)} is an empty file; submit a job to it, or restore a "
+            "backup if it had jobs, see docs/service.md"
+        )
+    return there

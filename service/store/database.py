@@ -22,6 +22,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import StoreError
 from ...model.extras import NamingExtra
+from ...model.file_names import path_text
 from ..resources.disk import LEAST, free, room
 from .address import HIDDEN, file_of, is_there, secrets_of, shown_url, url_of
 
@@ -73,8 +74,14 @@ class Database:
                 # close it would end the locks that SQLite has on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
             self._known, self._open = _identity(self._file), may_use(self._file)
+            log, shared = (Path(f"{self._file}{end}") for end in ("-wal", "-shm"))
+            if not self._open and log.exists() and not shared.exists():
+                raise StoreError(
+                    f"a read-only store with a write-ahead log needs the file -shm beside it; {self.name} has "
+                    f"{path_text(log)} alone; copy both to a folder where you may write, and name the copy"
+                )
             # Where nobody writes either: SQLite would look for a log that it cannot make, or leave one behind.
-            alone = not self._open and not Path(f"{self._file}-wal").exists()
+            alone = not self._open and not log.exists()
             if alone and os.access(self._file, os.R_OK):
                 unchanging = {"mode": "ro", "immutable": "1", "uri": "true"}
                 url = url.set(database=self._file.absolute().as_uri()).update_query_dict(unchanging)
@@ -157,7 +164,7 @@ class Database:
         ):  # what is open goes on, nothing else could begin
             raise StoreError(
                 f"the file of a store stays readable and writable while it is used; {self.name} is not any more; "
-                f"give these rights back: {remedy_of_rights(self._file)}"
+                f"{remedy_of_rights(self._file)}"
             )
 
     @contextlib.contextmanager
@@ -214,7 +221,10 @@ def may_use(path: Path) -> bool:
 
 
 def remedy_of_rights(path: Path) -> str:
-    """Return the command that restores the rights that `may_use` misses."""
+    """Return what restores the rights that `may_use` misses: a command, or another place if the disk is read-only."""
+    if os.name == "posix" and os.statvfs(path).f_flag & os.ST_RDONLY:
+        place = path_text(path.parent)
+        return f"copy it, with its -wal file if any, to another folder than {place}, whose disk is read-only"
     return f"chmod u+rw {path}, as the user who owns it"
 
 

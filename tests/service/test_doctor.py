@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
@@ -107,7 +108,8 @@ def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, 
 
 
 def test_a_database_without_tables_is_noted_and_gets_none(file: Path, command: Command) -> None:
-    sqlite3.connect(file).close()
+    with contextlib.closing(sqlite3.connect(file)) as fresh:
+        fresh.execute("PRAGMA user_version = 1")
     code, found = looked_at(command)
     assert (code, found["tables"][0]) == (0, "note")
     connection = sqlite3.connect(file)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
+import shutil
 import string
 import subprocess
 import sys
@@ -422,6 +423,37 @@ def test_what_can_be_no_store_is_refused_by_every_command_and_stays_as_it_is(
     assert not log.exists() or log.read_bytes() == b"the latest jobs"
 
 
+@pytest.mark.parametrize("place", ["empty.db", "plain.txt/store.db", 300 * "x"])
+def test_looking_into_what_can_have_no_jobs_says_so_and_changes_nothing(
+    place: str, tmp_path: Path, command: Command
+) -> None:
+    (tmp_path / "empty.db").touch()
+    (tmp_path / "plain.txt").write_text("no folder")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    for address in (tmp_path / place, f"sqlite:///{tmp_path / place}"):
+        for words in ("jobs", "jobs --json", "cancel latest", "watch 1", f"doctor --backup {tmp_path / 'copy.db'}"):
+            done = command(*words.split(), "--store", address)
+            assert (done.exit_code, done.stdout) == (2, "")
+            assert done.stderr.startswith("slidercrank: a store ")
+            assert done.stderr.count("\n") == 1
+            assert str(tmp_path / place) in done.stderr
+        done = command("doctor", "--store", address)
+        assert done.exit_code == 1
+        assert "problem  store              a store " in done.stdout
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_an_emptied_store_keeps_the_log_that_is_left_of_it(tmp_path: Path, command: Command) -> None:
+    file, log = tmp_path / "store.db", tmp_path / "store.db-wal"
+    file.touch()
+    log.write_bytes(b"the latest jobs")
+    for words in ("jobs", f"submit {job_file(tmp_path)}"):
+        done = command(*words.split(), "--store", file)
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert "is left of one that was deleted or cut off" in done.stderr
+    assert log.read_bytes() == b"the latest jobs"
+
+
 def test_looking_into_a_store_that_is_not_there_makes_none(tmp_path: Path, command: Command) -> None:
     assert command("jobs", "--store", f"sqlite:///{tmp_path / 'store.db'}").exit_code == 0
     assert command("cancel", "latest", "--store", f"sqlite:///{tmp_path / 'store.db'}").exit_code == 2
@@ -462,6 +494,38 @@ def test_a_store_that_cannot_be_written_can_be_looked_at(used: bool) -> None:
                 with pytest.raises(StoreError, match="is read-only; only look into it, or chmod u\\+rw"):
                     add(looked)
             assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="permissions as in POSIX, and users as in Linux")
+def test_a_read_only_copy_without_the_shared_file_of_its_log_says_what_it_needs() -> None:
+    with tempfile.TemporaryDirectory() as name:  # pytest's own folders are closed to others
+        folder = Path(name)
+        with Store(folder / "store.db") as opened:
+            add(opened)
+            (folder / "copy").mkdir()
+            for file in ("store.db", "store.db-wal"):
+                shutil.copy(folder / file, folder / "copy")
+        before = sorted((folder / "copy").iterdir())
+        folder.chmod(0o755)
+        with as_reader(folder / "copy"), pytest.raises(StoreError, match=r"store.db-wal alone; copy both to a folder"):
+            Store(folder / "copy" / "store.db")
+        assert sorted((folder / "copy").iterdir()) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="disks as in POSIX")
+def test_a_store_on_a_disk_mounted_read_only_is_to_be_copied(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "store.db"
+    with Store(file) as store:
+        add(store)
+    monkeypatch.setattr("slidercrank.service.store.database.may_use", lambda _path: False)
+    found = os.statvfs(tmp_path)
+    read_only = os.statvfs_result((*found[:8], found.f_flag | os.ST_RDONLY, *found[9:]))
+    monkeypatch.setattr(os, "statvfs", lambda _path: read_only)
+    for done in (command("cancel", 1, "--store", file), command("doctor", "--store", file)):
+        assert f"to another folder than {tmp_path}, whose disk is read-only" in done.output
+        assert "chmod" not in done.output
 
 
 def test_commands_that_write_refuse_a_store_that_cannot_be_written(
