@@ -20,7 +20,8 @@ class Value:
     """A number with its kind.
 
     number: in SI; None where it is not defined. digits: significant ones that are shown. decimals: digits after the
-    point instead. sign: whether a positive number gets a plus. bare: without its unit. missing: text for None and NaN.
+    point instead, in metric units. sign: whether a positive number gets a plus. bare: without its unit. missing: text
+    for None and NaN.
     """
 
     number: float | None

@@ -33,12 +33,14 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
     if value.number is None or math.isnan(value.number):
         return value.missing
     face = value.kind.face(system)
-    digits = value.digits if face is value.kind.metric else max(value.digits, _LEAST_DIGITS)
+    digits, decimals = value.digits, value.decimals
+    if face is not value.kind.metric:
+        digits, decimals = max(digits, _LEAST_DIGITS), None
     number, unit = face.factor * value.number, "" if bare or value.bare else unit_text(face.symbol)
-    if printed and value.decimals is None:
+    if printed and decimals is None:
         text = shown(number, digits)
     else:
-        text = format(number, f".{digits}g" if value.decimals is None else f".{value.decimals}f")
+        text = format(number, f".{digits}g" if decimals is None else f".{decimals}f")
         text = text.removeprefix("-") if float(text) == 0.0 else text
         text = text.replace("-", "−") if printed else text
     return f"{'+' if value.sign and number > 0.0 else ''}{text} {unit}".rstrip()

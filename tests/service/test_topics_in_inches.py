@@ -58,6 +58,10 @@ def test_undefined_infinite_zero_and_signed_numbers() -> None:
     assert [format_value(Value(x, FORCE), "inch") for x in (math.inf, -math.inf)] == ["inf lbf", "-inf lbf"]
     assert format_value(Value(-1e-9, ANGLE, decimals=2)) == "0.00 deg"
     assert format_value(Value(-0.0, LENGTH), "inch") == "0 in"
+    assert [format_value(Value(0.0574512, LENGTH, decimals=2), of) for of in ("metric", "inch")] == [
+        "57.45 mm",
+        "2.26186 in",
+    ]
     assert [format_value(Value(x, LENGTH, sign=True)) for x in (0.0254, -0.0254)] == ["+25.4 mm", "-25.4 mm"]
     assert format_value(Value(-1.5e-3, LENGTH), printed=True) == "−1.5 mm"
 

@@ -116,6 +116,23 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
     page.evaluate("localStorage.clear()")
 
 
+@pytest.mark.slow
+def test_heads_in_inches_have_their_units_after_commas(opened: tuple[Page, str], solved: Solved) -> None:
+    page, address = opened
+    page.goto(f"{address}/#/help")
+    page.get_by_label("Units").select_option("inch")
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2?tab=static_forces")
+    panel = page.get_by_role("tabpanel")
+    panel.scroll_into_view_if_needed(timeout=30_000)
+    heads = panel.get_by_role("columnheader")
+    forces = ["load, lbf", "rod force, lbf", "guide, lbf", "crank torque, lbf in"]
+    expect(heads).to_have_text(["crank angle, deg", *forces, "mechanical advantage"], timeout=30_000)
+    page.get_by_role("tab", name="Approximations").click()
+    parts = [f"{percent} %" for percent in (0, 25, 50, 75, 100)]
+    expect(heads).to_have_text(["model", "peak", "unit", "error", *parts], timeout=30_000)
+    page.evaluate("localStorage.clear()")
+
+
 def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> None:
     page, address = opened
     page.goto(f"{address}/#/help")
