@@ -151,6 +151,8 @@ RATIO = _kind("a ratio", "", "3.2", 1e9)
 JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, face("in/s^3", _PER_INCH))
 _VOLUME = face("in^3", 1.0 / _INCH**3), face("cm^3", 1e6)
 VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME, believed=(1e-9, 1.0))
+_FLOW = face("gal/min", 60.0 / (231.0 * _INCH**3)), face("L/min", 6e4)
+VOLUME_FLOW = _kind("a volume flow", "m^3/s, L/min, L/s, gal/min, in^3/s", "20 L/min", 1e9, *_FLOW)
 ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
 TIME = _kind("a time", "s, min", "30 s", 1e9)
 

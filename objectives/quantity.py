@@ -86,6 +86,13 @@ class Values:
     values: Array
     gradients: Array | None
 
+    def times(self, other: Values) -> Values:
+        """Return the product of two quantities of the same designs."""
+        slopes = None
+        if self.gradients is not None and other.gradients is not None:
+            slopes = self.gradients * other.values[:, None] + self.values[:, None] * other.gradients
+        return Values(self.values * other.values, slopes)
+
 
 def undefined(designs: Array, gradients: bool) -> Values:
     """Return no numbers for designs (n, 3 + k), NaN throughout."""

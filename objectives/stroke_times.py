@@ -63,11 +63,8 @@ class StrokeTime(Quantity):
         def per_speed(number: Callable[[int], Any]) -> Any:
             return 1.0 / (mechanism.direction * number(Raw.SPEED))
 
-        angles, by_lengths = evaluate_stroke_times(mechanism, dimensions, angle, gradients)
-        rates, by_speed = of_numbers(mechanism, dimensions, per_speed, gradients=gradients)
-        if by_lengths is None or by_speed is None:
-            return Values(angles * rates, None)
-        return Values(angles * rates, by_lengths * rates[:, None] + angles[:, None] * by_speed)
+        angles = Values(*evaluate_stroke_times(mechanism, dimensions, angle, gradients))
+        return angles.times(Values(*of_numbers(mechanism, dimensions, per_speed, gradients=gradients)))
 
 
 @dataclass(frozen=True, kw_only=True)

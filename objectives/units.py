@@ -64,6 +64,7 @@ turn = 6.28318530717958647692528676655900577 * radian = rev = revolution
 rpm = turn / minute = RPM
 rps = turn / second
 litre = 0.001 * metre ** 3 = L = l = liter
+gallon = 231 * inch ** 3 = gal
 newton = kilogram * metre / second ** 2 = N
 newton_metre = newton * metre = Nm
 newton_centimetre = 0.01 * newton * metre = Ncm

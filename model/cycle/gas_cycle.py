@@ -40,7 +40,8 @@ class GasCycle(NamedTuple):
 
     swept, clearance: volumes, m^3. work: of the gas on the pistons over a cycle of the machine, one turn or two, J.
     cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors only,
-    the intake volume divided by the swept volume; zero or less where nothing is delivered.
+    the intake volume divided by the swept volume; zero or less where nothing is delivered. delivered: their intake
+    volume in a turn, m^3, without those that deliver nothing.
     """
 
     swept: Any
@@ -48,11 +49,11 @@ class GasCycle(NamedTuple):
     work: Any
     cycle_work: Any
     delivers: Any
+    delivered: Any
 
     def times(self, count: int) -> GasCycle:
         """Return the sums of several machines."""
-        volumes = {"swept": count * self.swept, "clearance": count * self.clearance}
-        return self._replace(**volumes, work=count * self.work, cycle_work=count * self.cycle_work)
+        return GasCycle(*(count * sum_of for sum_of in self))._replace(delivers=self.delivers)
 
 
 def cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
@@ -125,7 +126,7 @@ def _differentiated(of: Callable[[GasCycle], Any], values: GasCycle, slopes: Gas
 
 def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
     """Return the sums for derived blocks (n, rows). four: of a half of two turns, which loads have a cycle of both."""
-    swept = clearance = work = cycles = intake = pumped = 0.0 * blocks[:, 0]
+    swept = clearance = work = cycles = intake = pumped = delivered = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
     for k, load in cylinders(mechanism):
         q = DESIGN + LOAD_ROWS * k + AREA
@@ -142,7 +143,9 @@ def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCyc
         cycles = cycles + area * (gained - spent) * (0.5 if four and not four[k] else 1.0)
         if isinstance(load, Compressor):
             pumped, intake = pumped + area * stroke, intake + area * stroke * share
-    return GasCycle(swept, clearance, work, cycles, intake / pumped if compressors(mechanism) else intake)
+            delivered = delivered + np.where(share.real > 0.0, area * stroke * share, 0.0)
+    delivers = intake / pumped if compressors(mechanism) else intake
+    return GasCycle(swept, clearance, work, cycles, delivers, delivered)
 
 
 def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+import re
+import tomllib
+from dataclasses import fields, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +28,8 @@ from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, To
 from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.needs import (
     A_BAR,
-    COMPRESSOR,
     COUPLES,
     CRANK_BAR,
-    CYLINDER,
     HEAT,
     LOSSES,
     REPEATS,
@@ -40,6 +41,7 @@ from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
 from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
 from slidercrank.objectives.needs import STRENGTH as STRONG
 from slidercrank.objectives.quantity import Quantity
+from slidercrank.optimise.job import parse_job
 
 Array = NDArray[np.float64]
 
@@ -126,7 +128,6 @@ AIR = Compressor(
     expansion_exponent=1.2,
     clearance_volume=2e-6,
 )
-CYLINDER_OF = {CYLINDER, COMPRESSOR}
 
 MACHINES = {"smooth": SMOOTH, "strokes": STROKES, "tables": TABLES}
 
@@ -155,12 +156,35 @@ RUBBING_PIVOT = Friction(crank_pivot=Pin(radius=0.01, coefficient=0.1))
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """Return a machine that has what a quantity is of.
 
-    Two cylinders for a rocking couple, no crank acceleration for times of strokes, a compressor more for the gas of
-    one, bars for their strength; for losses a crank pivot that rubs, which locks no design, and a load that resists
-    more than any other one drives. Quantities of the same needs get the same one: what they have in common is computed
-    once.
+    Two cylinders for a rocking couple, no crank acceleration for times of strokes, bars for their strength; for losses
+    a crank pivot that rubs, which locks no design, and a load that resists more than any other one drives; else what
+    the message of a need gives as an example. Quantities of the same needs get the same one: what they have in common
+    is computed once.
     """
-    return _kept(_fitted(set(quantity.needs), machine))
+    found = _fitted(set(quantity.needs), machine)
+    for need in quantity.needs:
+        if not need.met(found):
+            found = _with_example(need, found)
+    return _kept(found)
+
+
+def tables_for(need: Need) -> dict[str, Any]:
+    """Return the tables of a job that the message of a need gives as an example; none if it gives none."""
+    found = re.search(r"add for example (\[+)(\w+)\]+ (\w+ = .*?)(?:, or .*| on the slider)?$", need.missing)
+    if found is None:
+        return {}
+    table: dict[str, Any] = tomllib.loads(f"table = {{ {found[3]} }}")["table"]
+    return {found[2]: [table] if found[1] == "[[" else table}
+
+
+def _with_example(need: Need, machine: Mechanism) -> Mechanism:
+    """Return a machine with the example of a need that it does not meet."""
+    lengths = {"crank": "50 mm", "rod": "200 mm", "offset": "0 mm"}
+    job = {"name": "Small", "variables": lengths, "objectives": {"stroke": "maximise"}, "mechanism": {"speed": "9 rpm"}}
+    before, after = (parse_job(job | tables).mechanism for tables in ({}, tables_for(need)))
+    changed = {item.name: getattr(after, item.name) for item in fields(Mechanism)}
+    changed = {name: value for name, value in changed.items() if value != getattr(before, name)}
+    return replace(machine, **changed | {"loads": (*machine.loads, *after.loads)})
 
 
 @lru_cache(maxsize=64)
@@ -180,7 +204,7 @@ def _fitted(needs: set[Need], machine: Mechanism) -> Mechanism:
         bar = Bar(width=0.03, depth=0.02, density=7800.0)
         crank, rod = (link if isinstance(link, Bar) else bar for link in (machine.crank, machine.rod))
         return replace(machine, strength=STRENGTH, crank=crank, rod=rod)
-    return replace(machine, loads=(*machine.loads, AIR)) if CYLINDER_OF & needs else machine
+    return machine
 
 
 def random_designs(count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0) -> Array:

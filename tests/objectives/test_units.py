@@ -82,6 +82,8 @@ GOOD = [
     *((f"1.2 {text}", kinds.HEAT_PER_VOLUME, 1.2e6) for text in ("kJ/L", "kJ/l", "kJ/litre", "kJ/dm^3", "kN m/dm^3")),
     ("1 ft lbf/in^3", kinds.HEAT_PER_VOLUME, 12.0 * 4.4482216152605 / 0.0254**2),
     ("250 mL", kinds.VOLUME, 250e-6),
+    ("20 L/min", kinds.VOLUME_FLOW, 0.02 / 60.0),
+    ("1 gal/min", kinds.VOLUME_FLOW, 3.785411784e-3 / 60.0),
     ("1 kip", kinds.FORCE, 4448.2216152605),
     ("1 lbf/in", kinds.STIFFNESS, 4.4482216152605 / 0.0254),
     ("1 lbf-s/in", kinds.DAMPING, 4.4482216152605 / 0.0254),

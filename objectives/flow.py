@@ -1,0 +1,181 @@
+"""Delivered flow of pumps and compressors, and its ripple over the cycle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..model.cycle.gas_cycle import cylinders, gas_cycle
+from ..model.kernel.arithmetic import magnitude
+from ..model.kinematics.geometry import stroke
+from ..model.machine.loads.compressor import Compressor
+from ..model.machine.loads.crank_torque import CrankTorque
+from ..model.machine.loads.cylinder import Cylinder
+from ..model.machine.loads.load import Load
+from ..model.machine.loads.stroke_force import StrokeForce
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.members import cylinder_count
+from ..model.machine.numbers import of_numbers
+from ..model.machine.raw import LOAD_SLOTS, Raw
+from ..model.machine.remembered import remembered
+from ..model.machine.varying import Varying
+from ..model.signals.of_shaft import time_share
+from ..model.signals.peaks import find_peaks
+from ..model.signals.signals import Signal
+from .kinds import RATIO, VOLUME_FLOW
+from .needs import COMPRESSOR, SPEED, Need
+from .quantity import Array, Group, Pieces, Quantity, Values, undefined
+
+_KEPT = 3
+"""Local peaks, and local troughs, of the flow that pieces are made of."""
+_APART = 10.0  # labels of peaks are crank angles, below 2 pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flow(Quantity):
+    """The volume that pumps and compressors take in and deliver over a turn, times the turns in a unit of time."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return undefined(dimensions, gradients)
+        factor = mechanism.direction * time_share(mechanism) / (2.0 * math.pi)
+        rate = of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
+        volume = gas_cycle(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
+        return Values(*volume).times(Values(*rate))
+
+
+class FlowRipple(Quantity):
+    """Greatest less least flow of all liquid pumps together, over the mean flow.
+
+    Without masses, pumps that resist with 1 Pa in their delivery strokes take a drive torque, N m, of the size of the
+    delivered volume per crank angle, m^3/rad. With its greatest value taken off, the greatest size of what is left is
+    the difference of greatest and least flow.
+    """
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return undefined(dimensions, gradients)
+        found = self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
+        return Values(found.values[:, 0], found.gradients[:, 0] if gradients else None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the differences of local peaks and troughs; see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return super().pieces(mechanism, dimensions)
+        return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _KEPT)
+
+    def _differences(self, mechanism: Mechanism, designs: Array, kept: int) -> Pieces:
+        n, pumps = len(designs), list(_pumps(mechanism))
+        areas = [of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
+        machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
+        given = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
+        peaks = find_peaks(machine, Signal.TORQUE, given, kept=kept, gradients=True)
+        given[:, -1] = peaks.values[:, 0] / count
+        troughs = find_peaks(machine, Signal.TORQUE, given, kept=kept, gradients=True)
+        shape, chain = (n, kept * kept), np.zeros((n, given.shape[1], designs.shape[1]))
+        chain[:, :3, :3] = np.eye(3)
+        chain[:, 3:-1] = np.stack([slopes for _, slopes in areas if slopes is not None], axis=1)
+        found = (peaks.values - peaks.values[:, :1])[:, :, None] + troughs.values[:, None]
+        assert peaks.gradients is not None
+        assert troughs.gradients is not None
+        slopes = (peaks.gradients[:, :, None] + troughs.gradients[:, None]).reshape(*shape, -1) @ chain
+        mean, by = of_numbers(mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True)
+        assert by is not None
+        values = found.reshape(shape) / mean[:, None]
+        there = np.isfinite(values)
+        slopes = (slopes - np.where(there, values, 0.0)[:, :, None] * by[:, None]) / mean[:, None, None]
+        labels = peaks.angles[:, :, None] + _APART * troughs.angles[:, None]
+        return Pieces(values, np.where(there[:, :, None], slopes, 0.0), labels.reshape(shape))
+
+
+def _pumps(mechanism: Mechanism) -> dict[int, Cylinder]:
+    """Return the pumps of a liquid among the loads of a machine, by their places."""
+    return {
+        k: load for k, load in cylinders(mechanism) if isinstance(load, Compressor) and load.compression_exponent == 0.0
+    }
+
+
+def _area(k: int, number: Callable[[int], Any]) -> Any:
+    """Return the piston area of a load from its raw numbers, m^2."""
+    bore, rod = (number(Raw.END + LOAD_SLOTS * k + Cylinder.slots[name][0]) for name in ("bore", "piston_rod"))
+    return 0.25 * math.pi * (bore * bore - rod * rod)
+
+
+def _mean(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any:
+    """Return the volume that all cylinders deliver per crank angle, m^3/rad, over a turn."""
+    swept = stroke(number(Raw.CRANK), number(Raw.ROD), magnitude(number(Raw.OFFSET)))
+    return swept * sum(_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
+
+
+@remembered
+def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
+    """Return the machine whose drive torque is the flow; its designs end with the pumps' areas and a torque less."""
+    loads: list[Load] = []
+    varying = []
+    for place, pump in enumerate(_pumps(mechanism).values()):
+        loads.append(StrokeForce(outward=0.0, inward=0.0))
+        side, sign = ("outward", -1.0) if pump.head == "outer dead centre" else ("inward", 1.0)
+        varying.append(Varying(name=f"area {place}", sets=((f"loads.{place}.{side}", sign),), lower=0.0, upper=1.0))
+    path = f"loads.{len(loads)}.torque"
+    varying.append(Varying(name="torque", sets=((path, mechanism.direction),), lower=0.0, upper=1.0))
+    return Mechanism(
+        speed=mechanism.direction,
+        branch=mechanism.branch,
+        arrangement=mechanism.arrangement,
+        loads=(*loads, CrankTorque()),
+        varying=tuple(varying),
+    )
+
+
+FLOW = Flow(
+    name="flow",
+    title="delivered flow",
+    kind=VOLUME_FLOW,
+    place=451,
+    group=Group.DRIVE,
+    sentence=(
+        "The mean volume that pumps and compressors deliver per time; several cylinders add up. Gas is counted at "
+        "suction pressure."
+    ),
+    advice="It follows the displacement volume, the speed and the volumetric efficiency. Valves are ideal here.",
+    formula="(|omega| / 2 pi) sum of eta_v A S: volumetric efficiency eta_v, 1 for a liquid; piston area A, stroke S",
+    section="7. Loads",
+    picture="cylinder",
+    better="high",
+    needs=(SPEED, COMPRESSOR),
+)
+FLOW_RIPPLE = FlowRipple(
+    name="flow_ripple",
+    kind=RATIO,
+    place=452,
+    group=Group.DRIVE,
+    sentence=(
+        "The difference of the greatest and the least flow within a turn, over the mean flow: of all pumps together, "
+        "at constant speed, of a liquid that does not yield."
+    ),
+    advice="pi for one single-acting pump with a long rod; three evenly spaced ones have 0.14.",
+    formula="(max q - min q) / mean q, q = sum of A |x'| over the pumps in their delivery strokes",
+    section="7. Loads",
+    picture="cylinder",
+    example=0.14,
+    needs=(
+        Need(
+            lambda machine: bool(_pumps(machine.fullest)),
+            "it comes from pumps of a liquid; got none; add for example "
+            '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
+            without="undefined",
+        ),
+        Need(
+            lambda machine: machine.speed_profile is None,
+            "it is that at constant speed; got a speed profile; leave it out",
+            without="undefined",
+        ),
+    ),
+)
