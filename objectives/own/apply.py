@@ -16,6 +16,7 @@ from ...model.errors import InputError
 from ...model.kernel.arithmetic import STEP
 from ...model.machine.mechanism import Mechanism
 from .designs import Designs, Peaks
+from .printable import printable
 
 Function = Callable[[Designs], Any]
 
@@ -24,7 +25,11 @@ PIECES = 32
 
 
 class Refused(Exception):
-    """Fault of a function, in words: rule, value, place and remedy."""
+    """Fault of a function, in words: rule, value, place and remedy; printable, whatever the function raised."""
+
+    def __init__(self, reason: str) -> None:
+        """Take the reason."""
+        super().__init__(printable(reason))
 
 
 @dataclass(frozen=True)

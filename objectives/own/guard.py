@@ -18,6 +18,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from .printable import printable
+
 PRINTED = 1_000_000
 """Bytes that a function and all that it starts may print."""
 _LEFT_OUT = f"\nA function of your own printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
@@ -127,7 +129,7 @@ def _end_with(asking: int) -> None:
 
 
 def _relay(printed: int) -> None:
-    """Pass on whole lines of what is printed, up to `PRINTED`; read the rest too, so nobody waits for a full pipe.
+    """Pass on whole printable lines, up to `PRINTED`; read the rest too, so nobody waits for a full pipe.
 
     The last line ends even if the function does not end it: others write to the same log.
     """
@@ -144,8 +146,9 @@ def _relay(printed: int) -> None:
 
 
 def _write(text: bytes) -> None:
+    shown = printable(text.decode(errors="backslashreplace").replace("\r\n", "\n"), kept="\n\t")
     with contextlib.suppress(OSError):  # standard error is closed
-        os.write(2, text)
+        os.write(2, shown.encode())
 
 
 def _set(attribute: int, value: int) -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import unicodedata
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -117,6 +118,11 @@ def babbles(designs):
         print(word, "." * chance.randrange(800), file=chance.choice((sys.stdout, sys.stderr)))
     print("and no more", end="", flush=True)
     return designs.crank
+
+def paints(designs):
+    every = "".join(map(chr, range(160))) + "\\u2028\\u202e\\u2066\\u00fc\\u20ac"
+    os.write(1, every.encode() + b"\\r\\n\\xff end\\n")
+    raise type("Wrong\\a", (Exception,), {})(every + "\\udc80")
 """
 
 
@@ -277,6 +283,21 @@ def test_what_a_function_prints_is_passed_on_up_to_a_bound(
     printed, note = capfd.readouterr().err.split("\n", 1)
     assert printed == "x" * guard.PRINTED
     assert note == "A function of your own printed more than 1 MB; the rest is left out; print less.\n"
+
+
+def test_what_a_function_prints_or_raises_has_no_control_characters(
+    worker: Callable[..., Worker], capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(Refused, match=r"^must not raise; got Wrong\\x07: \\x00.* \(detached.py:\d+\)") as refused:
+        worker("paints")(Mechanism(), DESIGNS, None)
+    printed = capfd.readouterr().err
+    assert printed.endswith("\u00fc\u20ac\n\\xff end\n")
+    assert "\u00fc\u20ac\\udc80 (" in str(refused.value)
+    for text, kept in ((str(refused.value), ""), (printed, "\t\n")):
+        categories = {unicodedata.category(letter) for letter in text if letter not in kept}
+        assert not categories & {"Cc", "Cf", "Cs", "Zl", "Zp"}
+        for code in {*range(32), *range(127, 160), 0x2028, 0x202E, 0x2066} - set(map(ord, kept)):
+            assert ascii(chr(code))[1:-1] in text
 
 
 def test_a_printed_line_comes_at_once(worker: Callable[..., Worker], capfd: pytest.CaptureFixture[str]) -> None:

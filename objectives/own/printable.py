@@ -1,0 +1,13 @@
+"""Text of functions of your own, as a terminal, a log, a page and JSON may show it."""
+
+from __future__ import annotations
+
+import re
+
+_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+"""Control characters of Unicode, also of lines and of the direction of writing, and lone surrogates."""
+
+
+def printable(text: str, *, kept: str = "") -> str:
+    r"""Return a text with each control character, but those that are kept, as Python writes it: "\x1b"."""
+    return _CONTROL.sub(lambda found: found[0] if found[0] in kept else ascii(found[0])[1:-1], text)
