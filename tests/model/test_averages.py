@@ -5,12 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 from fractions import Fraction
-from functools import cache
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
@@ -22,6 +19,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import MACHINES, SMOOTH, Array, linkage_of, random_designs, random_machine
+from tests.model.quadrature import integrals
 from tests.model.virtual_work import drive_torque
 
 DESIGNS = random_designs(25, seed=61)
@@ -62,16 +60,12 @@ def angles_at(x: float, design: Array) -> list[float]:
 def by_quadrature(machine: Mechanism, design: Array) -> tuple[float, float]:
     points = breakpoints(machine, design)
 
-    @cache  # both integrals begin with the same angles
-    def torque(theta: float) -> float:
-        return float(drive_torque(machine, design, theta))
+    def powers(theta: Array) -> Array:
+        torque = drive_torque(machine, design, theta)
+        return np.stack([torque, torque**2])
 
-    first = second = 0.0
-    for a, b in pairwise(points):
-        if b - a > 1e-14:
-            first += quad(torque, a, b, limit=400, epsabs=1e-11)[0]
-            second += quad(lambda t: torque(t) ** 2, a, b, limit=400, epsrel=1e-12)[0]
-    return first / (2.0 * math.pi), math.sqrt(second / (2.0 * math.pi))
+    first, second = integrals(powers, points) / (2.0 * math.pi)
+    return float(first), math.sqrt(second)
 
 
 @pytest.mark.parametrize("name", MACHINES)

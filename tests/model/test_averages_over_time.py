@@ -27,12 +27,12 @@ from slidercrank.optimise.job import load_job
 from tests.model.bodies import bodies
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
+from tests.model.quadrature import NODES, WEIGHTS, integrals
 from tests.model.test_averages import breakpoints
 from tests.model.virtual_work import drive_torque, path
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 FEEDER = np.array([[0.0376, 0.0998, 0.03119]])
 
 
@@ -132,37 +132,18 @@ class CrankOverTime:
 
 
 def over_time(case: Case, curve: Callable[[Array, Array, Array], Array]) -> Array:
-    """Return the means over time of squares of curves (m, n) of crank angle, speed and acceleration, (m,).
-
-    Gauss over panels of time between breakpoints, which are halved until both halves say the same.
-    """
+    """Return the means over time of squares of curves (m, n) of crank angle, speed and acceleration, (m,)."""
     speed, profile, turning = case.machine.speed, case.profile, CrankOverTime(case)
 
-    def gauss(low: Array, width: Array) -> Array:
-        theta = turning.angle((low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)).ravel())
+    def squares(time: Array) -> Array:
+        theta = turning.angle(time)
         ratio = profile.ratio(theta)
-        values = curve(theta, speed * ratio, speed**2 * ratio * profile.slope(theta))
-        found: Array = (values**2).reshape(len(values), len(low), -1) @ WEIGHTS * (0.5 * width)
-        return found
+        return np.asarray(curve(theta, speed * ratio, speed**2 * ratio * profile.slope(theta)) ** 2)
 
     kinks = turning.times(breakpoints_of(case))
     panels = (300 if case.machine.friction != Friction() else 40) * case.turns  # kinks from friction have to be found
-    edges = np.unique(np.concatenate([turning.knots, kinks, np.linspace(0.0, turning.period, 1 + panels)]))
-    low, width = edges[:-1], np.diff(edges)
-    whole = gauss(low, width)
-    size, total = whole.sum(axis=1), np.zeros(len(whole))
-    for depth in range(46):
-        half = 0.5 * width
-        parts = gauss(np.concatenate([low, low + half]), np.concatenate([half, half]))
-        both = parts[:, : len(low)] + parts[:, len(low) :]
-        rough = (np.abs(both - whole) > 1e-15 * size[:, None]).any(axis=0) & (depth < 45)
-        total += both[:, ~rough].sum(axis=1)
-        if not rough.any():
-            break
-        whole = np.concatenate([parts[:, : len(low)][:, rough], parts[:, len(low) :][:, rough]], axis=1)
-        low, width = np.concatenate([low[rough], (low + half)[rough]]), np.concatenate([half[rough], half[rough]])
-    found: Array = total / turning.period
-    return found
+    edges = np.concatenate([turning.knots, kinks, np.linspace(0.0, turning.period, 1 + panels)])
+    return integrals(squares, edges) / turning.period
 
 
 def breakpoints_of(case: Case) -> Array:

@@ -5,12 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 from scipy.optimize import root
 
 from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle
@@ -28,6 +26,7 @@ from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import SMOOTH, Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
+from tests.model.quadrature import integrals
 from tests.model.virtual_work import path, slider_load
 
 # Rods at least 30 % longer than crank + offset: with the friction of `random_friction` none of them locks.
@@ -257,11 +256,10 @@ def test_rms_torque_is_that_of_adaptive_quadrature() -> None:
         linkage = linkage_of(design, machine.branch)
         cuts = [*breakpoints(machine, linkage), breakpoints(machine, linkage)[0] + 2.0 * math.pi]
 
-        def square(theta: float, machine: Mechanism = machine, linkage: Linkage = linkage) -> float:
-            return float(cycle(machine, linkage, theta).torque[0]) ** 2
+        def square(theta: Array, machine: Mechanism = machine, linkage: Linkage = linkage) -> Array:
+            return np.asarray(cycle(machine, linkage, theta).torque[None] ** 2)
 
-        total = sum(quad(square, a, b, limit=200, epsrel=1e-11)[0] for a, b in pairwise(cuts))
-        expected = math.sqrt(total / (2.0 * math.pi))
+        expected = math.sqrt(integrals(square, cuts)[0] / (2.0 * math.pi))
         assert average_torque(machine, design[None]).rms[0] == pytest.approx(expected, rel=1e-10)
 
 
