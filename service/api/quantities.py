@@ -11,6 +11,7 @@ from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, LENGTH, SHOWN, shown_in
 from ...objectives.quantity import MECHANICS, Group, Quantity
 from ..topics.discovery import TOPICS
+from ..topics.topic import Topic
 
 router = APIRouter(tags=["designs"])
 
@@ -98,12 +99,22 @@ class UnitTable(BaseModel):
     titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque over time"}])
 
 
+class InputModel(BaseModel):
+    """What a topic is asked with. key: in its address. title: before a field. unit: of the key. usual: if left out."""
+
+    key: str = Field(examples=["crank_angle_deg"])
+    title: str = Field(examples=["Crank angle"])
+    unit: str = Field(examples=["deg"])
+    usual: str = Field(examples=["30 deg"])
+
+
 class TopicModel(BaseModel):
     """A topic of a design. name: in its path. title: for a heading. shows: what it is about, in words."""
 
     name: str = Field(examples=["balance"])
     title: str = Field(examples=["Balance"])
     shows: str = Field(examples=["shaking force and moment"])
+    inputs: list[InputModel] = Field(examples=[[]])
 
 
 class TopicList(BaseModel):
@@ -153,8 +164,15 @@ def list_quantities() -> QuantityList:
 @router.get("/topics")
 def list_topics() -> TopicList:
     """List the topics that a design may have."""
-    named = [(topic, topic.name.replace("_", " ").capitalize()) for topic in TOPICS.values()]
-    return TopicList(topics=[TopicModel(name=of.name, title=title, shows=of.shows) for of, title in named])
+    return TopicList(topics=list(map(_topic, TOPICS.values())))
+
+
+def _topic(of: Topic) -> TopicModel:
+    inputs = [
+        InputModel(key=one.key, title=one.title, unit=one.kind.metric.symbol, usual=one.usual) for one in of.inputs
+    ]
+    title = of.name.replace("_", " ").capitalize()
+    return TopicModel(name=of.name, title=title, shows=of.shows, inputs=inputs)
 
 
 _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -9,11 +10,12 @@ from fastapi import APIRouter, Depends, Path, Query, Response
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
-from ...model.errors import InputError, NotFound
+from ...model.errors import NotFound
 from ...objectives.kinds import System
 from ..designs.turning import require_turning
 from ..runs.result import json_ready
-from ..topics.discovery import TOPICS
+from ..topics.discovery import INPUTS, TOPIC_OF, TOPICS
+from ..topics.inputs import Input, read_inputs
 from ..topics.topic import Topic, TopicOfDesign
 from .computing import LongRoute
 from .exports import SEALED, of_type
@@ -54,33 +56,43 @@ class ToldTopic(OfDesign):
 
 @dataclass(frozen=True)
 class Asked:
-    """How a topic is asked for. fluctuation: that the flywheel is for, usual if None."""
+    """How a topic is asked for. given: inputs by name, as text with their units."""
 
     units: System
-    fluctuation: float | None
+    given: dict[str, str]
 
     def of(self, topic: Topic, shown: ShownDesign) -> TopicOfDesign:
-        """Return the topic of a design. Raises `InputError` for a swing, and for an option of another topic."""
+        """Return the topic of a design. Raises `InputError` for a swing, and for an input of another topic."""
         require_turning(shown.design.part, f"the analysis {topic.name}")
-        if self.fluctuation is not None and topic.name != "flywheel":
-            raise InputError(f"a fluctuation is for the topic flywheel; got {topic.name}; leave the fluctuation out")
-        options = {} if self.fluctuation is None else {"fluctuation": self.fluctuation}
+        options = read_inputs(topic.inputs, self.given, f"the analysis {topic.name}")
         return topic.of(shown.design.mechanism, shown.design.linkage, options)
 
     def kind(self, topic: Topic, what: str) -> str:
         """Return the name under which what is made of a topic is kept."""
-        return f"topic {topic.name} {what} {self.units} {self.fluctuation}"
+        return f"topic {topic.name} {what} {self.units} {sorted(self.given.items())}"
 
 
-def _asked(
-    units: UnitsAsked = "metric",
-    fluctuation: Annotated[
-        float | None, Query(gt=0.0, lt=1.0, description="of the speed, that the flywheel is for", examples=[0.02])
-    ] = None,
-) -> Asked:
-    return Asked(units, fluctuation)
+def _asked(units: System = "metric", **given: float | None) -> Asked:
+    """Return how a topic is asked for. given: inputs by their keys, in their metric units; None for usual ones."""
+    typed = {one.name: given[one.key] for one in INPUTS.values()}
+    symbols = {one.name: one.kind.metric.symbol for one in INPUTS.values()}
+    return Asked(units, {name: f"{value!r} {symbols[name]}" for name, value in typed.items() if value is not None})
 
 
+def _parameter(one: Input) -> inspect.Parameter:
+    """Return the parameter of an address for an input of a topic."""
+    factor = one.kind.metric.factor
+    most = factor * one.kind.limit
+    limits: dict[str, Any] = {"gt": 0.0} if one.positive else {"ge": -most}
+    limits |= {"le": most} if one.below is None else {"lt": factor * one.below}
+    query = Query(**limits, allow_inf_nan=False, description=f"for the topic {TOPIC_OF[one.name]}: {one.help}")
+    return inspect.Parameter(
+        one.key, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[float | None, query]
+    )
+
+
+_UNITS = inspect.Parameter("units", inspect.Parameter.KEYWORD_ONLY, default="metric", annotation=UnitsAsked)
+_asked.__signature__ = inspect.Signature([_UNITS, *map(_parameter, INPUTS.values())])  # type: ignore[attr-defined]
 AskedDep = Annotated[Asked, Depends(_asked)]
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import inspect
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,21 +11,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
-from ...objectives.kinds import ANGLE, LENGTH, System
+from ...objectives.kinds import System
 from ..designs.requirements import judged
-from ..designs.selection import value_of
 from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
-    Angle,
     DesignOfRun,
     Dimensions,
     Figures,
     File,
     JobOrRun,
     Json,
-    Length,
     Runs,
     Speed,
     Units,
@@ -34,7 +32,7 @@ from ..text.options import (
 from ..text.screen import console, give, say, waiting
 from ..text.tables import show_design, show_rules, show_undefined, show_violated
 from ..topics.design_analysis import analysis_of, numbers_of
-from ..topics.discovery import ALL, TOLD_THERE, TOPICS, chosen_topics
+from ..topics.discovery import ALL, INPUTS, TOLD_THERE, TOPIC_OF, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
 from .job_or_run import machine_of
@@ -45,6 +43,17 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
+_INPUT_OPTIONS = tuple(
+    inspect.Parameter(
+        one.name,
+        inspect.Parameter.KEYWORD_ONLY,
+        default=None,
+        annotation=Annotated[
+            str | None, typer.Option(one.flag, metavar=one.kind.plain.upper().replace(" ", "_"), help=one.remark)
+        ],
+    )
+    for one in INPUTS.values()
+)
 
 
 def analyse(
@@ -61,11 +70,7 @@ def analyse(
     ] = None,
     design: DesignOfRun = None,
     show: Annotated[list[str] | None, typer.Option(metavar="TOPIC"), _TOPIC_HELP] = None,
-    at: Annotated[Angle, 'Crank angle of the polygons.  [default: "30 deg"]'] = None,
-    limit: Annotated[Length, "Position error that a machine may have: gives the yield."] = None,
-    fluctuation: Annotated[
-        float | None, typer.Option(metavar="SHARE"), "Speed fluctuation that the flywheel is for.  [default: 0.02]"
-    ] = None,
+    inputs: Annotated[dict[str, str | None], _INPUT_OPTIONS],
     measured: Annotated[
         File,
         "A CSV file of measured curves to compare: a column crank_angle_deg, or time_s from crank angle 0 on, and "
@@ -87,7 +92,7 @@ def analyse(
     """
     require_ending("--cycle", cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
-    options = _topic_options(at, limit, fluctuation, topics)
+    options = _topic_options(inputs, topics)
     mechanism, linkage, problem = machine_of("analyse", job, size, design, runs, put=put or (), turning=True)
     if speed is not None:
         mechanism = replace(mechanism, speed=speed_option(speed))
@@ -143,21 +148,17 @@ def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesi
     return MEASURED.of(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
 
 
-def _topic_options(
-    at: str | None, limit: str | None, fluctuation: float | None, topics: tuple[str, ...]
-) -> dict[str, dict[str, Any]]:
+def _topic_options(given: Mapping[str, str | None], topics: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
-    given = {"--at": ("polygons", at), "--limit": ("tolerances", limit), "--fluctuation": ("flywheel", fluctuation)}
-    for option, (topic, value) in given.items():
-        if value is not None and topic not in topics:
-            raise InputError(f"{option} is for --show {topic}, which is not asked for; add it or leave {option} out")
-    options: dict[str, dict[str, Any]] = {}
-    if at is not None:
-        options["polygons"] = {"crank_angle": value_of("--at", at, ANGLE)}
-    if limit is not None:
-        options["tolerances"] = {"limit": value_of("--limit", limit, LENGTH, sign="positive")}
-    if fluctuation is not None:
-        options["flywheel"] = {"fluctuation": fluctuation}
+    options: dict[str, dict[str, Any]] = {topic: {} for topic in topics}
+    for name, text in given.items():
+        if text is not None:
+            one, topic = INPUTS[name], TOPIC_OF[name]
+            if topic not in topics:
+                raise InputError(
+                    f"{one.flag} is for --show {topic}, which is not asked for; add it or leave {one.flag} out"
+                )
+            options[topic][name] = one.read(text, one.flag)
     return options
 
 

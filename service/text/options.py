@@ -67,12 +67,17 @@ Run = Annotated[
 def for_typer(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command for typer, whose parameters have their help as a text in `Annotated`.
 
-    A parameter of a dataclass of options stands for the fields of that. A flag is off unless it is given.
+    A parameter of a dataclass of options stands for the fields of that, one of `inspect.Parameter`s in `Annotated` for
+    these: it gets a dict. A flag is off unless it is given.
     """
     hints = get_type_hints(command, include_extras=True)
     groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
+    dicts = {name: parts for name, hint in hints.items() for parts in get_args(hint)[1:] if isinstance(parts, tuple)}
     options: list[inspect.Parameter] = []
     for name, parameter in inspect.signature(command).parameters.items():
+        options += dicts.get(name, ())
+        if name in dicts:
+            continue
         given = [(name, parameter.default, hints[name])]
         if name in groups:
             types = get_type_hints(groups[name], include_extras=True)
@@ -86,6 +91,8 @@ def for_typer(command: Callable[..., None]) -> Callable[..., None]:
     def run(**given: Any) -> None:
         for name, group in groups.items():
             given[name] = group(**{field.name: given.pop(field.name) for field in fields(group)})
+        for name, parameters in dicts.items():
+            given[name] = {parameter.name: given.pop(parameter.name) for parameter in parameters}
         command(**given)
 
     run.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]

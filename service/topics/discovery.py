@@ -25,6 +25,12 @@ TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
 """Columns that topics show; the table of a design leaves them out."""
 
 
+INPUTS = {given.name: given for topic in TOPICS.values() for given in topic.inputs}
+"""What topics may be asked with, by name; no two topics have one of the same name."""
+TOPIC_OF = {given.name: topic.name for topic in TOPICS.values() for given in topic.inputs}
+"""Name of the topic of an input."""
+
+
 def chosen_topics(names: Iterable[str], *, job: bool) -> tuple[str, ...]:
     """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job."""
     import difflib

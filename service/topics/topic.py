@@ -8,6 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .inputs import Input
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -24,9 +26,9 @@ class Topic:
 
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
-    the table of a design therefore leaves out. of_numbers_only: options that the figure does not take. A function
-    `prepare` of that module, if it has one, gives further options for numbers and figure. A function `in_units`, if it
-    has one, gives the numbers in a system of units.
+    the table of a design therefore leaves out. inputs: what it may be asked with. A function `prepare` of that module,
+    if it has one, gives further options for numbers and figure. A function `in_units`, if it has one, gives the numbers
+    in a system of units.
     """
 
     package: str
@@ -34,7 +36,7 @@ class Topic:
     shows: str
     needs_job: bool = True
     tells: tuple[str, ...] = ()
-    of_numbers_only: tuple[str, ...] = ()
+    inputs: tuple[Input, ...] = ()
 
     @property
     def name(self) -> str:
@@ -98,7 +100,8 @@ class TopicOfDesign:
             self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
 
     def _drawn(self) -> Sheet | Figure:
-        options = {name: value for name, value in self.options.items() if name not in self.topic.of_numbers_only}
+        hidden = {one.name for one in self.topic.inputs if not one.drawn}
+        options = {name: value for name, value in self.options.items() if name not in hidden}
         found: Sheet | Figure = self._analysis.figure(self.mechanism, self.linkage, **options)
         return found
 

@@ -1,5 +1,16 @@
 """Flywheel for a speed fluctuation: numbers, text and figure."""
 
+from ....objectives.kinds import RATIO
+from ..inputs import Input
 from ..topic import Topic
 
-TOPIC = Topic(__name__, 100, "flywheel for a speed --fluctuation")
+FLUCTUATION = Input(
+    "fluctuation",
+    RATIO,
+    "Speed fluctuation, at most",
+    "Speed fluctuation that the flywheel is for.",
+    "0.02",  # pumps and machine tools: 1/30 to 1/50 in textbooks
+    positive=True,
+    below=1.0,
+)
+TOPIC = Topic(__name__, 100, "flywheel for a speed --fluctuation", inputs=(FLUCTUATION,))

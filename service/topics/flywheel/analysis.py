@@ -17,14 +17,13 @@ from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
 from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
 from ...render.numerals import shown
 from ..start_up.analysis import RPM, in_order, steady_numbers
+from . import FLUCTUATION
 
-FLUCTUATION = 0.02
-"""Wanted unless asked otherwise: pumps and machine tools (1/30 to 1/50 in textbooks)."""
 _TRIED = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005)
 _SIZES = np.geomspace(0.25, 4.0, 33)
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> dict[str, Any]:
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     found = design_flywheel(mechanism, linkage, fluctuation)
     tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
@@ -106,7 +105,7 @@ def _without_one(numbers: dict[str, Any]) -> Text:
     return f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Sheet:
     """Return the fluctuation over the flywheel, exact and classical, and the speed over a turn with two flywheels.
 
     Where a flywheel is too small for the machine to come through a turn, there is no point.

@@ -15,6 +15,7 @@ from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.sheets import Line, Panel, Sheet
 from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
 from ...render.numerals import shown
+from . import AT
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 _POLYGONS = (
@@ -23,8 +24,6 @@ _POLYGONS = (
     ("acceleration", Polygons.ACCELERATION, ACCELERATION),
 )
 _COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, the same on both branches
-CRANK_ANGLE = math.radians(30.0)
-"""Of the polygons unless another one is asked for: no link of any common proportion is then normal to the line."""
 
 
 def both_branches(
@@ -38,7 +37,7 @@ def both_branches(
     }
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = CRANK_ANGLE) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> dict[str, Any]:
     """Return the vertices at one crank angle, rad, by branch and polygon; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
     record: dict[str, Any] = {
@@ -82,7 +81,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = CRANK_ANGLE) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> Sheet:
     """Return the polygons at one crank angle, rad; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
     found = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)

@@ -1,10 +1,20 @@
 """Position error from tolerances: numbers, text and figure."""
 
+from ....objectives.kinds import LENGTH
+from ..inputs import Input
 from ..topic import Topic
 
+LIMIT = Input(
+    "limit",
+    LENGTH,
+    "Position error, at most",
+    "Position error that a machine may have: gives the yield.",
+    positive=True,
+    drawn=False,
+)
 TOPIC = Topic(
     __name__,
     50,
     "position error: exact worst case, simulated machines, yield, what it comes from",
-    of_numbers_only=("limit",),
+    inputs=(LIMIT,),
 )

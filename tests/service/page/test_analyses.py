@@ -112,7 +112,10 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
     field.press("Enter")
     expect(panel).to_contain_text("Fluctuation must be below 1; got 2; correct it", timeout=30_000)
     refused = httpx.get(path.replace("flywheel", "motor"), params={"fluctuation": 0.05}, timeout=60.0)
-    assert (refused.status_code, "is for the topic flywheel" in refused.text) == (422, True)
+    assert (
+        refused.status_code,
+        "the analysis motor is asked with nothing else; got fluctuation; leave" in refused.text,
+    ) == (422, True)
     page.evaluate("localStorage.clear()")
 
 

@@ -4,7 +4,7 @@ import { address, get, isAbort, statusOf } from "../lib/api.js";
 import { fill, focused, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { measured } from "../lib/measured.js";
-import { apiSystem } from "../lib/numbers.js";
+import { apiSystem, unitOf } from "../lib/numbers.js";
 import { beforePrinting } from "../lib/printing.js";
 import { capital, inWords } from "../lib/words.js";
 import { scrolled } from "./numbers.js";
@@ -14,11 +14,11 @@ import { sentenceOf } from "../lib/refusals.js";
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 const NEAR = "200px"; // before they are in sight
-const FLYWHEEL = "flywheel"; // the topic that has an option
 const CERTIFY = {
   name: "certify",
   title: "Certify",
   shows: "how far the front can be from the true one",
+  inputs: [],
 };
 
 /**
@@ -47,14 +47,8 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
   /** @type {Page.Numbers | null} */
   let lengths = null;
   let turn = 0;
-  const wanted = h("input", {
-    type: "text",
-    inputmode: "decimal",
-    class: "short number",
-    name: "fluctuation",
-    autocomplete: "off",
-    placeholder: "0.02",
-  });
+  /** @type {Map<string, ReturnType<typeof asking>>} */
+  let forms = new Map();
 
   /** @type {Promise<void> | null} */
   let begun = null;
@@ -84,6 +78,7 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
         ...(await get("topics", {}, signal)).topics.filter(({ name }) => !drawn.includes(name)),
         CERTIFY,
       ];
+      forms = new Map(topics.map(({ name, inputs }) => [name, asking(inputs, ask)]));
       await choose((topics.find(({ name }) => name === chosen) ?? topics[0]).name);
     } catch (error) {
       if (!isAbort(error)) fill(panel, h("p", { class: "error" }, sentenceOf(error)));
@@ -132,7 +127,10 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
       fill(panel, proof({ job, signal }));
       return;
     }
-    const { title, shows } = /** @type {Api.Topic} */ (topics.find(({ name }) => name === chosen));
+    const { title, shows, inputs } = /** @type {Api.Topic} */ (
+      topics.find(({ name }) => name === chosen)
+    );
+    const asked = /** @type {ReturnType<typeof asking>} */ (forms.get(chosen));
     const path = /** @type {const} */ (`jobs/${job}/designs/${number}/topics/${chosen}`);
     const head = [
       h(
@@ -142,14 +140,10 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
         h("code", {}, `analyse --show ${chosen}`),
         " tells it.",
       ),
-      chosen === FLYWHEEL && sizing,
+      inputs.length > 0 && asked.form,
     ];
-    const held = focused(sizing);
-    const options = {
-      ...lengths,
-      units: apiSystem(),
-      fluctuation: chosen === FLYWHEEL ? fluctuation() : null,
-    };
+    const held = focused(asked.form);
+    const options = { ...lengths, units: apiSystem(), ...asked.given() };
     const answer = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     fill(panel, head, answer);
     held?.focus();
@@ -182,26 +176,6 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
     }
   }
 
-  const sizing = h(
-    "form",
-    {
-      class: "row",
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        ask();
-      },
-    },
-    h("label", {}, "Speed fluctuation, at most ", wanted),
-    h("button", {}, "Size the flywheel"),
-  );
-
-  /** Return the fluctuation that was typed, as a number where it is one; null for the usual one. */
-  function fluctuation() {
-    const typed = measured(wanted.value, "");
-    return typed.empty ? null : (typed.value ?? wanted.value.trim());
-  }
-
   window.addEventListener("units", () => begun && chosen !== CERTIFY.name && ask(), { signal });
   return {
     /** @param {Page.Numbers | null} now */
@@ -211,6 +185,47 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
       if (topics.length && chosen !== CERTIFY.name) ask(); // a proof is of the front, whatever the design
     },
   };
+}
+
+/**
+ * Return a form for what a topic is asked with, and given(): what was typed, by key in the units of the API; null for what is usual.
+ * @param {Api.Topic["inputs"]} inputs @param {() => void} ask
+ */
+function asking(inputs, ask) {
+  const fields = inputs.map(({ key, title, unit, usual }) => {
+    const field = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      class: "short number",
+      name: key,
+      autocomplete: "off",
+      placeholder: usual,
+    });
+    return { key, title, unit, field };
+  });
+  const form = h(
+    "form",
+    {
+      class: "row",
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        ask();
+      },
+    },
+    fields.map(({ title, unit, field }) =>
+      h("label", {}, `${title} `, field, unit && ` ${unitOf(unit)}`),
+    ),
+    h("button", {}, "Compute"),
+  );
+  const given = () =>
+    Object.fromEntries(
+      fields.map(({ key, unit, field }) => {
+        const typed = measured(field.value, unit);
+        return [key, typed.empty ? null : (typed.value ?? field.value.trim())];
+      }),
+    );
+  return { form, given };
 }
 
 /** @param {Api.Told} block */
