@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ from ..model.strength.places import Eye, Place
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
 from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
-
-Formula = Callable[[Callable[[int], Any]], Any]
+from .quantity import Formula as Formula
 
 
 class Link(NamedTuple):

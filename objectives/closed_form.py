@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from ..model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
+from ..model.kinematics.closed_forms import ClosedForm, closed_form, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
-from .quantity import Array, Pieces, Quantity, Values, fact
+from ..model.machine.raw import Raw
+from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
 from .reach import Reach
 
 
@@ -34,6 +38,10 @@ class ClosedFormQuantity(Quantity):
         """Return whether the closed form, and with it `rises` and `reach`, holds for a machine."""
         return True
 
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return its forms where they hold for a machine; see `Quantity`."""
+        return [partial(_of_numbers, form) for form in self.forms] if self.is_closed(mechanism) else ()
+
     def reach_for(self, mechanism: Mechanism) -> Reach | None:
         """Return its reach if the closed form holds for the machine."""
         return self.reach if self.is_closed(mechanism) else None
@@ -57,6 +65,10 @@ class ClosedFormQuantity(Quantity):
         values = np.stack([values for values, _ in parts], axis=1)
         labels = np.broadcast_to(np.arange(len(parts), dtype=np.float64), values.shape)
         return Pieces(values, np.stack([slopes for _, slopes in parts if slopes is not None], axis=1), labels)
+
+
+def _of_numbers(form: ClosedForm, number: Number) -> Any:
+    return closed_form(int(form), number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET))
 
 
 def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:

@@ -14,10 +14,9 @@ from ..model.machine.two_turns import cycle_turns
 from ..model.signals.averages import average_torque
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .average_torque import MEAN_TORQUE
-from .bars import Formula
 from .kinds import ENERGY, RATIO
 from .needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
-from .quantity import Array, Domain, Group, Quantity, Values, undefined
+from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
 _ROUNDING = 1e-12  # fraction of the friction heat below which the work on the loads is rounding error

@@ -20,40 +20,25 @@ import numpy as np
 
 from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import Raw
+from .greatest_formula import GreatestFormula
 from .kinds import LENGTH
 from .proportions import FOOTPRINT
-from .quantity import Array, Group, Pieces, Quantity, Values
+from .quantity import Formula, Group
 
 Extent = Callable[[Any, Any, Any, Any, Any], Any]
 """A smooth extent, m, of crank, rod and size of the offset, and half the widths of crank and rod."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Envelope(Quantity):
+class Envelope(GreatestFormula):
     """The greatest of several extents."""
 
     extents: Sequence[Extent]
 
-    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        values, slopes = self._all(mechanism, dimensions, gradients)
-        first, rows = np.argmax(values, axis=1), np.arange(len(values))
-        return Values(values[rows, first], None if slopes is None else slopes[rows, first])
-
-    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return all extents; see `Quantity`."""
-        values, slopes = self._all(mechanism, dimensions, True)
-        assert slopes is not None
-        return Pieces(values, slopes, np.tile(np.arange(values.shape[1], dtype=float), (len(values), 1)))
-
-    def _all(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-        found = [
-            of_numbers(mechanism, designs, partial(_of_machine, extent), gradients=gradients) for extent in self.extents
-        ]
-        slopes = [by for _, by in found if by is not None]
-        return np.stack([value for value, _ in found], axis=1), np.stack(slopes, axis=1) if gradients else None
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return the extents; see `Quantity`."""
+        return [partial(_of_machine, extent) for extent in self.extents]
 
 
 def _of_machine(extent: Extent, number: Callable[[int], Any]) -> Any:

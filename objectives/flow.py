@@ -28,7 +28,7 @@ from ..model.signals.of_shaft import time_share
 from ..model.signals.peaks import find_peaks
 from ..model.signals.signals import Signal
 from .kinds import RATIO, VOLUME_FLOW
-from .needs import COMPRESSOR, SPEED, Need
+from .needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _KEPT = 3
@@ -172,10 +172,6 @@ FLOW_RIPPLE = FlowRipple(
             '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
             without="undefined",
         ),
-        Need(
-            lambda machine: machine.speed_profile is None,
-            "it is that at constant speed; got a speed profile; leave it out",
-            without="undefined",
-        ),
+        EVEN_SPEED,
     ),
 )

@@ -2,48 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from ..model.machine.design import link_properties
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import Raw
+from .greatest_formula import GreatestFormula
 from .kinds import MASS
 from .needs import CRANK_MASS as CRANK_WEIGHS
 from .needs import MASSES
 from .needs import ROD_MASS as ROD_WEIGHS
-from .quantity import Array, Group, Quantity, Values
-
-Numbers = Callable[[int], Any]
+from .quantity import Formula, Group, Number
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mass(Quantity):
+class Mass(GreatestFormula):
     """A mass in closed form. of: gives it from the raw numbers of a machine."""
 
-    of: Callable[[Numbers], Any] = field(repr=False)
+    of: Formula = field(repr=False)
 
-    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        return Values(*of_numbers(mechanism, dimensions, self.of, gradients=gradients))
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return the formula; see `Quantity`."""
+        return [self.of]
 
 
-def _crank(number: Numbers) -> Any:
+def _crank(number: Number) -> Any:
     return _link(number, number(Raw.CRANK), Raw.CRANK_WIDTH)
 
 
-def _rod(number: Numbers) -> Any:
+def _rod(number: Number) -> Any:
     return _link(number, number(Raw.ROD), Raw.ROD_WIDTH)
 
 
-def _link(number: Numbers, length: Any, first: int) -> Any:
+def _link(number: Number, length: Any, first: int) -> Any:
     return link_properties(length, *(number(first + slot) for slot in range(9)))[0]
 
 
-def _moving(number: Numbers) -> Any:
+def _moving(number: Number) -> Any:
     return _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
 
 

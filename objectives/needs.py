@@ -185,7 +185,7 @@ ONE_TIMING = _defining(
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
-    "strength and wear are those at a constant speed; got a speed profile; leave it out for them",
+    "it is that at a constant speed; got a speed profile; leave it out for this",
 )
 ONE_TURN = _defining(
     lambda machine: cycle_turns(machine) == 1,

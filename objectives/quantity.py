@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as _field
 from enum import Enum
@@ -23,6 +23,9 @@ Better = Literal["low", "high", ""]
 Offer = Literal["motion", "proportions", "requirement", "objective"]
 """Parts of a form that ask for a quantity unasked: the wanted motion, rules of proportion, what must hold, what is
 wanted."""
+Number = Callable[[int], Any]
+"""The raw number of a machine at a slot (`Raw`, `PINS`): of each design (n,), one for all, or enclosed over boxes."""
+Formula = Callable[[Number], Any]
 MECHANICS = "derived there from plane rigid-body mechanics"
 
 
@@ -251,6 +254,10 @@ class Quantity(ABC):
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the greatest value that a machine withstands, the least if high is better, SI; see `allowed_by`."""
         raise NotImplementedError(f"{self.name} has no allowable value")
+
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return formulas of raw numbers, of which it is the greatest, for bounds over ranges; none without."""
+        return ()
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:

@@ -16,6 +16,7 @@ from .friction import Friction
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .loads.words import between
+from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .start import Start
 from .strength import Strength
@@ -104,6 +105,7 @@ _KINDS = {
     **{"crank": Bar | RigidLink, "rod": Bar | RigidLink, "counterweight": Counterweight, "tolerances": Tolerances},
     **{"friction": Friction, "drive": Drive | None, "clearance": Clearance | None, "arrangement": Arrangement | None},
     **{"speed_profile": Profile | None, "strength": Strength | None, "start": Start},
+    "slider": SliderDistances,
 }
 
 
@@ -121,6 +123,7 @@ class Mechanism:
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     strength: material and pins, for what judges the strength of bars; nothing else depends on it.
     start: of a swing, where designs choose it; nothing else depends on it.
+    slider: distances from a dead centre, for what is asked of the slider there; nothing else depends on them.
     varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
     offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
     """
@@ -142,6 +145,7 @@ class Mechanism:
     speed_profile: Profile | None = None
     strength: Strength | None = None
     start: Start = Start()
+    slider: SliderDistances = SliderDistances()
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:

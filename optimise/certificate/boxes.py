@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import reduce
+from typing import Any
 
 import numpy as np
 
@@ -15,12 +16,12 @@ from ...model.kinematics.closed_forms import closed_form
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import is_shaft
+from ...model.machine.raw import Raw, raw_vector
 from ...model.machine.two_turns import cycle_turns, halves
 from ...model.signals.of_shaft import apart
 from ...model.signals.signals import Signal
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
-from ...objectives.quantity import Quantity
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
@@ -38,12 +39,12 @@ _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range 
 def covered(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
-    Bounded are closed forms of the three dimensions (`ClosedFormQuantity`), and from below the peaks over the cycle of
-    machines without friction; of several cylinders those of one alone, and with a speed profile those that do not
-    depend on the speed. A time ratio along a speed profile is not a closed form.
+    Bounded are quantities with `formulas`, and from below the peaks over the cycle of machines without friction; of
+    several cylinders those of one alone, and with a speed profile those that do not depend on the speed. A time ratio
+    along a speed profile has no formula.
     """
     quantity = problem.quantity(objective.quantity)
-    if _is_closed(problem, quantity):
+    if quantity.formulas(problem.mechanism):
         return ""
     if not isinstance(quantity, CyclePeak):
         profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
@@ -60,10 +61,6 @@ def covered(problem: Problem, objective: Objective) -> str:
     return ""
 
 
-def _is_closed(problem: Problem, quantity: Quantity) -> bool:
-    return isinstance(quantity, ClosedFormQuantity) and quantity.is_closed(problem.mechanism)
-
-
 def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
     """Return machines of one crank at constant speed whose highest peak of a signal is that of a machine, if any.
 
@@ -78,7 +75,7 @@ def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
 def usable(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
     quantity = problem.quantity(constraint.quantity)
-    if _is_closed(problem, quantity):
+    if quantity.formulas(problem.mechanism):
         return True
     wanted = Objective(quantity=constraint.quantity, sense="minimise")
     return constraint.upper is not None and not covered(problem, wanted)
@@ -119,9 +116,10 @@ class Boxes:
                 )
         asked = restated_constraints(problem)
         least = max(c.lower or 0.0 for c in asked if c.quantity == TRANSMISSION_ANGLE.name)
+        self.raw = raw_vector(problem.mechanism)
         self.lean = math.cos((1.0 - _SLACK) * least)
         used = [c for c in asked if usable(problem, c)]
-        self.cheap = [c for c in used if isinstance(problem.quantity(c.quantity), ClosedFormQuantity)]
+        self.cheap = [c for c in used if problem.quantity(c.quantity).formulas(problem.mechanism)]
         self.costly = [c for c in used if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
         peaks = [problem.quantity(name) for name in names]
@@ -202,10 +200,15 @@ class Boxes:
     ) -> tuple[Enclosure, Array | None, Array | None]:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
         quantity = self.problem.quantity(name)
-        assert isinstance(quantity, ClosedFormQuantity)
-        value = reduce(beside, [closed_form(int(form), r, l, e) for form in quantity.forms])
+        known: dict[int, Enclosure] = {Raw.CRANK: r, Raw.ROD: l, Raw.OFFSET: e}
+
+        def number(slot: int) -> Any:
+            return known[slot] if slot in known else float(self.raw[slot])
+
+        found = [formula(number) for formula in quantity.formulas(self.problem.mechanism)]
+        value = reduce(beside, [each if isinstance(each, Enclosure) else 0.0 * r + each for each in found])
         most = value.ends()[1].max(axis=1)
-        if quantity.rises is None:
+        if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
             return value, None, most
         ends = [x.ends() for x in (r, l, magnitude(e))]
         least_at, most_at = [

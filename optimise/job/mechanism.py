@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
+from ...model.machine.slider_distances import DeadCentre, SliderDistances
 from ...objectives.units import shown
 from .crank_speed import CrankSpeedPart
 from .values import (
@@ -143,6 +144,18 @@ class SliderPart(Part):
     """The slider."""
 
     mass: Mass = required("of the slider and all that moves with it", "0.8 kg")
+    dead_centre: DeadCentre = optional("from which its distances count", "outer", default="outer")
+    touch_distance: PositiveLength | None = optional(
+        "before the dead centre, where it meets its work: touch_speed is its speed there", "10 mm"
+    )
+    dwell_distance: PositiveLength | None = optional(
+        "from the dead centre, within which it counts as at rest: dwell_angle is the crank angle of that", "0.5 mm"
+    )
+
+    @property
+    def distances(self) -> SliderDistances:
+        """The distances as the model has them."""
+        return SliderDistances(dead_centre=self.dead_centre, touch=self.touch_distance, dwell=self.dwell_distance)
 
 
 class MechanismPart(CrankSpeedPart):

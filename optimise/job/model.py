@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
+from ...model.machine.slider_distances import SliderDistances
 from ...model.machine.two_turns import turns_per_cycle
 from ...objectives.units import shown
 from ..methods.registry import methods
@@ -179,6 +180,7 @@ class Job(Part):
             speed=own.crank_speed(turns_per_cycle(loads)),
             acceleration=own.acceleration,
             slider_mass=0.0 if own.slider is None else own.slider.mass,
+            slider=SliderDistances() if own.slider is None else own.slider.distances,
             gravity=own.gravity_vector,
             loads=loads,
             tolerances=self.tolerances.build(),

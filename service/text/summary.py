@@ -142,7 +142,7 @@ def _given(mechanism: Mechanism) -> list[str]:
             f"counterweight: {weight.mass:.6g} kg, {1e3 * weight.radius:.6g} mm from the pivot "
             f"at {math.degrees(weight.angle):.6g} deg from the crank"
         )
-    lines.append(f"slider: {mechanism.slider_mass:.6g} kg")
+    lines.append(f"slider: {mechanism.slider_mass:.6g} kg{mechanism.slider.text}")
     if mechanism.arrangement is not None:
         lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
         lines.append(

@@ -168,20 +168,20 @@ def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     return _kept(found)
 
 
-def tables_for(need: Need) -> dict[str, Any]:
-    """Return the tables of a job that the message of a need gives as an example; none if it gives none."""
+def with_example(job: dict[str, Any], need: Need) -> dict[str, Any]:
+    """Return a job with the tables that the message of a need gives as an example; as it is if it gives none."""
     found = re.search(r"add for example (\[+)(\w+)\]+ (\w+ = .*?)(?:, or .*| on the slider)?$", need.missing)
     if found is None:
-        return {}
+        return job
     table: dict[str, Any] = tomllib.loads(f"table = {{ {found[3]} }}")["table"]
-    return {found[2]: [table] if found[1] == "[[" else table}
+    return job | {found[2]: [table] if found[1] == "[[" else job.get(found[2], {}) | table}
 
 
 def _with_example(need: Need, machine: Mechanism) -> Mechanism:
     """Return a machine with the example of a need that it does not meet."""
     lengths = {"crank": "50 mm", "rod": "200 mm", "offset": "0 mm"}
     job = {"name": "Small", "variables": lengths, "objectives": {"stroke": "maximise"}, "mechanism": {"speed": "9 rpm"}}
-    before, after = (parse_job(job | tables).mechanism for tables in ({}, tables_for(need)))
+    before, after = parse_job(job).mechanism, parse_job(with_example(job, need)).mechanism
     changed = {item.name: getattr(after, item.name) for item in fields(Mechanism)}
     changed = {name: value for name, value in changed.items() if value != getattr(before, name)}
     return replace(machine, **changed | {"loads": (*machine.loads, *after.loads)})

@@ -29,7 +29,7 @@ from slidercrank.optimise.job.sections import EXAMPLE as SECTIONS
 from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
-from tests.model.cases import tables_for
+from tests.model.cases import with_example
 
 RUNS = Path(__file__).parents[2] / "runs"
 TURNING = Path(__file__).parents[1] / "data" / "turning_support.toml"
@@ -284,8 +284,8 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 def meeting(quantity: Quantity, job: dict[str, Any]) -> dict[str, Any]:
     """Return a job with the examples that messages give for the needs of a quantity that it does not meet."""
     for need in quantity.needs:
-        for table, added in {} if need.met(parse_job(job).mechanism) else tables_for(need).items():
-            job = job | {table: job.get(table, {}) | added if isinstance(added, dict) else added}
+        if not need.met(parse_job(job).mechanism):
+            job = with_example(job, need)
     return job
 
 

@@ -275,6 +275,9 @@ function masses(form) {
     link(form, ["mechanism", "crank"], "crank"),
     link(form, ["mechanism", "rod"], "rod"),
     quantity(form, ["mechanism", "slider", "mass"], slider),
+    ["dead_centre", "touch_distance", "dwell_distance"].map((key) =>
+      byschema(form, ["mechanism", "slider", key]),
+    ),
     byschema(form, ["mechanism", "gravity"]),
     byschema(form, ["mechanism", "gravity_direction"]),
   ];

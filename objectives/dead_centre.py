@@ -1,0 +1,114 @@
+"""What a slider does near a dead centre: its speed where it meets its work, and the crank angle of its dwell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from ..model.kernel.arithmetic import arcsine, magnitude, root
+from ..model.kinematics.geometry import inner_dead_centre, outer_dead_centre
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.raw import Raw
+from .greatest_formula import GreatestFormula
+from .kinds import ANGLE, SPEED
+from .needs import EVEN_SPEED, Need
+from .needs import SPEED as TURNS
+from .quantity import Formula, Group, Number
+
+
+@dataclass(frozen=True, kw_only=True)
+class NearDeadCentre(GreatestFormula):
+    """A closed form at a distance from a dead centre; NaN where the stroke is not longer. of: gives it."""
+
+    of: Callable[[Mechanism, Number], Any] = field(repr=False)
+
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return the formula if the machine has what it needs; see `Quantity`."""
+        return () if self.lacks(mechanism, "undefined") else (partial(self.of, mechanism),)
+
+    @property
+    def blank(self) -> str:
+        """Why a design has none."""
+        return "its stroke is not longer than the distance from the dead centre"
+
+
+def _triangle(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
+    """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 of a slider pin at a distance from a dead centre.
+
+    B: distance of slider pin and crank pivot. Written as products, of which none cancels towards the dead centre.
+    """
+    lengths = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
+    far, near = outer_dead_centre(*lengths), inner_dead_centre(*lengths)
+    if outer:
+        x, above = far - distance, distance * (2.0 * far - distance)
+        below = (x - near) * (x + near)
+    else:
+        x, below = near + distance, distance * (2.0 * near + distance)
+        above = (far - x) * (far + x)
+    return x, x * x + lengths[2] * lengths[2], above, below
+
+
+def _touch_speed(machine: Mechanism, number: Number) -> Any:
+    """Return |x'| |omega|, with |x'| the area of the parallelogram of crank and rod over l cos(phi)."""
+    r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
+    outer = machine.slider.dead_centre == "outer"
+    x, square, above, below = _triangle(number, machine.slider.touch or 0.0, outer)
+    area = 0.5 * root(above * below)
+    side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # of the crank pin
+    along = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
+    return area / along * magnitude(number(Raw.SPEED))
+
+
+def _dwell_angle(machine: Mechanism, number: Number) -> Any:
+    """Return four times half the angle of the crank from the line of its pivot and the slider pin."""
+    r, l = number(Raw.CRANK), number(Raw.ROD)
+    outer = machine.slider.dead_centre == "outer"
+    _, square, above, below = _triangle(number, machine.slider.dwell or 0.0, outer)
+    b = root(square)
+    share = above / (l + r + b) * (l + b - r) if outer else below / (b + l - r) * (b + l + r)
+    return 4.0 * arcsine(root(share / (4.0 * r * b)))
+
+
+def _needs(name: str) -> Need:
+    return Need(
+        lambda machine: getattr(machine.slider, name) is not None,
+        f"it comes from a {name} distance of the slider; got none; add for example "
+        f'[mechanism] slider = {{ mass = "0.8 kg", {name}_distance = "5 mm" }}',
+        without="undefined",
+    )
+
+
+TOUCH_SPEED = NearDeadCentre(
+    name="touch_speed",
+    kind=SPEED,
+    of=_touch_speed,
+    place=235,
+    group=Group.MOTION,
+    sentence="The slider's speed where it meets its work, a given distance before a dead centre.",
+    advice="A press touches its work gently: 0.1 to 0.5 m/s are usual. A longer rod and an offset change it.",
+    formula="|x'| |omega| at x_out - d, or at x_in + d, in the stroke towards the dead centre",
+    section="2. Closed forms",
+    picture="speed",
+    example="0.3 m/s",
+    needs=(TURNS, _needs("touch"), EVEN_SPEED),
+)
+DWELL_ANGLE = NearDeadCentre(
+    name="dwell_angle",
+    kind=ANGLE,
+    of=_dwell_angle,
+    place=236,
+    group=Group.MOTION,
+    sentence="The crank angle over which the slider stays within a given distance of a dead centre.",
+    advice="At constant speed the dwell takes this share of the time of a turn.",
+    formula=(
+        "2 alpha with cos(alpha) = (r^2 + B^2 - l^2) / (2 r B), B^2 = x^2 + e^2 at x = x_out - d; 360 deg less that at "
+        "x = x_in + d"
+    ),
+    section="2. Closed forms",
+    picture="stroke",
+    example="30 deg",
+    better="high",
+    needs=(_needs("dwell"),),
+)

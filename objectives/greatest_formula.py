@@ -1,0 +1,45 @@
+"""Quantities that are the greatest of smooth formulas of a machine's numbers, or the only one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import of_numbers
+from .quantity import Array, Pieces, Quantity, Values, undefined
+
+
+@dataclass(frozen=True, kw_only=True)
+class GreatestFormula(Quantity):
+    """The greatest of its `formulas`, with exact derivatives by all numbers that vary; NaN where one is not a number.
+
+    A formula takes complex numbers and, for bounds over ranges, enclosures: it has no branch on a number of a design.
+    """
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return undefined(dimensions, gradients)
+        values, slopes = self._all(mechanism, dimensions, gradients)
+        first, rows = np.argmax(values, axis=1), np.arange(len(values))
+        return Values(values[rows, first], None if slopes is None else slopes[rows, first])
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return all formulas; see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return super().pieces(mechanism, dimensions)
+        values, slopes = self._all(mechanism, dimensions, True)
+        assert slopes is not None
+        return Pieces(values, slopes, np.tile(np.arange(values.shape[1], dtype=float), (len(values), 1)))
+
+    def _all(self, mechanism: Mechanism, dimensions: Array, gradients: bool) -> tuple[Array, Array | None]:
+        designs = np.asarray(dimensions, dtype=np.float64)
+        with np.errstate(invalid="ignore"):
+            found = [of_numbers(mechanism, designs, each, gradients=gradients) for each in self.formulas(mechanism)]
+        values = np.stack([value for value, _ in found], axis=1)
+        slopes = [by for _, by in found if by is not None]
+        if not gradients:
+            return values, None
+        return values, np.where(np.isnan(values)[:, :, None], np.nan, np.stack(slopes, axis=1))
