@@ -72,7 +72,7 @@ class FlowRipple(Quantity):
         return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _KEPT)
 
     def _differences(self, mechanism: Mechanism, designs: Array, kept: int) -> Pieces:
-        n, pumps = len(designs), list(_pumps(mechanism))
+        n, pumps = len(designs), list(pumps_of(mechanism))
         areas = [of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
         machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
         given = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
@@ -95,7 +95,7 @@ class FlowRipple(Quantity):
         return Pieces(values, np.where(there[:, :, None], slopes, 0.0), labels.reshape(shape))
 
 
-def _pumps(mechanism: Mechanism) -> dict[int, Cylinder]:
+def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
     """Return the pumps of a liquid among the loads of a machine, by their places."""
     return {
         k: load for k, load in cylinders(mechanism) if isinstance(load, Compressor) and load.compression_exponent == 0.0
@@ -119,7 +119,7 @@ def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
     """Return the machine whose drive torque is the flow; its designs end with the pumps' areas and a torque less."""
     loads: list[Load] = []
     varying = []
-    for place, pump in enumerate(_pumps(mechanism).values()):
+    for place, pump in enumerate(pumps_of(mechanism).values()):
         loads.append(StrokeForce(outward=0.0, inward=0.0))
         side, sign = ("outward", -1.0) if pump.head == "outer dead centre" else ("inward", 1.0)
         varying.append(Varying(name=f"area {place}", sets=((f"loads.{place}.{side}", sign),), lower=0.0, upper=1.0))
@@ -167,7 +167,7 @@ FLOW_RIPPLE = FlowRipple(
     example=0.14,
     needs=(
         Need(
-            lambda machine: bool(_pumps(machine.fullest)),
+            lambda machine: bool(pumps_of(machine.fullest)),
             "it comes from pumps of a liquid; got none; add for example "
             '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
             without="undefined",

@@ -1,0 +1,170 @@
+"""What a press can do before a dead centre: available force, speed, work at a rated torque, and dwell.
+
+The force is static and without friction, by virtual work: F = T / |x'| with the slider's travel x' per crank angle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....objectives.dead_centre import DWELL_ANGLE
+from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
+from ....objectives.peak_torque import PEAK_TORQUE
+from ...figures.sheets import Line, Panel, Sheet
+from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, recorded_all
+from ..peaks import row_of
+
+_ROWS = 10
+_SAMPLES = 200
+_CAPTION = "distance before the dead centre"
+
+
+def numbers(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    touch_distance: float | None = None,
+    dwell_distance: float | None = None,
+    rated_torque: float | None = None,
+) -> dict[str, Any]:
+    """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
+
+    touch_distance, dwell_distance: m, those of the machine if None. rated_torque: N m, the peak torque of the design if
+    None. None: speeds without a crank speed, what a dwell without its distance would give. Raises `InputError` without
+    a touch distance or a torque, and for distances that the stroke does not reach.
+    """
+    touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
+    distances = touch * np.arange(1, _ROWS + 1) / _ROWS
+    angles, travels = _before(mechanism, linkage, distances)
+    speeds = abs(mechanism.speed) * travels if mechanism.speed else None
+    dwell = mechanism.slider.dwell if dwell_distance is None else dwell_distance
+    dwelling = None if dwell is None else _dwell(mechanism, linkage, dwell)
+    return {
+        "dead_centre": mechanism.slider.dead_centre,
+        "rated_torque_Nm": torque,
+        "torque_is_peak_of_design": rated_torque is None,
+        "touch_distance_mm": LENGTH.metric.factor * touch,
+        "touch_angle_deg": math.degrees(angles[-1]),
+        "touch_speed_m_s": None if speeds is None else float(speeds[-1]),
+        "touch_force_N": torque / float(travels[-1]),
+        "work_J": torque * float(angles[-1]),
+        "dwell_distance_mm": None if dwell is None else LENGTH.metric.factor * dwell,
+        "dwell_angle_deg": None if dwelling is None else math.degrees(dwelling),
+        "dwell_time_s": None if dwelling is None or not mechanism.speed else dwelling / abs(mechanism.speed),
+        "distances_mm": (LENGTH.metric.factor * distances).tolist(),
+        "angles_deg": np.degrees(angles).tolist(),
+        "forces_N": (torque / travels).tolist(),
+        "speeds_m_s": None if speeds is None else speeds.tolist(),
+    }
+
+
+def _touch(mechanism: Mechanism, given: float | None) -> float:
+    touch = mechanism.slider.touch if given is None else given
+    if touch is None:
+        raise InputError(
+            "a press touches its work at a distance before the dead centre; got none; give a touch distance, or in the "
+            'job [mechanism] slider = { mass = "80 kg", touch_distance = "12 mm" }'
+        )
+    return touch
+
+
+def _torque(mechanism: Mechanism, linkage: Linkage, given: float | None) -> float:
+    torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if given is None else given
+    if not torque > 0.0:
+        raise InputError(
+            "the force of a press comes from a torque; this design needs none; give a rated torque, such as 50 N m"
+        )
+    return torque
+
+
+def _before(
+    mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it."""
+    outer = mechanism.slider.dead_centre == "outer"
+    inner_x, outer_x = (float(at.slider_position) for at in map(linkage.at, linkage.dead_centre_angles))
+    _require_stroke(distances[-1], abs(outer_x - inner_x))
+    dead, other = (outer_x, inner_x) if outer else (inner_x, outer_x)
+    end = float(linkage.dead_centre_angles[int(outer)])
+    # Strokes are named as for a crank that turns counter-clockwise.
+    stroke = "outward" if outer == (mechanism.direction > 0.0) else "inward"
+    angles = np.array(
+        [
+            next(found.crank_angle for found in linkage.from_slider(at) if found.stroke in (stroke, None))
+            for at in dead + math.copysign(1.0, other - dead) * distances
+        ]
+    )
+    before = np.mod(mechanism.direction * (end - angles), 2.0 * math.pi)
+    return before, np.abs(linkage.at(angles, speed=1.0).slider_velocity)
+
+
+def _dwell(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:
+    _require_stroke(distance, float(linkage.stroke))
+    near = replace(mechanism, slider=replace(mechanism.slider, dwell=distance))
+    return float(DWELL_ANGLE.evaluate(near, row_of(linkage)).values[0])
+
+
+def _require_stroke(distance: float, stroke: float) -> None:
+    if not distance < stroke:
+        raise InputError(
+            f"distances before a dead centre must be less than the stroke, {1e3 * stroke:.6g} mm; got "
+            f"{1e3 * distance:.6g} mm; give less"
+        )
+
+
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    origin = "the peak torque of this design" if numbers["torque_is_peak_of_design"] else ""
+    shown: list[NamedNumber] = [
+        named_number(numbers, "rated_torque_Nm", origin),
+        named_number(numbers, "touch_distance_mm", f"before the {numbers['dead_centre']} dead centre"),
+        named_number(numbers, "touch_force_N", "that the rated torque gives where it touches"),
+        named_number(numbers, "work_J", "that the rated torque does from there to the dead centre"),
+    ]
+    if numbers["touch_speed_m_s"] is not None:
+        shown.append(named_number(numbers, "touch_speed_m_s", ""))
+    if numbers["dwell_distance_mm"] is not None:
+        shown += [
+            named_number(numbers, "dwell_distance_mm", "on both sides of the dead centre"),
+            named_number(numbers, "dwell_angle_deg", ""),
+        ]
+    if numbers["dwell_time_s"] is not None:
+        shown.append(named_number(numbers, "dwell_time_s", ""))
+    columns = {
+        "distances_mm": column("before the dead centre", LENGTH),
+        "angles_deg": column("crank angle to it", ANGLE),
+        "forces_N": column("force", FORCE),
+        "speeds_m_s": column("slider speed", SPEED),
+    }
+    there = {key: head for key, head in columns.items() if numbers[key] is not None}
+    rows = tuple(zip(*(recorded_all(numbers, key) for key in there), strict=True))
+    return [
+        *number_list("Press", shown),
+        Table(tuple(there.values()), rows, ruled=True),
+        note("Forces are static, without friction and without what moves the machine itself."),
+    ]
+
+
+def figure(
+    mechanism: Mechanism, linkage: Linkage, *, touch_distance: float | None = None, rated_torque: float | None = None
+) -> Sheet:
+    """Return available force and slider speed over the distance before the dead centre."""
+    touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
+    distances = touch * np.arange(1, _SAMPLES + 1) / _SAMPLES
+    _, travels = _before(mechanism, linkage, distances)
+    shown = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
+    forces = Line("", distances[shown], (torque / travels)[shown])
+    panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
+    if mechanism.speed:
+        speeds = Line("", distances, abs(mechanism.speed) * travels)
+        panels.append(Panel("slider speed", _CAPTION, (speeds,), SPEED, LENGTH))
+    subtitle = f"before the {mechanism.slider.dead_centre} dead centre, static, without friction"
+    return Sheet("Press", subtitle, tuple(panels), width=6.4, height=2.6)

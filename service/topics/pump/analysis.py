@@ -1,0 +1,94 @@
+"""What pumps and compressors deliver: mean flow, its ripple over the cycle, and the torque of the pressures alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....model.cycle.several import whole_breakpoints, whole_curves
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.arrangement import Arrangement
+from ....model.machine.loads.cylinder import Cylinder
+from ....model.machine.mechanism import Mechanism
+from ....model.machine.members import members
+from ....objectives.average_torque import MEAN_TORQUE
+from ....objectives.flow import FLOW, FLOW_RIPPLE, pumps_of
+from ....objectives.kinds import TORQUE, VOLUME_FLOW
+from ....objectives.peak_torque import PEAK_TORQUE
+from ....objectives.quantity import Quantity
+from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
+from ...render.blocks import Block, named_number, number_list
+from ..peaks import row_of
+from ..static_forces.analysis import massless
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+    """Return flow, ripple and torque of the pressures of all cylinders together, ready for JSON.
+
+    flow_ripple: None for gas and along a speed profile. Raises `InputError` without a pump, a compressor or a speed.
+    """
+    reason = FLOW.undefined_because([mechanism])
+    if reason:
+        raise InputError(reason)
+    alone = _pressures(mechanism)
+    return {
+        "flow_L_min": VOLUME_FLOW.metric.factor * _value(FLOW, mechanism, linkage),
+        "flow_ripple": _value(FLOW_RIPPLE, mechanism, linkage) if _is_even(mechanism) else None,
+        "mean_torque_Nm": _value(MEAN_TORQUE, alone, linkage),
+        "peak_torque_Nm": _value(PEAK_TORQUE, alone, linkage),
+    }
+
+
+def _value(of: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
+    return float(of.evaluate(mechanism, row_of(linkage)).values[0])
+
+
+def _is_even(mechanism: Mechanism) -> bool:
+    """Whether the flow has a ripple: of liquid at constant speed."""
+    return not FLOW_RIPPLE.undefined_because([mechanism])
+
+
+def _pressures(mechanism: Mechanism) -> Mechanism:
+    """Return the machine with nothing but the pressures in its cylinders."""
+    return replace(massless(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder)))
+
+
+def _flows(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """Return the flow of each cylinder of liquid, m^3/s, at crank angles of the shaft, rad."""
+    flows = []
+    pumps = [(pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in pumps_of(mechanism).values()]
+    for member in members(mechanism):
+        rate = linkage.at(theta + member.lead, speed=mechanism.speed).slider_velocity * mechanism.sign
+        flows.append(sum((area * np.maximum(sign * rate, 0.0) for area, sign in pumps), np.zeros(len(theta))))
+    return flows
+
+
+def blocks(numbers: dict[str, Any]) -> list[Block]:
+    """Return the numbers for people."""
+    remarks = {
+        "flow_L_min": "mean over a turn; gas counts at suction pressure",
+        "flow_ripple": "greatest less least flow over the mean",
+        "mean_torque_Nm": "of the pressures alone",
+        "peak_torque_Nm": "of the pressures alone",
+    }
+    shown = [named_number(numbers, key, remark) for key, remark in remarks.items() if numbers[key] is not None]
+    return number_list("Delivery", shown)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+    """Return the flow of each cylinder and of all together, of a liquid, and the torque of the pressures."""
+    shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
+    alone = _pressures(shaft)
+    theta = turn(whole_breakpoints(alone, linkage))
+    degrees, panels = np.degrees(theta), []
+    if _is_even(mechanism):
+        each = _flows(shaft, linkage, theta)
+        single = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(each) if len(each) > 1]
+        panels.append(over_turn("flow", *single, Line("together", degrees, np.sum(each, axis=0)), kind=VOLUME_FLOW))
+    torque = whole_curves(alone, linkage, theta).torque
+    panels.append(over_turn("torque of the pressures", Line("", degrees, torque), kind=TORQUE))
+    return Sheet("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)
