@@ -28,7 +28,7 @@ class ClosedForm(IntEnum):
 
 
 _LANES = 16  # designs a loop
-_TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK = range(6)
+_TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK, _ = map(int, ClosedForm)
 
 
 @analytic

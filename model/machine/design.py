@@ -18,7 +18,7 @@ from .raw import LOAD_SLOTS, Raw
 _CRANK, _ROD, _OFFSET, _BRANCH = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET), int(Raw.BRANCH)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
-_END = int(Raw.END)
+_END, _GUIDE_DISTANCE = int(Raw.END), int(Raw.GUIDE_DISTANCE)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
 _ANGLE_TABLE = int(Enters.ANGLE_TABLE)
 _CYLINDER, _BURNING_CYLINDER = int(Enters.CYLINDER), int(Enters.BURNING_CYLINDER)
@@ -35,6 +35,7 @@ class Design(NamedTuple):
     clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
     rod_error_rss, offset_error_rss: the same added up as squares.
     guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
+    guide_distance: of the guide's centre from the slider pin at its outer dead centre, outward, m.
     """
 
     r: Any
@@ -71,6 +72,7 @@ class Design(NamedTuple):
     crank_pivot_circle: Any
     crank_pin_circle: Any
     slider_pin_circle: Any
+    guide_distance: Any
 
 
 DESIGN = len(Design._fields)
@@ -206,6 +208,7 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
         for j in range(raw.shape[1]):
             out[20, j] = raw[_TOLERANCES + 6, j]
             out[_RUBBING, j] = raw[f, j]
+            out[_RUBBING + 4, j] = raw[_GUIDE_DISTANCE, j]
             for i in range(3):
                 out[_RUBBING + 1 + i, j] = raw[f + 1 + 2 * i, j] * raw[f + 2 + 2 * i, j]
     for i in range(_OUTWARD, _OUTWARD + 5):

@@ -45,6 +45,7 @@ _SLOTS: dict[str, tuple[int, str]] = {
     "counterweight.inertia": (Raw.COUNTERWEIGHT_INERTIA, "kg m^2"),
     "tolerances.crank_angle.absolute": (Raw.ANGLE_TOLERANCE, "rad"),
     "friction.guide": (Raw.GUIDE_FRICTION, ""),
+    "slider.guide": (Raw.GUIDE_DISTANCE, "m"),
     **{f"crank.{name}": (Raw.CRANK_WIDTH + slot, unit) for name, (slot, unit) in _LINK.items()},
     **{f"rod.{name}": (Raw.ROD_WIDTH + slot, unit) for name, (slot, unit) in _LINK.items()},
 }

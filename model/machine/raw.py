@@ -34,7 +34,7 @@ Raw = IntEnum(
     "OFFSET_TOLERANCE OFFSET_TOLERANCE_SHARE ANGLE_TOLERANCE "
     "CRANK_PIVOT_CLEARANCE CRANK_PIN_CLEARANCE SLIDER_PIN_CLEARANCE GUIDE_CLEARANCE "
     "GUIDE_FRICTION CRANK_PIVOT_RADIUS CRANK_PIVOT_FRICTION CRANK_PIN_RADIUS CRANK_PIN_FRICTION "
-    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION END",
+    "SLIDER_PIN_RADIUS SLIDER_PIN_FRICTION GUIDE_DISTANCE END",
     start=0,
 )
 LOAD_SLOTS = 13
@@ -95,6 +95,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
     for index, pin in enumerate((friction.crank_pivot, friction.crank_pin, friction.slider_pin)):
         place = Raw.CRANK_PIVOT_RADIUS + 2 * index
         raw[place : place + 2] = pin.radius, pin.coefficient
+    raw[Raw.GUIDE_DISTANCE] = mechanism.slider.guide or 0.0
     for index, load in enumerate(mechanism.loads):
         place = Raw.END + LOAD_SLOTS * index
         numbers = load.numbers()

@@ -24,7 +24,7 @@ from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Tabl
 from ..kinematics.position import third_derivative
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
-from .signals import Signal, design_motion
+from .signals import Signal, design_motion, guide_lever
 
 TOUCH, WORK = 100, 101
 """Curves besides signals: what has the sign of the guide's force (`rubbing.touch`), and those of `turn_work` from
@@ -38,10 +38,8 @@ VECTORS = (
     Signal.ROCKING_COUPLE,
 )
 """Signals that are the size of a vector; the others are of one component, with its sign."""
-_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _POWER, _LINE, _SPEED, _ACCELERATION, _JERK = range(10)
-_INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _ROCKING_COUPLE = (
-    int(kind) for kind in (Signal.REFLECTED_INERTIA, Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT, Signal.ROCKING_COUPLE)
-)
+_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _GUIDE_MOMENT, _POWER, _LINE, *_OTHERS = map(int, Signal)
+_SPEED, _ACCELERATION, _JERK, _, _, _INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _ROCKING_COUPLE = _OTHERS
 _ROW_SPEED, _ROW_ACCELERATION, _ROW_X, _ROW_Y = (
     Design._fields.index(name) for name in ("speed", "acceleration", "gravity_x", "gravity_y")
 )
@@ -108,6 +106,8 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any
             x, y = f.slider_pin_x, f.slider_pin_y
         elif kind == _LINE:
             x, y = f.slider_pin_x, zero
+        elif kind == _GUIDE_MOMENT:
+            x, y = f.guide * guide_lever(m, d), zero
         else:
             x, y = f.guide, zero
         if kind < WORK:

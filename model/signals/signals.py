@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import IntEnum, auto
 from typing import Any
 
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
@@ -17,27 +17,29 @@ from .position_error import influences, root_sum_square, worst_case
 class Signal(IntEnum):
     """A signal that is watched over the cycle by its size.
 
-    Torque (N m), forces (N), power (W), the component along the slider line of the force between rod and slider (N),
-    slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking force (N), shaking
-    moment (N m) and rocking couple (N m), which is of several cylinders alone.
+    Torque (N m), forces (N), guide moment (N m), power (W), the component along the slider line of the force between
+    rod and slider (N), slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking
+    force (N), shaking moment (N m) and rocking couple (N m), which is of several cylinders alone. Up to the line force
+    they follow from the joint forces.
     """
 
     TORQUE = 0
-    PIVOT_FORCE = 1
-    CRANK_PIN_FORCE = 2
-    SLIDER_PIN_FORCE = 3
-    GUIDE_FORCE = 4
-    POWER = 5
-    LINE_FORCE = 6
-    SLIDER_SPEED = 7
-    SLIDER_ACCELERATION = 8
-    SLIDER_JERK = 9
-    POSITION_ERROR = 10
-    POSITION_ERROR_RSS = 11
-    REFLECTED_INERTIA = 12
-    SHAKING_FORCE = 13
-    SHAKING_MOMENT = 14
-    ROCKING_COUPLE = 15
+    PIVOT_FORCE = auto()
+    CRANK_PIN_FORCE = auto()
+    SLIDER_PIN_FORCE = auto()
+    GUIDE_FORCE = auto()
+    GUIDE_MOMENT = auto()
+    POWER = auto()
+    LINE_FORCE = auto()
+    SLIDER_SPEED = auto()
+    SLIDER_ACCELERATION = auto()
+    SLIDER_JERK = auto()
+    POSITION_ERROR = auto()
+    POSITION_ERROR_RSS = auto()
+    REFLECTED_INERTIA = auto()
+    SHAKING_FORCE = auto()
+    SHAKING_MOMENT = auto()
+    ROCKING_COUPLE = auto()
 
     @property
     def needs_forces(self) -> bool:
@@ -45,8 +47,32 @@ class Signal(IntEnum):
         return self <= Signal.LINE_FORCE
 
 
-_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _POWER, _LINE, _SPEED, _ACCELERATION, _JERK = range(10)
-_WORST, _RSS, _INERTIA, _SHAKING_FORCE = range(10, 14)
+_TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _MOMENT, _POWER, _LINE, *_OTHERS = map(int, Signal)
+_SPEED, _ACCELERATION, _JERK, _WORST, _RSS, _INERTIA, _SHAKING_FORCE, *_ = _OTHERS
+
+
+@analytic
+def guide_lever(m: Any, d: Design) -> Any:
+    """Return the distance of the slider pin from the centre of the guide, m."""
+    return d.outer + d.guide_distance - d.branch * m.x
+
+
+@analytic
+def size_of_force(kind: Any, f: Any, m: Any, d: Design) -> Any:
+    """Return the value of a `Signal` that follows from the joint forces alone."""
+    if kind == _TORQUE:
+        return magnitude(f.torque)
+    if kind == _POWER:
+        return magnitude(f.torque * d.speed)
+    if kind == _PIVOT:
+        return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
+    if kind == _CRANK_PIN:
+        return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
+    if kind == _SLIDER_PIN:
+        return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
+    if kind == _LINE:
+        return magnitude(f.slider_pin_x)
+    return magnitude(f.guide * guide_lever(m, d)) if kind == _MOMENT else magnitude(f.guide)
 
 
 @analytic
@@ -66,15 +92,7 @@ def signal(
                 block, j, theta, loads, piece, shift = place
                 torque = beside_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
             return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
-        if kind == _PIVOT:
-            return root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
-        if kind == _CRANK_PIN:
-            return root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
-        if kind == _SLIDER_PIN:
-            return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
-        if kind == _LINE:
-            return magnitude(f.slider_pin_x)
-        return magnitude(f.guide)
+        return size_of_force(kind, f, m, d)
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:

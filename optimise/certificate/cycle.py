@@ -14,8 +14,7 @@ from typing import Any, cast
 import numpy as np
 
 from ...model.arrays import Array, Mask
-from ...model.dynamics.torque import Forces, forces, smooth_load
-from ...model.kernel.arithmetic import magnitude, root
+from ...model.dynamics.torque import forces, smooth_load
 from ...model.kinematics.position import motion
 from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive, design_at
 from ...model.machine.loads.cylinder import Cylinder
@@ -25,7 +24,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw import Loads
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
-from ...model.signals.signals import Signal, design_motion, signal
+from ...model.signals.signals import Signal, design_motion, signal, size_of_force
 from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
 from .enclosure import UNIT, Enclosure, beside, between, chosen
@@ -127,7 +126,8 @@ class Curve:
                 if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
                     load = load + self._table(k, m, d, block, theta, outward)
             f = forces(sine, cosine, m, d, load)
-            return _of_forces(self.kind, f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward)), d)
+            whole = f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward))
+            return cast(Enclosure, size_of_force(int(self.kind), whole, m, d))
         return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
 
     def _on_crank(self, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Any:
@@ -173,24 +173,6 @@ def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
     chord = (x - low) * slope + (first + 0.5 * (above + below))
     most = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
     return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (above - below) + 4.0 * most, chord.empty)
-
-
-def _of_forces(kind: Signal, f: Forces, d: Design) -> Enclosure:
-    """Return the signal of forces without friction, as `signal` does; its compiled step takes floats only."""
-    if kind == Signal.TORQUE:
-        found = magnitude(f.torque)
-    elif kind == Signal.POWER:
-        found = magnitude(f.torque * d.speed)
-    elif kind == Signal.GUIDE_FORCE:
-        found = magnitude(f.guide)
-    else:
-        x, y = {
-            Signal.PIVOT_FORCE: (f.pivot_x, f.pivot_y),
-            Signal.CRANK_PIN_FORCE: (f.crank_pin_x, f.crank_pin_y),
-            Signal.SLIDER_PIN_FORCE: (f.slider_pin_x, f.slider_pin_y),
-        }[kind]
-        found = root(x * x + y * y)
-    return cast(Enclosure, found)
 
 
 def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:

@@ -152,10 +152,20 @@ class SliderPart(Part):
         "from the dead centre, within which it counts as at rest: dwell_angle is the crank angle of that", "0.5 mm"
     )
 
+    guide_distance: Length | None = optional(
+        "from its pin at the outer dead centre outward to the centre of its guide in the frame, for guide_moment",
+        "150 mm",
+    )
+
     @property
     def distances(self) -> SliderDistances:
         """The distances as the model has them."""
-        return SliderDistances(dead_centre=self.dead_centre, touch=self.touch_distance, dwell=self.dwell_distance)
+        return SliderDistances(
+            dead_centre=self.dead_centre,
+            touch=self.touch_distance,
+            dwell=self.dwell_distance,
+            guide=self.guide_distance,
+        )
 
 
 class MechanismPart(CrankSpeedPart):

@@ -28,8 +28,10 @@ from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, To
 from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.needs import (
     A_BAR,
+    COMPRESSOR,
     COUPLES,
     CRANK_BAR,
+    CYLINDER,
     HEAT,
     LOSSES,
     REPEATS,
@@ -156,14 +158,14 @@ RUBBING_PIVOT = Friction(crank_pivot=Pin(radius=0.01, coefficient=0.1))
 def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """Return a machine that has what a quantity is of.
 
-    Two cylinders for a rocking couple, no crank acceleration for times of strokes, bars for their strength; for losses
-    a crank pivot that rubs, which locks no design, and a load that resists more than any other one drives; else what
-    the message of a need gives as an example. Quantities of the same needs get the same one: what they have in common
-    is computed once.
+    Two cylinders for a rocking couple, no crank acceleration for times of strokes, bars for their strength, for gas a
+    compressor whose clearance follows the stroke; for losses a crank pivot that rubs, which locks no design, and a load
+    that resists more than any other one drives; else what the message of a need gives as an example. Quantities of the
+    same needs get the same one: what they have in common is computed once.
     """
     found = _fitted(set(quantity.needs), machine)
     for need in quantity.needs:
-        if not need.met(found):
+        if need.without == "undefined" and not need.met(found):
             found = _with_example(need, found)
     return _kept(found)
 
@@ -204,7 +206,7 @@ def _fitted(needs: set[Need], machine: Mechanism) -> Mechanism:
         bar = Bar(width=0.03, depth=0.02, density=7800.0)
         crank, rod = (link if isinstance(link, Bar) else bar for link in (machine.crank, machine.rod))
         return replace(machine, strength=STRENGTH, crank=crank, rod=rod)
-    return machine
+    return replace(machine, loads=(*machine.loads, AIR)) if {CYLINDER, COMPRESSOR} & needs else machine
 
 
 def random_designs(count: int, *, seed: int, least_margin: float = 1e-3, greatest_margin: float = 3.0) -> Array:

@@ -97,14 +97,17 @@ def test_no_designs_have_no_values(quantity: Quantity) -> None:
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
-def test_only_means_and_works_may_be_negative(quantity: Quantity) -> None:
-    gas = ("indicated_work", "mean_effective_pressure")
-    works = ("mean_torque", "mean_power", "delivered_work", "energy_per_cycle", *gas)
-    pins = ("static_safety",)  # below zero where a pin is wider than its eye
-    assert quantity.signed == (quantity.name in (*works, *pins))
+def test_only_a_signed_quantity_may_be_negative(quantity: Quantity) -> None:
     if not quantity.signed:
         for machine in MACHINES.values():
             assert np.all(quantity.evaluate(fitted(quantity, machine), DESIGNS).values >= 0.0)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES.values(), ids=QUANTITIES)
+def test_picture_is_one_that_the_page_draws(quantity: Quantity, pytestconfig: pytest.Config) -> None:
+    script = pytestconfig.rootpath / "service" / "page" / "static" / "help" / "picture.js"
+    drawn = script.read_text(encoding="utf-8").split("const PICTURES = {")[1]
+    assert quantity.picture in re.findall(r'^  "?([a-z -]+)"?: \{', drawn, flags=re.MULTILINE)
 
 
 def test_peak_rms_and_mean_torque_are_in_order() -> None:

@@ -9,7 +9,10 @@ import pytest
 from tests.recipes import code_of, require_taken_up
 
 NAME = "rms_slider_acceleration"
-SUITES = ("objectives/test_quantities.py", "objectives/test_units.py", "optimise/test_job.py")
+SUITES = (
+    *("objectives/test_quantities.py", "objectives/test_units.py", "objectives/test_gradients.py"),
+    *("optimise/test_job.py", "optimise/test_every_quantity_as_an_objective.py"),
+)
 
 
 @pytest.mark.slow

@@ -275,7 +275,7 @@ function masses(form) {
     link(form, ["mechanism", "crank"], "crank"),
     link(form, ["mechanism", "rod"], "rod"),
     quantity(form, ["mechanism", "slider", "mass"], slider),
-    ["dead_centre", "touch_distance", "dwell_distance"].map((key) =>
+    ["dead_centre", "touch_distance", "dwell_distance", "guide_distance"].map((key) =>
       byschema(form, ["mechanism", "slider", key]),
     ),
     byschema(form, ["mechanism", "gravity"]),
