@@ -16,7 +16,6 @@ from slidercrank.optimise.solve import solve
 
 from .dask_cluster import DaskCluster
 
-_BETWEEN = 5.0  # s between two blows, on average
 _AWAY = 2.0  # s that the scheduler is away
 _SUSPENDED = 1.0, 12.0  # s that a worker or the scheduler is suspended
 ROBUST = """
@@ -73,9 +72,19 @@ def job(designs: int, samples: int) -> Problem:
 
 
 def strike(
-    workers: int, schedulers: int, seed: int, *, suspensions: int = 0, designs: int = 3, samples: int = 200
+    workers: int,
+    schedulers: int,
+    seed: int,
+    *,
+    suspensions: int = 0,
+    between: float = 5.0,
+    designs: int = 3,
+    samples: int = 200,
 ) -> Struck:
-    """Solve a robust job again and again until so many workers and schedulers were killed or suspended under it."""
+    """Solve a robust job again and again until so many workers and schedulers were killed or suspended under it.
+
+    between: two blows, on average, s.
+    """
     chance = random.Random(seed)
     problem = job(designs, samples)
     alone = solve(problem)
@@ -86,7 +95,7 @@ def strike(
 
         def blow() -> None:
             for kind in blows:
-                if over.wait(chance.expovariate(1.0 / _BETWEEN)):
+                if over.wait(chance.expovariate(1.0 / between)):
                     return
                 if kind == "worker":
                     cluster.kill_worker()

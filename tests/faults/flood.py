@@ -13,7 +13,7 @@ import httpx
 
 from .api_process import TOKEN, Api, api
 from .places import place
-from .watched import FILES, PATIENCE, Flooded, many_files, watched
+from .watched import FILES, Flooded, many_files, watched
 
 _TURN = 30.0  # s that a request waits while others are first, as docs/service.md says
 _JOB = (
@@ -23,17 +23,14 @@ _JOB = (
 )
 
 
-def flood(count: int, seed: int, *, patience: float = PATIENCE) -> Flooded:
-    """Send `count` requests of each kind to an API of its own; watch whether it answers all the time.
-
-    patience: until a sign of life, s; more on a machine that is busy with something else.
-    """
+def flood(count: int, seed: int) -> Flooded:
+    """Send `count` requests of each kind to an API of its own; watch whether it answers all the time."""
     flooded, random_ = Flooded(), random.Random(seed)
     with place("sqlite") as where, many_files(), api(where.address, FILES) as served:
         served.until_it_answers()
         kinds = [kind for kind in (_bodies, _large_jobs, _addresses, _headers, _slow_bodies) for _ in range(count)]
         random_.shuffle(kinds)
-        with watched(served, flooded, patience):
+        with watched(served, flooded):
             _half_open(served, flooded, 1100)
             for kind in kinds:
                 kind(served, flooded)

@@ -20,7 +20,7 @@ _DESIGNS, _QUANTITIES = 10_000, 25
 _FEW = 5
 """Requests that are sent at a time."""
 _PAUSE = 0.1  # s
-_LONGEST = 30.0  # s until something comes
+_LONGEST = 300.0  # s, so that nothing waits for ever; how soon an API answers is judged by its signs of life
 _TOKEN = {"Authorization": f"Bearer {TOKEN}"}
 Pause = Callable[[], bool]
 """Waits a moment, and returns whether the clients are to end."""

@@ -12,7 +12,7 @@ from slidercrank.service.store import Store
 from .api_process import Api, api
 from .patient import patient_clients
 from .places import place
-from .watched import FILES, PATIENCE, Flooded, many_files, watched
+from .watched import FILES, SIGNS, Flooded, many_files, watched
 
 _REQUEST = b"GET /api/v1/health/live HTTP/1.1\r\nHost: localhost\r\n"
 _HEAD = _REQUEST + b"".join(b"a%d: %s\r\n" % (number, b"b" * 600) for number in range(80)) + b"\r\n"
@@ -26,15 +26,15 @@ ATTACKS: dict[Attack, tuple[int, bytes]] = {
 """Connections, and what each sends: 300 and 9,000 requests of 53 bytes, large heads, bodies that do not end."""
 
 
-def stall(attack: Attack, seconds: float, *, patience: float = PATIENCE) -> Flooded:
+def stall(attack: Attack, seconds: float) -> Flooded:
     """Attack an API of its own in one of the ways of `ATTACKS`, and return what came of it.
 
-    seconds: how long. patience: until a sign of life, s; more on a machine that is busy with something else.
+    seconds: how long at least.
     """
     flooded = Flooded()
     with place("sqlite") as where, Store(where.address) as store, many_files(), api(where.address, FILES) as served:
         served.until_it_answers()
-        with patient_clients(store, served, flooded.violations), watched(served, flooded, patience):
+        with patient_clients(store, served, flooded.violations), watched(served, flooded):
             _send(served, flooded, *ATTACKS[attack], seconds)
     return flooded
 
@@ -45,7 +45,7 @@ def _send(served: Api, flooded: Flooded, count: int, content: bytes, seconds: fl
     with contextlib.ExitStack() as stack:
         held: dict[int, tuple[socket.socket, memoryview]] = {}
         stack.callback(_close, held)
-        while time.monotonic() < end:
+        while time.monotonic() < end or flooded.signs < SIGNS:
             for number in range(count):
                 try:
                     if number not in held:

@@ -115,7 +115,7 @@ def test_a_function_of_a_job_is_called_where_whoever_runs_it_allows_it(
         "slidercrank serve --allow-quantity lengths:rod; or solve the job here: slidercrank optimise own.toml"
     )
     options = re.findall(r"--allow-quantity \S+(?=;)", told)[0].split() if who == "a worker" else []
-    assert command("worker", "--drain", *options).exit_code == 0
+    assert command("worker", "--drain", "--cores", "1", *options).exit_code == 0
     job = json.loads(command("jobs", "--json").stdout)[0]
     if who == "a worker":
         assert (job["state"], job["summary"]["designs"] > 0) == ("done", True), job

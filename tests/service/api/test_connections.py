@@ -135,15 +135,14 @@ def test_half_open_connections_keep_nobody_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
+    monkeypatch.setattr(connections, "HEAD_SECONDS", 1e6)  # whoever waits for them is never answered
     with Store(tmp_path / "store.db") as store, client_of(store) as client, contextlib.ExitStack() as stack:
         assert client.get("/health/live").status_code == 200
         for number in range(100):
             there = stack.enter_context(connected(client))
             there.sendall(LIVE[: number % len(LIVE)])
             if number % 10 == 0:
-                begin = time.monotonic()
                 assert client.get("/health/live").status_code == 200
-                assert time.monotonic() - begin < 1.0
         kept = client.get("/health/live")
         assert kept.status_code == 200
     assert "closed to make room: more than 20" in caplog.text
