@@ -15,6 +15,7 @@ from .greatest_formula import GreatestFormula
 from .kinds import ANGLE, SPEED
 from .needs import EVEN_SPEED, Need
 from .needs import SPEED as TURNS
+from .proportions import STROKE
 from .quantity import Formula, Group, Number
 
 
@@ -107,7 +108,7 @@ DWELL_ANGLE = NearDeadCentre(
         "x = x_in + d"
     ),
     section="2. Closed forms",
-    picture="stroke",
+    picture=STROKE.picture,
     example="30 deg",
     better="high",
     needs=(_needs("dwell"),),
