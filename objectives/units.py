@@ -113,6 +113,7 @@ _HINTS = {
     "%": "only the tolerance of a length can be a percentage",
     '"': "write inch",
     "'": "write foot",
+    "Grad": "write deg",
 }
 
 _APART = (
@@ -123,7 +124,7 @@ _APART = (
 """Kinds of one dimension that are told apart: the SI unit of a kind, symbols of another one, and what that is."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
-PATTERN = rf"^\s*{_NUMBER}\s*(1\s*/\s*)?[^\d\s.+-].*$"
+PATTERN = rf"^\s*{_NUMBER.replace('[+-]', '[+−-]', 1)}\s*(1\s*/\s*)?[^\d\s.+-].*$"
 """Pattern of a value with a unit, for a JSON Schema."""
 _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*)|\s+(1\s*/.*))?\s*", re.ASCII | re.DOTALL)
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
@@ -135,7 +136,7 @@ _LONGEST = 60
 _GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
 SPACES = "\u00a0\u2007\u2009\u202f"
 """Spaces that do not break a line, as texts of pages and papers have them between number and unit."""
-_TYPESET = str.maketrans(f"⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"-0123456789{' ' * len(SPACES)}")
+_TYPESET = str.maketrans(f"−⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"--0123456789{' ' * len(SPACES)}")
 
 
 def kind_of(symbol: str) -> Kind:
@@ -342,8 +343,14 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
                 f"must not contain a comma; got {shown(text)}; write {shown(parted)} if the comma separates thousands, "
                 f"or {shown(point)} if it is a decimal comma"
             )
+        parts = number_and_unit(point)
+        if kind.unit and parts and not parts[1]:
+            point = f"{parts[0]} {kind.metric.symbol}"
         raise InputError(f"use a decimal point, not a comma; got {shown(text)}; write {shown(point)}")
     match = _VALUE.fullmatch(text.translate(_TYPESET))
+    if share := re.fullmatch(r"\s*([+-]?\d+)\s*/\s*([1-9]\d*)\s*(\D.*)", text, re.ASCII):
+        point = f"{float(Fraction(f'{share[1]}/{share[2]}')):.10g} {share[3]}"
+        raise InputError(f"write a decimal number, not a fraction; got {shown(text)}; write {shown(point)}")
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
     if _SPREAD.fullmatch(text.translate(_TYPESET).strip()):
@@ -414,7 +421,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
     if name in _USUAL:
         return _USUAL[name]
     registry = _registry()
-    if not registry.parse_unit_name(name):
+    if name == "Grad" or not registry.parse_unit_name(name):  # else a gigaradian
         hint = _HINTS.get(name)
         near = None if hint else closest(name, _COMMON)
         meant = f", {hint}" if hint else f", did you mean {near}?" if near else ""

@@ -153,7 +153,9 @@ class Formulas:
         try:
             found = self._of(text)
         except InputError as error:
-            raise JobError(f"{key}: {error}") from None
+            name = text.strip().replace("-", "_")
+            known = f"no quantity is called {shown(text)}; did you mean {name}?" if name in self._quantities else error
+            raise JobError(f"{key}: {known}") from None
         if isinstance(found, FormulaQuantity) and found.constant and not leaves_of([found]):
             raise JobError(
                 f"{key}: a formula names a quantity, a dimension or a varying number; got {found.formula}, which is "

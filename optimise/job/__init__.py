@@ -25,7 +25,7 @@ from ..problem.problem import Problem
 from ..sizing.section_limits import SectionLimits
 from .beside import Files
 from .catalogue import catalogues, with_catalogues, with_options
-from .file import read, require_plain
+from .file import LARGEST, read, require_plain
 from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
@@ -35,6 +35,7 @@ from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .stated import problem_of
 from .target_motion import points_file, with_points
+from .toml_errors import with_lines
 from .varying import with_values
 
 __all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job", "with_files"]
@@ -114,8 +115,11 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
     try:
         yield
     except JobError as error:
-        name = path_text(path)
-        error.args = (f"{name if name.isprintable() else shown(name)}: {error}",)
+        name, file, message = path_text(path), path_from_text(path), str(error)
+        with contextlib.suppress(OSError, ValueError):
+            if file.suffix.casefold() == ".toml" and file.is_file() and file.stat().st_size <= LARGEST:
+                message = with_lines(message, file.read_text(encoding="utf-8-sig"))
+        error.args = (f"{name if name.isprintable() else shown(name)}: {message}",)
         raise error from None
 
 
@@ -153,7 +157,7 @@ def parse_job(
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = plain_values(job, data)
-        found = [_with_doubts(one, doubts) for one in explain(error, schema_of(job))]
+        found = [_with_doubts(one, doubts) for one in explain(error, schema_of(job), data)]
         count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
         heading = [count] if len(found) > 1 else []
         more = ["... and more"] if len(found) > MOST else []

@@ -42,7 +42,8 @@ def read(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
         raise JobError(
-            f"a job file is UTF-8 text; got byte 0x{content[error.start]:02x} in line {line}; save it as UTF-8"
+            f"line {line}: a job file must be saved as UTF-8; got byte 0x{content[error.start]:02x}, which is not; "
+            "in the editor choose Save as, encoding UTF-8"
         ) from None
     if not text.strip():
         raise JobError("a job file states a problem; got an empty file; start from a shipped job")
@@ -85,7 +86,7 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         line = text.split("\n")[error.lineno - 1].strip()
         raise JobError(
-            f"the file must be JSON; got {shown(line)} in line {error.lineno}, which cannot be read from column "
+            f"line {error.lineno}: the file must be JSON; got {shown(line)}, which cannot be read from column "
             f"{error.colno} on; put names, texts and values with units in double quotes, and commas between entries"
         ) from None
     except ValueError:

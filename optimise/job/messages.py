@@ -23,9 +23,11 @@ DEEPEST = 8
 LONGEST = 100
 """Number of problems that are looked at: each costs a search for a near key."""
 
-SEVERAL, SINGLE = "must be a list of tables, in double brackets", "must be a single table, in single brackets"
+SEVERAL, SINGLE = "each {0} begins with [[{0}]], in double brackets", "there is one [{0}] only, in single brackets"
 
 Schema = dict[str, Any]
+
+_WISHES = ("minimise", "maximise", "minimize", "maximize")
 
 _TABLE, _NUMBER, _WHOLE = "must be a table of keys", "must be a number", "must be a whole number"
 _RULES = {
@@ -55,29 +57,42 @@ _LIMITS = {
 """Sentences of kinds of errors, by their names in pydantic, and the value of the context that each names."""
 
 
-def explain(error: ValidationError, schema: Schema) -> list[str]:
+def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | None = None) -> list[str]:
     """Return one sentence for each problem, the most useful first.
 
-    schema: the JSON Schema of the job, which says the allowed keys and an example for each. Unknown keys come first: a
-    misspelt key explains the missing one, which is then left out.
+    schema: the JSON Schema of the job, which says the allowed keys and an example for each. tables: what was read, for
+    the order of its keys. Unknown keys come first: a misspelt key explains the missing one, which is then left out.
     """
-    unknown, wrong, missing, meant = list[str](), list[str](), dict[str, str](), set[str]()
+    unknown, wrong, missing, meant = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
     listed = error.errors(include_url=False)[:LONGEST]
     for details in listed:
         if details["type"] == "too_short" and any(_within(other, details) for other in listed):
             continue  # a list that is too short for want of the entries that were refused
         if details["type"] == "extra_forbidden":
-            sentence, near = _unknown(details["loc"], details["input"], schema)
+            unknown[details["loc"]], near = _unknown(details["loc"], details["input"], schema)
             meant.add(near)
-            unknown.append(sentence)
+        elif details["loc"][:-1] == ("constraints",) and details["input"] in _WISHES:
+            unknown[details["loc"]] = f"{key_of(details['loc'])}: {sentence_of(details, schema)}"
         else:
             path = keys_of(details["loc"])
-            sentence = f"{key_of(path)}: {_sentence(details, schema)}"
+            sentence = f"{key_of(path)}: {sentence_of(details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
             else:
                 missing[key_of(path)] = sentence
-    return [*unknown, *wrong, *(text for key, text in missing.items() if key not in meant)]
+    for table in dict.fromkeys(loc[:-1] for loc in unknown):
+        keys = [str(loc[-1]) for loc in unknown if loc[:-1] == table]
+        keys.sort(key=list((tables or {}).get("constraints", keys) if table == ("constraints",) else keys).index)
+        owner = min(_owners(keys, schema), key=lambda one: one.strip("[]") not in missing, default="")
+        if len(keys) > 1 and owner and owner.strip("[]") not in table:
+            unknown = {loc: sentence for loc, sentence in unknown.items() if loc[:-1] != table}
+            place = f"in {key_of(keys_of(table))}" if table else "at the top of the file"
+            wrong.append(
+                f"{key_of(keys_of([*table, keys[0]]))}: {', '.join(keys[:-1])} and {keys[-1]} belong below the heading "
+                f"{owner}; got them {place}; write {owner} above {keys[0]}, or move them there"
+            )
+            meant.add(owner.strip("[]"))
+    return [*unknown.values(), *wrong, *(text for key, text in missing.items() if not {key, key.split(".")[0]} & meant)]
 
 
 def _within(inner: ErrorDetails, outer: ErrorDetails) -> bool:
@@ -128,17 +143,33 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
         ), ""
     owner = place_of(str(key), schema)
     near = None if owner else closest(str(key), allowed)
-    choice = f"did you mean {near}?" if near else owner or possible
-    return f"{place}: unknown key {shown(str(key))}; {choice}", key_of([*path, near]) if near else ""
+    what, meant = f"key {shown(str(key))}", near
+    if not table and isinstance(value, Mapping | list):
+        what, meant = f"heading [{place}]", next(iter(headings([near or ""], schema)), near)
+    choice = f"did you mean {meant}?" if near else owner or possible
+    return f"{place}: unknown {what}; {choice}", key_of([*path, near]) if near else ""
 
 
 def place_of(key: str, schema: Schema) -> str:
     """Return in words where a key that its table does not have belongs; "" if no table has it either."""
-    tables = {name: inner for name in schema["properties"] if (inner := _properties(schema, [name]))}
-    if key in schema["properties"] and key not in tables:
+    if key in schema["properties"] and not headings([key], schema):
         return f"{key} stands above the first table of the file; move it there"
-    owners = [f"[{name}]" for name, keys in tables.items() if key in keys]
+    owners = _owners([key], schema)
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
+
+
+def _owners(keys: Sequence[str], schema: Schema) -> list[str]:
+    """Return the headings of the tables that have all of some keys."""
+    names = schema["properties"]
+    return [one for name in names for one, known in headings([name], schema).items() if known.issuperset(keys)]
+
+
+def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
+    """Return the heading of a table, none if it is another entry, with the keys that may stand below it."""
+    (first, *rest), name = words, ".".join(words)
+    tops: list[list[Any]] = [[first], [first, 0]] if rest else [[first]]
+    places = [place for top in tops for place in ((f"[{name}]", [*top, *rest]), (f"[[{name}]]", [*top, *rest, 0]))]
+    return {heading: keys for heading, path in places if (keys := set(_properties(schema, path)))}
 
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
@@ -148,7 +179,7 @@ def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
     return list(dict.fromkeys(filter(None, told)))
 
 
-def _sentence(details: ErrorDetails, schema: Schema) -> str:
+def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     """Return rule, value and remedy of one problem."""
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = example_of(schema, path)
@@ -160,9 +191,9 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
         return f"is missing, but required{write.replace('write', 'add')}"
     table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _properties(schema, [*path, 0]):
-        return f"{SEVERAL}; got a single one; write [[{table}]] for [{table}]"
+        return f"{SEVERAL.format(table)}; got a single one; write [[{table}]] for [{table}]"
     if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(one, Mapping) for one in value):
-        return f"{SINGLE}; got a list of {len(value)}; write [{table}] for [[{table}]]"
+        return f"{SINGLE.format(table)}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
         said = re.findall(r"'([^']*)'", str(context.get("expected", "")))
@@ -177,6 +208,8 @@ def _sentence(details: ErrorDetails, schema: Schema) -> str:
     if kind in ("too_short", "too_long"):
         return f"{rule_of(details)}; got {len(value)}{write}"
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
+        if value in _WISHES:
+            return f"{shown(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
         first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(others))))}"

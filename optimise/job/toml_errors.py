@@ -1,4 +1,4 @@
-"""Mistakes in the syntax of a TOML text, in words: the key, the rule, what was typed, and how to write it.
+"""Mistakes in the syntax of a TOML text, in words: the line and key, the rule, what was typed, and how to write it.
 
 The parser says only where it stops. So the line is tried with each of some edits; the one with which most of it can be
 read is kept, until all of it can be. A remedy is therefore always a line that the parser takes.
@@ -11,13 +11,16 @@ import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
-from ...objectives.units import number_and_unit
-from .messages import SEVERAL, SINGLE, example_of, key_of, nodes_at
+from pydantic import ValidationError
+
+from ...objectives.units import SPACES, number_and_unit
+from .messages import SEVERAL, SINGLE, example_of, headings, key_of, keys_of, nodes_at, sentence_of
 from .model import Job
 from .schema import schema_of
 
 _LONGEST = 1000  # of a line that is read and edited
-_MOST_SHOWN = 80  # characters of a line that are repeated
+_MOST_SHOWN = 200  # characters of a line that are repeated
+_MOST_JOINED = 8  # lines that may be one
 _LIST = "x = ["
 """What stands before a line of a list that began above it."""
 _PLACE = re.compile(r"at line (\d+), column (\d+)")
@@ -25,20 +28,24 @@ _TWICE = re.compile(r"Cannot |Duplicate inline table key '(.*)'")
 _WORD = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _PATH = rf"{_WORD}(?:\s*\.\s*{_WORD})*"
 _KEY = re.compile(rf"\s*({_PATH})\s*[=:]")
+_BARE = re.compile(rf"\s*{_PATH}\s*[=:]?\s*")
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_PATH})\s*\]\]?\s*(?:#.*)?")
-_NAME = re.compile(rf"\s*(\[*)\s*({_PATH})\s*([\])}}]*)\s*[:;,]?\s*((?:#.*)?)")
+_NAMES = re.compile(r"[\s(<{]*(\[*)\s*([^\W\d][\w-]*(?:[\s.,/]*[^\W\d][\w-]*)*)\s*(\]*)[\s)>}]*[=:;,]?\s*")
+"""A heading, however it is written."""
 _INNER = re.compile(r"([\w-]+)\s*=\s*\[?\s*$")
-_PASSED = r"""("(?:[^"\\]|\\.)*"|'[^']*'|#.*)|"""
+_TEXT = r"""(?:"(?:[^"\\]|\\.)*"|'[^']*')"""
+_PASSED = rf"({_TEXT}|#.*)|"
 """Whole texts and comments, which an edit leaves as they are."""
+_COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
 _APART = r"=,;:\[\]{}()#\"'"
 _VALUE = re.compile(
     rf"{_PASSED}(?<=[=\[,;{{])(\s*)([+-]?\d+,\d+(?![\d,])[^{_APART}]*?|[^\s{_APART}][^{_APART}]*?)"
-    r"(?=\s*(?:[,;\]})#]|//|--|/\*|$))"
+    r"(?=\s*(?:[,;\]})]|//|--|/\*|$))"
 )
 _DIGITS = re.compile(r"([+-]?)(\d*)([.,]?)(\d*)([eE][+-]?\d+)?", re.ASCII)
 _WRITTEN = re.compile(r"(?=.*[^\W\d]|.*[%°±\"]|[+-]?\d*[.,]?\d*$)")
 """A text, a value with a unit or a number, however they are written."""
-_BORDER = re.compile(r"(?<=[=\[,{])\s*()(?=\S)|(?<=\S)()(?=\s*(?:[,\]}#]|$))")
+_BORDER = re.compile(r"(?<=[=\[,{])\s*()(?=\S)|(?<=\S)()(?=\s*(?:[,\]}]|$))")
 Path = tuple[str | int, ...]
 """Keys of a table and of what stands in it, from the top of the file on."""
 Edit = Callable[[str], tuple[str, str]]
@@ -48,68 +55,159 @@ Edit = Callable[[str], tuple[str, str]]
 def _edit(wrong: str, right: str, rule: str) -> Edit:
     """Return the edit that replaces a pattern outside of texts and comments."""
     pattern = re.compile(f"{_PASSED}(?:{wrong})")
-    return lambda line: (rule, pattern.sub(lambda found: found[1] or found.expand(right), line))
+    return lambda line: (rule, pattern.sub(lambda found: found[1] or found.expand(right), line).rstrip(" "))
 
 
+def _rewrite(wrong: str, right: str, rule: str) -> Edit:
+    """Return the edit that replaces a pattern, in texts too. Its groups count from 2 as those of `_edit`."""
+    pattern = re.compile(f"()(?:{wrong})")
+    return lambda line: (rule, pattern.sub(right, line))
+
+
+_TEXT_QUOTED, _VALUE_QUOTED = "text must be in quotes", "a value with a unit must be in quotes"
+_STRAIGHT, _EQUALS = "text must be in straight quotes", "there must be = between a key and its value"
+_COMMENTED, _APART_BY = "a comment must begin with #", "values must be separated by commas"
+_BRACES, _SQUARE = "keys within a value must be in braces", "a list must be in square brackets"
+_BELOW, _ABOVE = "a lower limit is written with min", "an upper limit is written with max"
+_ONE_NAME = "a key must not contain spaces"
 _SIGNS: tuple[Edit, ...] = (
-    _edit("[“”„‟«»‘’‚‛`´″]", '"', "text must be in straight quotes"),
+    _edit("[“”„‟«»‘’‚‛`´″]", '"', _STRAIGHT),
+    _rewrite("''", '"', _STRAIGHT),
     _edit("'", '"', "text must end with the quote that it begins with"),
     _edit("[−–]", "-", "a minus sign must be the - of the keyboard"),
-    _edit("[\u00a0\u2007\u2009\u202f]", " ", "spaces must be ordinary ones"),
+    _edit(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
 )
 """Before values are read."""
-_COMMAS = _edit(r"\s*;\s*(?!\s*(?:#|$))", ", ", "values must be separated by commas")
+_COMMAS = _edit(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _APART_BY)
 _EDITS: tuple[Edit, ...] = (
-    _edit(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*)?$", r"# \2", "a comment must begin with #"),
-    _edit(r"\s*(?::=?|=[=>]|<-)\s*", " = ", "there must be = between a key and its value"),
-    _edit(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", "there must be = between a key and its value"),
-    lambda line: _with_decimal_points(line),
+    _edit(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*(.*))?$", r"# \2 \3", _COMMENTED),
+    _edit(r"\s*(?::=?|=[=>]|<-)\s*", " = ", _EQUALS),
+    _edit(r"^(\s*[\w.-]+)\s*\"\s*=\s*", r'\2 = "', _EQUALS),
+    _edit(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
+    _edit(r"([{,]\s*[\w-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
+    _edit(rf"=?\s*>=?\s*({_TEXT}|[\d.]+)", r" = { min = \2 }", _BELOW),
+    _edit(rf"=?\s*<=?\s*({_TEXT}|[\d.]+)", r" = { max = \2 }", _ABOVE),
+    _edit(r"(?<={)\s*>=?\s*", " min = ", _BELOW),
+    _edit(r"(?<={)\s*<=?\s*", " max = ", _ABOVE),
     _COMMAS,
-    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", "values must be separated by commas"),
-    _edit(r"\s*[;,](?=\s*(?:#|$))", "", "a line must end after its value"),
+    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", _APART_BY),
+    _edit(r",\s*,", ",", "there must be one comma between values"),
+    _edit(r"\s*[;,]$", "", "a line must not end with a comma or semicolon"),
     _edit(r"\s*[;,]?\s+(?=[\w.-]+\s*=)", "\n", "each key must have a line of its own"),
     _edit(r",\s*(?=})", " ", "there must be no comma before a closing brace"),
-    _edit(r"(?<=[^\s{])\s*$", " }", "a table in braces must be on one line"),
-    _edit(r"\(([^()]*)\)", r"[\2]", "a list must be in square brackets"),
-    _edit(r"(?<==)\s*([^\[{#]*,[^#]*?)\s*(?=#|$)", r" [\2]", "a list must be in square brackets"),
-    _edit(rf"(?<==)\s*([^\W\d][^{_APART}]*(?:,[^{_APART}]*)*?)\s*(?=#|$)", r' "\2"', "text must be in quotes"),
-    lambda line: ("folders in a path must be separated by /", line.replace("\\", "/")),
+    _edit(r"=\s*(?=[\w-]+\s*=)", "= { ", _BRACES),
+    _edit(r"(?<=[^\s{])$", " }", _BRACES),
+    _edit(rf"{{(\s*{_TEXT}(?:\s*,\s*{_TEXT})*\s*)}}", r"[\2]", _SQUARE),
     lambda line: _with_brackets(line),
+    _edit(r"\(([^()]*)\)", r"[\2]", _SQUARE),
+    _edit(r"(?<==)\s*(?=[^\[{]*\]$)", " [", _SQUARE),
+    _edit(r"(?<==)\s*([^\[{]*,.*?)\s*$", r" [\2]", _SQUARE),
+    _rewrite(r"^(\s*\w+(?:\.\w+)+)(\s+)([\w-]+)(?=\s*=)", r"\2.\4", _ONE_NAME),
+    _rewrite(r"^(\s*[\w.-]+)(\s+)([\w-]+)(?=\s*=)", r"\2_\4", _ONE_NAME),
+    _rewrite(
+        r"^(\s*)(\w+)(?=\s*=)", r'\2"\3"', "a key outside of quotes must be in the letters a to z, digits, _ and -"
+    ),
+    _edit(r"\[\s*([\d.]+)\s*,\s*([\d.]+)\s*\]\s*([^\W\d]\w*)$", r'["\2 \4", "\3 \4"]', "each value must have its unit"),
+    _rewrite(
+        r"\"([+-]?[\d.]+)\"\s+([^\W\d][^\",;\]}]*)$", r'"\2 \3"', "a unit must be within the quotes of its number"
+    ),
+    _rewrite(r"^(\s*)\"([\w.-]+)\s*=\s*([^\"]*)\"$", r'\2\3 = "\4"', "only a value may be in quotes"),
+    _edit(rf"(?<==)\s*([^\W\d][^{_APART}]*(?:,[^{_APART}]*)*?)\s*$", r' "\2"', _TEXT_QUOTED),
+    _edit(r"(?<=[\"\]}])\s+(?=[^\W\d][\w ,.-]*$)", "  # ", _COMMENTED),
+    _edit(r"^(?=(?:[^\W\d][\w,.:-]*\s+){3,}[\w.]+$)", "# ", _COMMENTED),
+    _rewrite(
+        r"^(\s*[\w.-]+\s*=\s*\"[^\"]*\s)\"([^\"]+)\"([\s.,;:)][^\"]*\")$",
+        r"\2'\3'\4",
+        'text in double quotes must not contain "',
+    ),
+    lambda line: ("folders in a path must be separated by /", line.replace("\\", "/")),
 )
 
 
 def in_words(text: str, error: str) -> str:
-    """Return key, rule, value and remedy for a parser's error in a text."""
+    """Return line, key, rule, value and remedy for a parser's error in a text."""
     lines = text.replace("\r\n", "\n").split("\n")
     place = _PLACE.search(error)  # none at the end of the text
     number = min(int(place[1]), len(lines)) if place else len(lines)
     number = next((n for n in range(number, 0, -1) if lines[n - 1].strip()), 1)
     begins = _begins(lines[number - 1])
     start = next((n for n in range(number - 1, 0, -1) if _begins(lines[n - 1])), number)
-    if twice := _TWICE.search(error):
+    code = _code(lines[number - 1])
+    if (twice := _TWICE.search(error)) and (begins or _with_brackets(code)[1] == code):
         return _repeated(lines[: number if begins else start], twice[1])
+    opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
+    if not place and len(opened) % 2:
+        return _unclosed(lines[: opened[-1]], "the end of the file")
     within = start < number and _left(lines[start - 1 : number - 1]) < 0
     if not place or (within and begins):
         first = start if within else number
         if _left(lines[first - 1 : number - begins * within]) < 0:
             return _unclosed(lines[:first], f"line {number}" if place else "the end of the file")
-    path = _path_of(lines[: start if within else number])
+    path = _path_of(lines[: start if within else number]) or _path_of([*lines[: number - 1], f"{code} ="])
+    like = example_of(schema_of(Job), path)
     before = _LIST if within else ""
-    if within and _left([before + lines[number - 1]]) <= 0:
-        number = max(n for n in range(start, number) if lines[n - 1].strip())
-        rules, edited = ["values must be separated by commas"], f"{lines[number - 1].rstrip()},"
+    if like and _BARE.fullmatch(code) and _with_brackets(code)[1] == code:
+        rules, edited = ["there must be = and a value after a key"], like
+    elif within and _left([before + code]) <= 0:
+        number = max(n for n in range(start, number) if _code(lines[n - 1]).strip())
+        code = _code(lines[number - 1])
+        rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
-        rules, edited = _edited(before + lines[number - 1], path)
-    line, edited = lines[number - 1], edited.removeprefix(before)
+        joined = [" ".join(map(_code, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
+        few = not within and len(joined[-1]) <= _LONGEST
+        last = next((number + n for n, one in enumerate(joined, start=1) if few and not _left([one])), 0)
+        if last:
+            rule = "a text, or keys in braces, must be on one line"
+            return f"{_at(number, path)}{rule}; got lines {number} to {last}; join them"
+        rules, edited = _edited(before + code, path)
     if rules:
-        got, write = (_shown(_around(one, _same(line, edited))) for one in (line, edited))
-        return f"{_named(path)}{'; '.join(rules)}; got {got} in line {number}; write {write}"
-    like = example_of(schema_of(Job), path) or "key = value, [table], or # and a comment"
-    got = _shown(_around(line, int(place[2]) if place else 0))
+        edited = edited.removeprefix(before)
+        path = path if within else _path_of([*lines[: number - 1], edited])
+        if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _refused(lines[: number - 1], edited)):
+            return f"line {number}, {refused}"
+        got, write = (_shown(one, _same(code, edited)) for one in (code, edited))
+        return f"{_at(number, path)}{'; '.join(rules)}; got {got}; write {write}"
+    like = like or "key = value, a heading like [objectives], or # and a comment"
     return (
-        f"{_named(path)}must be a line like {like}; got {got} in line {number}; write keys in plain letters, and texts "
-        "and values with units in quotes"
+        f"{_at(number, path)}must be a line like {like}; got {_shown(code, int(place[2]) if place else 0)}; "
+        "write keys in plain letters, and texts and values with units in quotes"
     )
+
+
+def with_lines(message: str, text: str) -> str:
+    """Return a message on the tables of a TOML text with the line of the key with which each of its lines begins."""
+    keys = list(_paths(text.split("\n")))
+    lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
+    lines |= {key_of(path): number for number, path, _ in keys}
+
+    def numbered(found: re.Match[str]) -> str:
+        key = found[2]
+        while key and key not in lines:
+            key = re.sub(r"(\.| #)?[^.#]*$", "", key)
+        return f"{found[1]}line {lines[key]}, {found[2]}" if key else found[0]
+
+    return re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)
+
+
+def _code(line: str) -> str:
+    """Return a line without its comment."""
+    return line[: next((found.start() for found in _COMMENT.finditer(line[:_LONGEST]) if found[1]), None)]
+
+
+def _refused(above: Sequence[str], line: str) -> str:
+    """Return key and fault of the value in a line that can be read; "" if there is none. above: the lines above it."""
+    lines = [*(one for one in above if _HEADER.fullmatch(one[:_LONGEST])), line]
+    path = _path_of(lines)
+    try:
+        Job.model_validate(tomllib.loads("\n".join(lines)))
+    except ValidationError as error:
+        for details in error.errors(include_url=False):
+            place = keys_of(details["loc"])
+            if path and tuple(place[: len(path)]) == path and details["type"] not in ("missing", "extra_forbidden"):
+                return f"{key_of(place)}: {sentence_of(details, schema_of(Job))}"
+    except ValueError:  # headings that stand twice
+        pass
+    return ""
 
 
 def _begins(line: str) -> bool:
@@ -137,8 +235,10 @@ def _edited(line: str, path: Path) -> tuple[list[str], str]:
     rules: list[str] = []
     left = _left([line]) if len(line) <= _LONGEST else 0
     while left > 0:
-        tried = [*(edit(line) for edit in _SIGNS), _with_values(line, path), *(edit(line) for edit in _EDITS)]
-        tried += _with_a_quote(line)
+        rule, values = _with_values(line, path)
+        both = [(f"{rule}; {_APART_BY}", _COMMAS(values)[1])] if rule else []
+        tried = [*(edit(line) for edit in _SIGNS), (rule, values), *both, *(edit(line) for edit in _EDITS)]
+        tried += _with_a_sign_more_or_less(line)
         rule, line = min(tried, key=lambda one: max(_left([one[1]]), 0))
         left, before = _left([line]), left
         if left >= before:
@@ -172,16 +272,17 @@ def _value(token: str, path: Path) -> tuple[str, str]:
     rules = ["use a decimal point"] if point != token else []
     digits = _DIGITS.fullmatch(token)
     if digits is None or not (digits[2] or digits[4]):
-        measured = token[0] in "+-.0123456789"
-        rules.append("a value with a unit must be in quotes" if measured else "text must be in quotes")
+        measured = token[0] in "+-−.0123456789"
+        rules.append(_VALUE_QUOTED if measured else _TEXT_QUOTED)
         return "; ".join(rules), f'"{point}"'
     sign, whole, separator, part, power = digits.groups(default="")
     number = f"{sign}{whole.lstrip('0') or '0'}{f'.{part or 0}' if separator else ''}{power}"
-    rules = rules or ["numbers are written like 2 or 0.5"]
+    plain = "a number must have digits before and after its point" if separator else "a number must not begin with 0"
+    rules = rules or [plain]
     unit = _unit_of(path)
     if not unit:
         return rules[0], number
-    return f"{rules[0]} and give the unit, such as {unit}", f'"{number} {unit}"'
+    return f"{rules[0]}, and a unit ({unit}, if that is meant)", f'"{number} {unit}"'
 
 
 def _unit_of(path: Path) -> str:
@@ -192,55 +293,71 @@ def _unit_of(path: Path) -> str:
     return parts[1] if parts else ""
 
 
-def _with_a_quote(line: str) -> Iterator[tuple[str, str]]:
-    """Yield a line with one more quote at each place where a text may begin or end."""
-    if re.search("[\"']", re.sub(_PASSED[:-1], "", line)):
+def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
+    """Yield a line with one more quote where a text may begin or end, then without one of its quotes or brackets."""
+    if re.search("[\"']", re.sub(_TEXT, "", line)):
         for place in (border.end() for border in _BORDER.finditer(line)):
             yield "text must have quotes on both sides", f'{line[:place]}"{line[place:]}'
-
-
-def _with_decimal_points(line: str) -> tuple[str, str]:
-    """Return a line of decimal commas between semicolons with points between commas."""
-    decimal = re.sub(r"(\d),(\d)", r"\1.\2", line)
-    rule = "values must be separated by commas, and decimals by a point"
-    return rule, line if decimal == line else _COMMAS(decimal)[1]
+    for found in reversed(list(re.finditer("[]\"'[(){}]", line))):
+        without = line[: found.start()] + line[found.end() :]
+        if not _left([without]):
+            yield f"there is one {found[0]} too many", without
 
 
 def _with_brackets(line: str) -> tuple[str, str]:
-    """Return the name of a table with as many brackets after it as before it."""
-    rule = "a table name must have the same brackets on both sides"
-    found = _NAME.fullmatch(line)
-    if found is None:
+    """Return the heading of a table in its brackets."""
+    rule = "a heading must be one name between the same brackets, its parts joined by points"
+    if (found := _NAMES.fullmatch(line)) is None:
         return rule, line
-    count = min(len(found[1]) or found[3].count("]"), 2)
-    return rule, f"{'[' * count}{found[2]}{']' * count} {found[4]}".rstrip()
+    opening, name, closing = found.groups()
+    words = re.findall(r"[\w-]+", name)
+    tried = [words if len(words) < 3 else ["_".join(words)], ["_".join(words)], ["".join(words)]]
+    count = min(len(opening) or len(closing), 2) if len(words) == 1 + name.count(".") else 0
+    other = f"{'[' * count}{name}{']' * count}" if count else line
+    return rule, next((heading for one in tried for heading in headings(one, schema_of(Job))), other)
 
 
 def _unclosed(lines: Sequence[str], end: str) -> str:
     """Return the message on a list or text that begins in the last of some lines. end: where it is still open."""
-    line = lines[-1]
-    what, sign = next(((f"text after {three}", three) for three in ('"""', "'''") if three in line), ("a list", "]"))
-    got = f"got {_shown(line)} in line {len(lines)} without {sign} before {end}"
-    return f"{_named(_path_of(lines))}{what} must end with {sign}; {got}; add it"
+    line = _code(lines[-1])
+    three = next((three for three in ('"""', "'''") if three in line), "")
+    if three:
+        rule = f"text that begins with {three} must end with {three}; on one line, use a single quote at each end"
+        one = line.replace(three, '"')
+        tried = [one, f'{one}"'] if not line.endswith(three) else []
+    else:
+        rule, tried = "a list must end with ]", [f"{line}]"]
+    write = next((f"write {_shown(one)}" for one in tried if not _left([one])), f"add {three or ']'} where it ends")
+    return f"{_at(len(lines), _path_of(lines))}{rule}; got {_shown(line)}, open at {end}; {write}"
 
 
 def _repeated(lines: Sequence[str], inner: str | None) -> str:
     """Return the message on a key or table that stands in the last of some lines and above. inner: a key in braces."""
-    *above, (_, path, brackets) = _paths(lines)
+    *above, (last, path, brackets) = _paths(lines)
     if inner:
-        return f"{key_of((*path, inner))}: may be given only once; got it twice in line {len(lines)}; remove one"
+        return f"{_at(last, (*path, inner))}may be given only once; got it twice; remove one"
     near = [one for one in above if one[1][: len(path)] == path or path[: len(one[1])] == one[1]]
     first, other, opened = max(near, key=lambda one: (min(len(one[1]), len(path)), one[1] == path))
     shared = min(path, other, key=len)
-    name = key_of(shared)
     if brackets and opened and brackets != opened:
-        several = any(node.get("type") == "array" for node in nodes_at(schema_of(Job), path))
-        opening, rule = ("[[", SEVERAL) if several else ("[", SINGLE)
-        where, wrong = (len(lines), brackets) if opened == opening else (first, opened)
-        got, write = (f"{signs}{name}{']' * len(signs)}" for signs in (wrong, opening))
-        return f"{name}: {rule}; got {got} in line {where}; write {write}"
-    remedy = "put its keys in one place" if brackets or opened or path != other else "remove one"
-    return f"{name}: may be given only once; got it in lines {first} and {len(lines)}; {remedy}"
+        name = ".".join(map(str, shared))
+        write = next(iter(headings(name.split("."), schema_of(Job))), f"[{name}]")
+        rule, wrong = (SEVERAL, f"[{name}]") if write.startswith("[[") else (SINGLE, f"[[{name}]]")
+        number = first if wrong.startswith(f"{opened}{name[0]}") else last
+        return f"{_at(number, shared)}{rule.format(name)}; got {wrong}; write {write}"
+    remedy = "put both in one place, or remove one"
+    if path == other and brackets:
+        remedy = "move the lines below it there"
+    elif path == other:
+        own = next((one.split("#")[0].strip() for one in reversed(lines) if _HEADER.fullmatch(one[:_LONGEST])), "")
+        moved = [n for n in range(first + 1, last + 1) if _refused([own], lines[n - 1])]
+        known = [item for name in schema_of(Job)["properties"] for item in headings([name], schema_of(Job)).items()]
+        fits = [one for one, keys in known if path[-1] in keys and not _refused([one], lines[-1])]
+        if moved and fits:
+            rule = f"this value belongs below the heading {fits[0]}"
+            return f"{_at(last, path)}{rule}; got it below {own}; write {fits[0]} above line {moved[0]}"
+        remedy = f"remove one, or begin another with {own} above it" if own.startswith("[[") else "remove one"
+    return f"{_at(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
 
 
 def _paths(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
@@ -251,8 +368,8 @@ def _paths(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
         if header := _HEADER.fullmatch(line):
             name = table = _words(header[2])
             if header[1] == "[[":
-                table = (*name, count[name])
-                count[name] += 1
+                name = table = (*name, count[name])
+                count[name[:-1]] += 1
             yield number, name, header[1]
         elif key := _KEY.match(line):
             yield number, (*table, *_words(key[1])), ""
@@ -268,9 +385,9 @@ def _path_of(lines: Sequence[str]) -> Path:
     return path if number == len(lines) and not brackets else ()
 
 
-def _named(path: Path) -> str:
-    """Return how a message on a key begins; "" without a key."""
-    return f"{key_of(path)}: " if path else ""
+def _at(number: int, path: Path) -> str:
+    """Return how a message on a line and its key begins."""
+    return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
 
 
 def _same(one: str, other: str) -> int:
@@ -278,13 +395,9 @@ def _same(one: str, other: str) -> int:
     return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 
 
-def _around(line: str, place: int) -> str:
-    """Return a line, or of a long one what stands around a place in it."""
-    return line if len(line) <= _MOST_SHOWN else line[max(place - _MOST_SHOWN // 2, 0) :]
-
-
-def _shown(line: str) -> str:
-    """Return a line for a message: printable, of moderate length."""
-    text = line.strip().replace("\n", " and below it ")
+def _shown(line: str, place: int = 0) -> str:
+    """Return a line for a message: printable, and of a long one what stands around a place in it."""
+    first = max(place - _MOST_SHOWN // 2, 0) if len(line) > _MOST_SHOWN else 0
+    text = re.sub(f"[{SPACES}]", "␣", line[first:].strip(" \t").replace("\n", " and below it "))
     text = "".join(sign if sign.isprintable() else "?" for sign in text)
-    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."
+    return f"{'...' * (first > 0)}{text[:_MOST_SHOWN]}{'...' * (len(text) > _MOST_SHOWN)}"

@@ -251,6 +251,10 @@ class Choices:
     choices: tuple[float, ...]
 
 
+_ENDS = re.compile(r"\s*([\d.]*\d)\s*([a-zµ]*)\s*(?:-|–|—|,|;|\.{2,}|…|to|bis)\s*([\d.]*\d)\s*([a-zµ]+)\s*")
+"""A range within one text."""
+
+
 @dataclass(frozen=True)
 class RangeOf(_Read):
     """Marks a range of a length: [lower, upper], one value, { choices = [...] }, or a table of values."""
@@ -267,6 +271,10 @@ class RangeOf(_Read):
         if isinstance(value, Mapping) and set(value) == {"choices"}:
             return self._choices(value["choices"])
         ends = value if isinstance(value, list | tuple) else spread(value) or (value, value)
+        text = value[0] if isinstance(value, list | tuple) and len(value) == 1 else value
+        if isinstance(text, str) and (two := _ENDS.fullmatch(text)):
+            write = f'["{two[1]} {two[2] or two[4]}", "{two[3]} {two[4]}"]'
+            raise InputError(f"each end of a range must be a text of its own; got {shown(value)}; write {write}")
         if len(ends) != 2:
             write = 'write it like ["20 mm", "200 mm"]'
             if len(ends) == 3:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 import warnings
 from pathlib import Path
@@ -56,7 +57,7 @@ def test_python_answers_a_slip(slip: dict[str, Any], file: Path) -> None:
     if slip["exit"]:
         with pytest.raises(REFUSALS[slip["exit"]]) as refused:
             sc.problem(toml_tables(slip["text"]), folder=file.parent)
-        assert [str(refused.value)] == expected
+        assert [unplaced(str(refused.value))] == [unplaced(sentence) for sentence in expected]
         return
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -67,7 +68,7 @@ def test_python_answers_a_slip(slip: dict[str, Any], file: Path) -> None:
 def test_the_page_answers_a_slip(slip: dict[str, Any]) -> None:
     wrong, infeasible, understood = looked_at(slip["text"], slip["files"])
     if slip["exit"]:
-        assert wrong == slip.get("page", slip["check"])
+        assert [unplaced(one) for one in wrong] == [unplaced(one) for one in slip.get("page", slip["check"])]
         assert infeasible == (slip["exit"] == 3)
         return
     assert wrong == []
@@ -75,6 +76,11 @@ def test_the_page_answers_a_slip(slip: dict[str, Any]) -> None:
     assert understood.warnings == slip.get("page", slip["check"])
     told = [*(f"note {one}" for one in understood.notes), *(f"files {one}" for one in understood.files)]
     assert set(slip["notes"]) <= set(told)
+
+
+def unplaced(sentence: str) -> str:
+    """Return a refusal without its lines in the file, which tables that are given do not have."""
+    return re.sub(r"(?m)^( *)line \d+(?:, |: )", r"\1", sentence)
 
 
 def looked_at(text: str, files: dict[str, str]) -> tuple[list[str], bool, Understood | None]:

@@ -104,7 +104,9 @@ def test_what_toml_has_no_word_for_is_refused(value: object) -> None:
 
 def test_a_file_that_is_no_toml_is_said_with_its_line(shared: httpx.Client) -> None:
     sentence = refused(shared.post("/parse", content=b"name = \n", headers=TOML), 422)
-    assert sentence.startswith('name: must be a line like name = "Vibrating sieve"; got name = in line 1')
+    assert sentence.startswith(
+        'line 1, name: there must be = and a value after a key; got name =; write name = "Vibrating sieve"'
+    )
 
 
 def test_every_quantity_is_explained(shared: httpx.Client, pytestconfig: pytest.Config) -> None:

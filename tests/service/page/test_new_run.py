@@ -278,7 +278,7 @@ def test_a_job_file_comes_in_and_goes_out_the_same(
     bad = tmp_path / "bad.toml"
     bad.write_text("name = ")
     page.get_by_label("Job file to import").set_input_files(bad)
-    expect(page.locator("#notices")).to_contain_text("must be a line like name =")
+    expect(page.locator("#notices")).to_contain_text("there must be = and a value")
     assert text_of(page) == before
 
 

@@ -32,13 +32,14 @@ const OWN = {
 
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
-  [/\bunknown key\b/g, "unknown entry"],
+  [/\bunknown (?:key|heading)\b/g, "unknown entry"],
+  [/ belong below the heading (\S+); got them [^;]+; write [^;]+/g, " belong under $1; move them there"],
   [
-    /must be a list of tables, in double brackets; got a single one; write [^;]+/g,
+    /each [\w.]+ begins with \S+ in double brackets; got a single one; write [^;]+/g,
     "must be a list; got a single entry; put it in a list",
   ],
   [
-    /must be a single table, in single brackets; got (a list of \d+); write [^;]+/g,
+    /there is one \S+ only, in single brackets; got (a list of \d+); write [^;]+/g,
     "must be a single entry; got $1; keep one of them",
   ],
   [/ unless cycle_time or strokes_per_minute is given/g, ""],

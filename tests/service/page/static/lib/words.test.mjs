@@ -35,11 +35,15 @@ const SAID = [
     'unknown entry "designs"; it belongs in “Search”; move it there',
   ],
   [
-    "must be a list of tables, in double brackets; got a single one; write [[load]] for [load]",
+    "crank and rod belong below the heading [tolerances]; got them in load #2; write [tolerances] above crank, or move them there",
+    "crank and rod belong under “Tolerances”; move them there",
+  ],
+  [
+    "each load begins with [[load]], in double brackets; got a single one; write [[load]] for [load]",
     "must be a list; got a single entry; put it in a list",
   ],
   [
-    "must be a single table, in single brackets; got a list of 2; write [mechanism] for [[mechanism]]",
+    "there is one [mechanism] only, in single brackets; got a list of 2; write [mechanism] for [[mechanism]]",
     "must be a single entry; got a list of 2; keep one of them",
   ],
   [
