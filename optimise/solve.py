@@ -123,7 +123,7 @@ class _One:
         run = self.begun(problem)
         evaluators: list[Evaluator] = []
         try:
-            with interrupted_by(self.checkpoints.interrupt) as interruption:
+            with interrupted_by(self.checkpoints.interrupt, between=self.checkpoints.poll) as interruption:
                 evaluators = self.evaluators(problem)
                 if self.resumes:
                     run.stand(REPEATING, 0, 1, now=True)

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import AssemblyError
+from .interruption import ask_between
+
+_KNOTS = 10_000  # of the loads of designs that are computed in one go: some tenths of a second
 
 
 def turning(designs: ArrayLike) -> Array:
@@ -55,19 +58,26 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(before=_end_threads, after_in_parent=_handing_out.release, after_in_child=_handing_out.release)
 
 
-def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512) -> None:
+def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, knots: int = 0) -> None:
     """Call work(begin, end) for consecutive chunks of range(count), on all cores when there are several.
 
     Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.
+    knots: of the loads of each design. The more there are, the smaller the parts between which it asks whether to end.
     """
+    part = max(1, min(size, _KNOTS // max(1, knots)))
+
+    def in_parts(begin: int, end: int) -> None:
+        for first in range(begin, end, part):
+            ask_between()
+            work(first, min(first + part, end))
+
     if count <= size:
-        if count:
-            work(0, count)
+        in_parts(0, count)
         return
     bounds = range(0, count, size)
     with _handing_out:
         # Each in a context of its own: it knows what may end the wait for a kernel.
-        done = [threads().submit(copy_context().run, work, begin, min(begin + size, count)) for begin in bounds]
+        done = [threads().submit(copy_context().run, in_parts, begin, min(begin + size, count)) for begin in bounds]
     try:
         for chunk in done:
             chunk.result()

@@ -16,10 +16,12 @@ FAREWELL = 0.5
 class Interruption:
     """Callback that may end calls by raising.
 
-    farewell: time that they still have then, s. killed: whether one did not end in that time.
+    between: the one for work that ends by itself, called between its parts. farewell: time that calls still have then,
+    s. killed: whether one did not end in that time.
     """
 
     poll: Poll
+    between: Poll | None = None
     farewell: float = FAREWELL
     killed: bool = False
 
@@ -28,12 +30,14 @@ _CURRENT: ContextVar[Interruption | None] = ContextVar("interruption", default=N
 
 
 @contextlib.contextmanager
-def interrupted_by(poll: Poll, *, farewell: float = FAREWELL) -> Iterator[Interruption]:
+def interrupted_by(poll: Poll, *, between: Poll | None = None, farewell: float = FAREWELL) -> Iterator[Interruption]:
     """While entered, let `poll` be called several times a second during every call that this thread waits for.
+
+    between: called between the parts of long work of its own.
 
     A search cannot hand its own question down: quantities are evaluated in a hundred places that know of no search.
     """
-    interruption = Interruption(poll, farewell)
+    interruption = Interruption(poll, between, farewell)
     token = _CURRENT.set(interruption)
     try:
         yield interruption
@@ -46,6 +50,13 @@ def ask() -> None:
     interruption = _CURRENT.get()
     if interruption is not None:
         interruption.poll()
+
+
+def ask_between() -> None:
+    """Raise whatever ends long work between two of its parts, if anything does."""
+    interruption = _CURRENT.get()
+    if interruption is not None and interruption.between is not None:
+        interruption.between()
 
 
 def farewell() -> float:

@@ -127,6 +127,12 @@ def _factors(load: Load) -> tuple[float, float, float]:
 
 
 @remembered
+def knot_count(mechanism: Mechanism) -> int:
+    """Return how many knots the tables of a mechanism's loads have."""
+    return sum(len(load.knots()[0]) for load in mechanism.loads)
+
+
+@remembered
 def load_structure(mechanism: Mechanism) -> Loads:
     """Return kinds, datums and tables of a mechanism's loads. Raises `InputError` for a cycle of two turns."""
     require_one_turn(mechanism, "this analysis")

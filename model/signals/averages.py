@@ -307,7 +307,7 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
             jumps,
         )
 
-    in_chunks(n, work)
+    in_chunks(n, work, knots=len(loads.at))
     if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
         mean[:], slopes[0] = 0.0, 0.0
     values = np.stack([mean, rms, rms])

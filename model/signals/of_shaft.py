@@ -16,6 +16,7 @@ from ..kernel.batches import in_chunks
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.members import alone, cylinder_count, cylinders_of
+from ..machine.raw import knot_count
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
@@ -76,7 +77,7 @@ def peaks_of_shaft(
             if slopes is not None and found[2] is not None:
                 slopes[begin:end, place] = found[2]
 
-    in_chunks(len(designs), work, size=_CHUNK)
+    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
     return highest_of(
         [(values[:, p], angles[:, p], None if slopes is None else slopes[:, p]) for p in range(len(groups))]
     )
@@ -140,7 +141,7 @@ def _averages(
                 half = 0.5 / np.where(there, roots[:, :, None], 1.0)
                 slopes[1:, begin:end, place] = np.where(there, half * found.gradients[SQUARE:], 0.0)
 
-    in_chunks(len(designs), work, size=_CHUNK)
+    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
     return values, slopes
 
 

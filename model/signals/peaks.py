@@ -419,5 +419,5 @@ def find_peaks(
             rubbing,
         )
 
-    in_chunks(n, work)
+    in_chunks(n, work, knots=len(loads.at))
     return Peaks(values, where, numbers.chain(slopes) if gradients else None)

@@ -215,5 +215,5 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
             rubs(mechanism),
         )
 
-    in_chunks(n, work)
+    in_chunks(n, work, knots=len(loads.at))
     return TurnWork(mean, numbers.chain(found) if gradients else None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -10,14 +11,22 @@ from functools import cache
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.hypervolume import choose
+from slidercrank.model.arrays import Array, Whole
+from slidercrank.model.kernel.interruption import interrupted_by
+from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.loads.position_table import PositionTable
+from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.front.front import Columns, ParetoFront
+from slidercrank.optimise.front.hypervolume import Stand, choose
 from slidercrank.optimise.front.progress import REPEATING, Progress
-from slidercrank.optimise.search import checkpoints, search
+from slidercrank.optimise.methods.auto import so_far
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search import assemble, checkpoints, search
+from slidercrank.optimise.search.assemble import columns_of
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
-from .problems import Bounds, degrees, polish_few, problem
+from .problems import MACHINE, Bounds, degrees, polish_few, problem
 
 HELD: dict[str, Bounds] = {"stroke": 0.2, "transmission_angle": (degrees(30.0), None)}
 GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=4, samples=64)
@@ -100,6 +109,52 @@ def test_a_search_is_cancelled_in_any_stage() -> None:
         front = solve(GIVEN, stages=lambda at: heard.append(at.stage), cancelled=saying(heard, stage))  # noqa: B023
         assert front.status == "cancelled"
         assert stage in heard
+
+
+STEPS = np.repeat(np.linspace(0.1, 0.3, 1000), 2)
+STEPPING = replace(
+    MACHINE, loads=(PositionTable(positions=tuple(STEPS), forces=tuple(np.sin(99.0 * STEPS)), datum="crank pivot"),)
+)
+
+
+TWO = replace(STEPPING, arrangement=Arrangement(phases=(0.0, 2.0)))
+
+
+@pytest.mark.parametrize("machine", [STEPPING, pytest.param(TWO, marks=pytest.mark.slow)], ids=["one", "two cylinders"])
+def test_designs_with_thousands_of_steps_are_analysed_few_at_a_time_and_come_out_the_same(machine: Mechanism) -> None:
+    stepping = problem({"rms_torque": "minimise"}, mechanism=machine)
+    designs = np.array([[0.05, 0.2, 0.02], [0.06, 0.22, 0.01]])[np.arange(11) % 2] * np.linspace(1.0, 1.1, 11)[:, None]
+    asked: list[int] = []
+
+    def columns(some: Array) -> Columns:
+        asked.append(0)
+        with interrupted_by(lambda: None, between=lambda: asked.append(asked.pop() + 1)):
+            return columns_of(stepping, np.zeros(len(some), np.int64), some)
+
+    whole = columns(designs)
+    each = [columns(design[None]) for design in designs]
+    assert asked[0] >= asked[1] + 2 * 8  # parts of at most five designs, of eight signals and more
+    for name, column in whole.items():
+        assert column.tobytes() == np.concatenate([one[name] for one in each]).tobytes()
+
+
+def test_a_cancelled_front_has_as_many_designs_as_are_analysed_in_a_moment(monkeypatch: pytest.MonkeyPatch) -> None:
+    analysed: list[int] = []
+
+    def slowly(given: Problem, variants: Whole, dimensions: Array, *rest: Stand) -> Columns:
+        if "polishing" in heard:
+            analysed.append(len(dimensions))
+            time.sleep(0.1 * len(dimensions))
+        return columns_of(given, variants, dimensions, *rest)
+
+    for module in (so_far, assemble):
+        monkeypatch.setattr(module, "columns_of", slowly)
+    heard: list[str] = []
+    given = replace(GIVEN, settings=replace(GIVEN.settings, designs=40))
+    front = solve(given, progress=lambda at: heard.append(at.stage), cancelled=saying(heard, "polishing"))
+    assert front.status == "cancelled"
+    assert 2 <= len(front) <= 7
+    assert sum(analysed) <= 20
 
 
 def saying(heard: list[str], stage: str) -> Callable[[], bool]:

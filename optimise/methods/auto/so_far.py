@@ -23,7 +23,7 @@ _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
 _OWN = 0.8  # s since the search was told to end, after which no call of an own function goes on
 _BATCH = 16  # designs moved at a time
-_TRIED = 50  # designs that tell how long all take
+_TRIED = 50  # designs that tell how long all take, of functions of its own in one call, else one to begin with
 _MOST = 1000  # designs: to choose among more would take longer
 
 
@@ -82,13 +82,13 @@ def _take(problem: Problem, evaluators: list[Evaluator], archive: Archive, finis
 
 def _soon(problem: Problem, evaluators: list[Evaluator], finished: Finished, rows: Whole) -> Whole:
     """Return those rows whose quantities are had within a moment, all of them as a rule."""
-    if len(rows) <= _TRIED:
-        return rows
-    some = finished[rows[:: -(-len(rows) // _TRIED)]]
-    variants = np.array([evaluators[index].sheet.variant for index in some.sheet], dtype=np.int64)
-    begin = time.perf_counter()
-    columns_of(problem, variants, some.dimensions(evaluators))
-    each = (time.perf_counter() - begin) / len(some)
+    count = _TRIED if any(map(runs_own, problem.own)) else 1
+    each, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
+    while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
+        some = finished[rows[:: -(-len(rows) // count)]]
+        variants = np.array([evaluators[index].sheet.variant for index in some.sheet], dtype=np.int64)
+        columns_of(problem, variants, some.dimensions(evaluators))
+        count, each = 2 * count, (time.perf_counter() - begin) / len(some)
     return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]
 
 
