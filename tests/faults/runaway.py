@@ -20,8 +20,9 @@ from slidercrank.objectives.own.guard import PRINTED
 from .lifeline import die_with_parent
 from .serving import Serving, left_over
 from .verdict import Verdict
+from .waits import Stopwatch
 
-SOON = 2.0  # s, within which a function is gone once its call is to end
+SOON = 2.0  # s without waits for a processor, within which a function is gone once its call is to end
 _OF_THE_SERVICE = 1_000_000  # bytes of its own log
 SLACK = 1.0  # s, for looking at it on a busy machine
 LOOPS = {
@@ -145,9 +146,10 @@ def _in_a_service(
             function = f"loops_{next(kinds)}_after:judge"
             _, marker = _under_way(verdict, serving, folder, function, "after")
             serving.stop_watching()
+            processes = [serving.process.pid, *(worker.pid for worker in serving.workers())]
             serving.process.send_signal(end)
             # Its workers have their grace, which is a second, and five more to end.
-            _gone(verdict, f"{function}, service ended by {end.name}", marker, 1.0 + 5.0 + SOON)
+            _gone(verdict, f"{function}, service ended by {end.name}", marker, 1.0 + 5.0 + SOON, *processes)
         serving.judge(verdict)
         left_over(verdict, serving, within=10.0)
         most = PRINTED * len(_markers(folder)) + _OF_THE_SERVICE
@@ -191,8 +193,9 @@ def _is_open(file: Path) -> bool:
 
 def _cancelled(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
     number, marker = _under_way(verdict, serving, folder, function, when)
+    processes = [serving.process.pid, *(worker.pid for worker in serving.workers())]
     serving.cancel(number)
-    _gone(verdict, f"{function}, cancelled", marker, SOON)
+    _gone(verdict, f"{function}, cancelled", marker, SOON, *processes)
     _ended(verdict, serving, number, function, "cancelled")
 
 
@@ -219,11 +222,11 @@ def _ended(verdict: Verdict, serving: Serving, number: int, function: str, state
         verdict.violate("lost", f"{function}: {job['state']}, {job['reason']}")
 
 
-def _gone(verdict: Verdict, what: str, marker: Path, within: float) -> None:
-    begin = time.monotonic()
-    while (left := _is_open(marker)) and time.monotonic() - begin < within + SLACK:
+def _gone(verdict: Verdict, what: str, marker: Path, within: float, *processes: int) -> None:
+    watch = Stopwatch(os.getpid(), *processes)
+    while (left := _is_open(marker)) and watch.seconds() < within + SLACK:
         time.sleep(0.02)
-    verdict.resumed(time.monotonic() - begin)
+    verdict.resumed(watch.seconds())
     if left:
         verdict.violate("left", f"{what}: its processes go on after {within + SLACK:.1f} s")
 
