@@ -81,10 +81,13 @@ def words_of(text: object) -> list[str]:
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
-def unknown_name(name: str, known: Iterable[str], units: Units) -> InputError:
-    """Return the refusal of a name that no quantity, dimension or varying number has. known: the names there are."""
-    every = list(known)
-    same = [other for other in every if other.casefold() == name.casefold()]
+def unknown_name(name: str, known: Iterable[str], units: Units, formula: str) -> InputError:
+    """Return the refusal of a name in a formula that no quantity, dimension or varying number has.
+
+    known: the names there are, of which one may be written with - for _.
+    """
+    every, written = list(known), re.sub(r"\s*-\s*", "_", formula.strip())
+    same = [other for other in every if other.casefold() in (name.casefold(), written.casefold())]
     near = same or difflib.get_close_matches(name[:60], every, n=_NEAREST)
     hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {listed(every)}"
     if "." in name and not near:
@@ -153,9 +156,7 @@ class Formulas:
         try:
             found = self._of(text)
         except InputError as error:
-            name = text.strip().replace("-", "_")
-            known = f"no quantity is called {shown(text)}; did you mean {name}?" if name in self._quantities else error
-            raise JobError(f"{key}: {known}") from None
+            raise JobError(f"{key}: {error}") from None
         if isinstance(found, FormulaQuantity) and found.constant and not leaves_of([found]):
             raise JobError(
                 f"{key}: a formula names a quantity, a dimension or a varying number; got {found.formula}, which is "
@@ -180,7 +181,7 @@ class Formulas:
     def _of(self, text: str) -> Quantity:
         node = parse(text, self._units)
         if isinstance(node, Name) and node.name not in self._places:
-            return self._meant(node.name)
+            return self._meant(node.name, node.name)
         name = text_of(node)
         if name not in self.made:
             self.made[name] = self._quantity(node, name, title=name, key=key_of(name))
@@ -221,7 +222,7 @@ class Formulas:
 
     def _quantity(self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None) -> FormulaQuantity:
         names = names_in(node)
-        parts = tuple(self._meant(item) for item in names if item not in self._places)
+        parts = tuple(self._meant(item, text_of(node)) for item in names if item not in self._places)
         for part in parts:
             reason = part.undefined_because([self._machine])
             if reason:
@@ -266,14 +267,14 @@ class Formulas:
         of = self._intervals.get(name, Interval(-1.0, 1.0))
         return 1 if of.lower >= 0.0 else -1 if of.upper <= 0.0 else 0
 
-    def _meant(self, name: str) -> Quantity:
+    def _meant(self, name: str, formula: str) -> Quantity:
         if name in self._stated:
             return self._named(name)
         if name in self._quantities:
             return self._quantities[name]
         if name in FACTS:
             raise InputError(f"{name} needs the table [{FACTS[name].table}]; got none; add it, or leave {name} out")
-        raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units)
+        raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
 
     def _interval(self, of: Quantity) -> Interval:
         """Return bounds of a quantity within the ranges; one that is never negative is taken for never zero."""

@@ -196,7 +196,7 @@ def _limited(text: str, own: frozenset[str]) -> tuple[str, Kind | None]:
     installed = own_quantities() if unknown else {}
     for name in unknown:
         if name not in installed:
-            raise unknown_name(name, known, units)
+            raise unknown_name(name, known, units, text)
     if isinstance(node, Name) and node.name in FACTS:
         return node.name, FACTS[node.name].kind
     kinds = dict.fromkeys(DIMENSIONS, LENGTH) | {name: of.kind for name, of in FACTS.items()}

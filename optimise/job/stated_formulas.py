@@ -121,7 +121,7 @@ class _Kinds:
         found = {}
         for name in names_in(node):
             if name not in self.names:
-                raise unknown_name(name, [*self._known, *self.stated], self._units)
+                raise unknown_name(name, [*self._known, *self.stated], self._units, text)
             found[name] = self.own(name)
         known = {name: kind for name, kind in found.items() if kind is not None}
         return kind_of_formula(node, known) if len(known) == len(found) else None
