@@ -143,10 +143,13 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
       inputs.length > 0 && asked.form,
     ];
     const held = focused(asked.form);
-    const options = { ...lengths, units: apiSystem(), ...asked.given() };
-    const answer = h("div", {}, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
+    const { values, wrong } = asked.given();
+    const options = { ...lengths, units: apiSystem(), ...values };
+    const waiting = h("p", { class: "quiet busy", role: "status" }, "Computing …");
+    const answer = h("div", {}, wrong ? h("p", { class: "bad", role: "alert" }, wrong) : waiting);
     fill(panel, head, answer);
     held?.focus();
+    if (wrong) return;
     try {
       const found = await get(path, options, signal);
       if (own !== turn || !found) return;
@@ -188,7 +191,8 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
 }
 
 /**
- * Return a form for what a topic is asked with, and given(): what was typed, by key in the units of the API; null for what is usual.
+ * Return a form for what a topic is asked with, and given(): {values} that were typed, by key in the units of the API, null for what is usual, and what is
+ * {wrong} with them.
  * @param {Api.Topic["inputs"]} inputs @param {() => void} ask
  */
 function asking(inputs, ask) {
@@ -218,13 +222,11 @@ function asking(inputs, ask) {
     ),
     h("button", {}, "Compute"),
   );
-  const given = () =>
-    Object.fromEntries(
-      fields.map(({ key, unit, field }) => {
-        const typed = measured(field.value, unit);
-        return [key, typed.empty ? null : (typed.value ?? field.value.trim())];
-      }),
-    );
+  const given = () => {
+    const typed = fields.map(({ key, unit, field }) => ({ key, ...measured(field.value, unit) }));
+    const values = Object.fromEntries(typed.map(({ key, value }) => [key, value ?? null]));
+    return { values, wrong: typed.map(({ wrong }) => wrong).find(Boolean) };
+  };
   return { form, given };
 }
 

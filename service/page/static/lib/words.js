@@ -33,7 +33,10 @@ const OWN = {
 /** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
   [/\bunknown (?:key|heading)\b/g, "unknown entry"],
-  [/ belong below the heading (\S+); got them [^;]+; write [^;]+/g, " belong under $1; move them there"],
+  [
+    / belong below the heading (\S+); got them [^;]+; write [^;]+/g,
+    " belong under $1; move them there",
+  ],
   [
     /each [\w.]+ begins with \S+ in double brackets; got a single one; write [^;]+/g,
     "must be a list; got a single entry; put it in a list",
