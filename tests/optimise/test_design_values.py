@@ -12,6 +12,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.slider_distances import SliderDistances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -55,7 +56,8 @@ def designs(count: int, seed: int = 1) -> Array:
 
 def test_every_quantity_is_that_of_its_own_evaluation() -> None:
     bar = Bar(width=0.03, depth=0.02, density=7800.0)
-    of = replace(machine(), loads=(*machine().loads, AIR), crank=bar, rod=bar, strength=STRENGTH)
+    slider = SliderDistances(touch=0.01, dwell=0.005, guide=0.1)
+    of = replace(machine(), loads=(*machine().loads, AIR), crank=bar, rod=bar, strength=STRENGTH, slider=slider)
     some, names = designs(40), [name for name, quantity in QUANTITIES.items() if not quantity.lacks(of, "undefined")]
     assert len(names) > len(QUANTITIES) - 5
     values, jacobian = sc.evaluate(of, some, names, gradients=True)
