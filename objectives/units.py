@@ -350,6 +350,10 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     match = _VALUE.fullmatch(text.translate(_TYPESET))
     if share := re.fullmatch(r"\s*([+-]?\d+)\s*/\s*([1-9]\d*)\s*(\D.*)", text, re.ASCII):
         point = f"{float(Fraction(f'{share[1]}/{share[2]}')):.10g} {share[3]}"
+        try:
+            _read(point, kind, rule, write)
+        except InputError as error:  # of another kind
+            raise InputError(str(error).replace(shown(point), shown(text))) from None
         raise InputError(f"write a decimal number, not a fraction; got {shown(text)}; write {shown(point)}")
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")

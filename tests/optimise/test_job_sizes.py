@@ -14,8 +14,9 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.file import MOST, require_few, toml_tables
 from slidercrank.service.jobs.job_toml import job_toml
 
-LONGEST = 3.0
-"""s of processor time: a third is usual at most, a table that is read over and over takes some ten."""
+LONGEST = 10.0
+"""Times as long as the parser takes for a large file: a half is usual at most, a table that is read over and over takes
+some 50."""
 FORCE = {"force": "1 N", "direction": "inward"}
 TABLE = {"crank_angles": [f"{0.3 * n:.3f} deg" for n in range(1000)], "forces": [1.0] * 1000}
 Job = dict[str, Any]
@@ -64,9 +65,12 @@ def test_what_a_job_may_hold_is_counted_alike_as_tables_and_as_text() -> None:
 def test_a_text_of_far_too_many_values_is_refused_before_it_is_read(one: str) -> None:
     text = "".join(one.format(number) for number in range(3 * MOST))
     begin = time.process_time()
+    tomllib.loads(text[: text.index("\n", len(text) // 3) + 1])
+    reading = 3.0 * (time.process_time() - begin)  # more, where names are long
+    begin = time.process_time()
     with pytest.raises(JobError, match=f"at most {MOST} values"):
         toml_tables(text)
-    assert time.process_time() - begin < 0.3, "that is much less than reading it takes"
+    assert time.process_time() - begin < reading
 
 
 def test_signs_in_texts_and_comments_are_no_values() -> None:
@@ -100,8 +104,16 @@ def shifted(lots: Job, first: int, count: int) -> Job:
     return {"load": {str(first + n + 1): lots["load"][str(n + 1)] for n in range(count)}}
 
 
+@pytest.fixture(scope="module")
+def reading() -> float:
+    """Processor time, s, that the parser takes for a large file on this machine."""
+    begin = time.thread_time()
+    tomllib.loads("[[a]]\n" * (3 * MOST))
+    return time.thread_time() - begin
+
+
 @pytest.mark.parametrize("kind", large_jobs())
-def test_no_job_takes_long_to_read(kind: str) -> None:
+def test_no_job_takes_long_to_read(kind: str, reading: float) -> None:
     data, said = large_jobs()[kind]
     begin = time.thread_time()
     if said:
@@ -109,4 +121,4 @@ def test_no_job_takes_long_to_read(kind: str) -> None:
             parse_job(data)
     else:
         assert parse_job(data).name == "Press"
-    assert time.thread_time() - begin < LONGEST
+    assert time.thread_time() - begin < LONGEST * reading
