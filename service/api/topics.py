@@ -74,9 +74,8 @@ class Asked:
 
 def _asked(units: System = "metric", **given: float | None) -> Asked:
     """Return how a topic is asked for. given: inputs by their keys, in their metric units; None for usual ones."""
-    typed = {one.name: given[one.key] for one in INPUTS.values()}
-    symbols = {one.name: one.kind.metric.symbol for one in INPUTS.values()}
-    return Asked(units, {name: f"{value!r} {symbols[name]}" for name, value in typed.items() if value is not None})
+    typed = ((one, given[one.key]) for one in INPUTS.values())
+    return Asked(units, {one.name: f"{value!r} {one.kind.metric.symbol}" for one, value in typed if value is not None})
 
 
 def _parameter(one: Input) -> inspect.Parameter:

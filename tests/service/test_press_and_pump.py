@@ -19,6 +19,8 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.slider_distances import SliderDistances
+from slidercrank.model.machine.speed_profile import Harmonics
+from slidercrank.objectives.dead_centre import TOUCH_SPEED
 from slidercrank.service.topics.press import analysis as press
 from slidercrank.service.topics.pump import analysis as pump
 from tests.model.cases import linkage_of, random_designs
@@ -102,8 +104,21 @@ def test_a_press_takes_distances_of_its_job_and_the_peak_torque_of_its_design() 
     given = press.numbers(machine, linkage, touch_distance=0.012, rated_torque=own["rated_torque_Nm"])
     assert own["torque_is_peak_of_design"]
     assert own == given | {"torque_is_peak_of_design": True}
+    speed = TOUCH_SPEED.evaluate(machine, np.array([[0.05, 0.3, 0.01]])).values[0]
+    assert own["touch_speed_m_s"] == pytest.approx(speed, rel=1e-12)
     still = press.numbers(replace(machine, speed=0.0), linkage, rated_torque=1.0)
     assert still["touch_speed_m_s"] is still["speeds_m_s"] is still["dwell_angle_deg"] is None
+
+
+def test_along_a_speed_profile_a_press_has_forces_and_angles_but_no_speeds_and_times() -> None:
+    linkage = Linkage(0.05, 0.3, 0.01)
+    even = Mechanism(speed=5.0, slider=SliderDistances(touch=0.012, dwell=1e-3))
+    uneven = replace(even, speed_profile=Harmonics(cosines=(0.2,), sines=(0.1,)))
+    given, found = (press.numbers(machine, linkage, rated_torque=80.0) for machine in (even, uneven))
+    lacking = dict.fromkeys(("touch_speed_m_s", "speeds_m_s", "dwell_time_s"))
+    assert found == given | lacking
+    panels = [len(press.figure(machine, linkage, rated_torque=80.0).panels) for machine in (even, uneven)]
+    assert panels == [2, 1]
 
 
 @pytest.mark.parametrize(

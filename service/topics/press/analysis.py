@@ -38,13 +38,14 @@ def numbers(
     """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
 
     touch_distance, dwell_distance: m, those of the machine if None. rated_torque: N m, the peak torque of the design if
-    None. None: speeds without a crank speed, what a dwell without its distance would give. Raises `InputError` without
-    a touch distance or a torque, and for distances that the stroke does not reach.
+    None. None: speeds and times without a constant crank speed, what a dwell without its distance would give. Raises
+    `InputError` without a touch distance or a torque, and for distances that the stroke does not reach.
     """
     touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
     angles, travels = _before(mechanism, linkage, distances)
-    speeds = abs(mechanism.speed) * travels if mechanism.speed else None
+    speed = _speed(mechanism)
+    speeds = speed * travels if speed else None
     dwell = mechanism.slider.dwell if dwell_distance is None else dwell_distance
     dwelling = None if dwell is None else _dwell(mechanism, linkage, dwell)
     return {
@@ -58,12 +59,17 @@ def numbers(
         "work_J": torque * float(angles[-1]),
         "dwell_distance_mm": None if dwell is None else LENGTH.metric.factor * dwell,
         "dwell_angle_deg": None if dwelling is None else math.degrees(dwelling),
-        "dwell_time_s": None if dwelling is None or not mechanism.speed else dwelling / abs(mechanism.speed),
+        "dwell_time_s": None if dwelling is None or not speed else dwelling / speed,
         "distances_mm": (LENGTH.metric.factor * distances).tolist(),
         "angles_deg": np.degrees(angles).tolist(),
         "forces_N": (torque / travels).tolist(),
         "speeds_m_s": None if speeds is None else speeds.tolist(),
     }
+
+
+def _speed(mechanism: Mechanism) -> float:
+    """Return the size of the crank speed, rad/s; 0 along a profile, where there is not one for all angles."""
+    return abs(mechanism.speed) if mechanism.speed_profile is None else 0.0
 
 
 def _touch(mechanism: Mechanism, given: float | None) -> float:
@@ -163,8 +169,9 @@ def figure(
     shown = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
     forces = Line("", distances[shown], (torque / travels)[shown])
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
-    if mechanism.speed:
-        speeds = Line("", distances, abs(mechanism.speed) * travels)
+    speed = _speed(mechanism)
+    if speed:
+        speeds = Line("", distances, speed * travels)
         panels.append(Panel("slider speed", _CAPTION, (speeds,), SPEED, LENGTH))
     subtitle = f"before the {mechanism.slider.dead_centre} dead centre, static, without friction"
     return Sheet("Press", subtitle, tuple(panels), width=6.4, height=2.6)
