@@ -144,6 +144,10 @@ class ParetoFront:
         """Return the machine of a design: with the choices and the varying numbers that it has."""
         return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
 
+    def ask(self, question: str, row: int, /, **inputs: object) -> dict[str, Any]:
+        """Return the answer of a design to a question, as `Problem.ask` does: `front.ask("press", front.knee())`."""
+        return self.part(row).ask(question, self.dimensions[row], **inputs)
+
     @property
     def violated(self) -> dict[str, Array]:
         """By how much (n,) each design goes beyond an allowable value, SI, by quantity; see `Analysis.violated`.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
 from numbers import Integral
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from numpy.typing import ArrayLike
 
@@ -35,6 +35,7 @@ from ...objectives.tables.swinging import (
 from .costs import Costs
 from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
+from .questions import question_named
 from .requirements import Constraint, Objective, Range, Word, merged
 from .table_columns import choice_field, least_amount_field, least_field, note_field, require_own_columns
 
@@ -293,6 +294,20 @@ class Problem:
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
+
+    def ask(self, question: str, design: ArrayLike, /, **inputs: object) -> dict[str, Any]:
+        """Return the answer of a design (3 + k,) to a question, as JSON has it: `problem.ask("press", design)`.
+
+        question: a topic of `analyse --show`, or a question that another installed package has. inputs: those that it
+        takes, in SI or as text with a unit, `touch_distance="12 mm"`. Keys and values are those of
+        `analyse --show press --json`. Raises `InputError` for an unknown question or input, for what the design does
+        not have, and as `analyse` does.
+        """
+        self._require_chosen()
+        machine, sizes = one_design(self.mechanism, design)
+        warn_of_lengths(self, sizes, self._greatest)
+        linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
+        return question_named(question).answer(machine, linkage, self.motion, inputs)
 
     def swing(
         self,

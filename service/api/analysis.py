@@ -85,7 +85,7 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     stored = found.design(design)
     if stored.part.motion is not None:
         if topics:
-            require_turning(stored.part, f"the analysis {', '.join(topics)}")
+            require_turning(stored.part.motion, f"the analysis {', '.join(topics)}")
         row, undefined = numbers_of_swing(stored)
         record = json_ready(row | {"violated": violated_by(stored.mechanism, row), "undefined": undefined})
         return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=[])
@@ -98,7 +98,7 @@ def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
     topics = chosen_topics(asked.show, job=True)
     problem = given_problem(asked.job, settings.allowed_quantities, asked.values, require_feasible=False)
-    require_turning(problem, "an analysis")
+    require_turning(problem.motion, "an analysis")
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(asked.speed))

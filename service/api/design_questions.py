@@ -154,7 +154,7 @@ def compare_measured(
 ) -> MeasuredModel:
     """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
     stored = found.design(design)
-    require_turning(stored.part, "a comparison with measured curves")
+    require_turning(stored.part.motion, "a comparison with measured curves")
     samples = read_measured(given.csv, stored.mechanism, stored.linkage)
     topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
     record = json_ready(topic.numbers(lambda: False))

@@ -12,10 +12,9 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
-from ..designs.turning import require_turning
 from ..runs.result import json_ready
 from ..topics.discovery import INPUTS, TOPIC_OF, TOPICS
-from ..topics.inputs import Input, read_inputs
+from ..topics.inputs import Input
 from ..topics.topic import Topic, TopicOfDesign
 from .computing import LongRoute
 from .exports import SEALED, of_type
@@ -63,9 +62,7 @@ class Asked:
 
     def of(self, topic: Topic, shown: ShownDesign) -> TopicOfDesign:
         """Return the topic of a design. Raises `InputError` for a swing, and for an input of another topic."""
-        require_turning(shown.design.part, f"the analysis {topic.name}")
-        options = read_inputs(topic.inputs, self.given, f"the analysis {topic.name}")
-        return topic.of(shown.design.mechanism, shown.design.linkage, options)
+        return topic.asked(shown.design.mechanism, shown.design.linkage, shown.design.part.motion, self.given)
 
     def kind(self, topic: Topic, what: str) -> str:
         """Return the name under which what is made of a topic is kept."""

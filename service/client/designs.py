@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from urllib.parse import quote
 
 from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import System
@@ -44,6 +45,15 @@ class Designs:
     def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
         """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
         return self._asked(number, design, "analysis", {"show": list(show)})
+
+    def ask(self, number: int, design: int, question: str, /, **inputs: object) -> Record:
+        """Return the answer of a design to a question, a topic of `analyse --show`, as `--json` prints it.
+
+        inputs: those of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
+        """
+        path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"
+        found: Record = self._connection.ask(path, given(**inputs))["numbers"]
+        return found
 
     def inverse(
         self,

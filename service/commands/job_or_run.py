@@ -51,11 +51,11 @@ def machine_of(
     if design is not None:
         stored = design_of_run(command, job, design, runs, {**vars(size), "set": put or None})
         if turning:
-            require_turning(stored.part, command)
+            require_turning(stored.part.motion, command)
         return Machine(stored.mechanism, stored.linkage, stored.part)
     problem = problem_of_job(job, put)
-    if turning:
-        require_turning(problem, command)
+    if turning and problem is not None:
+        require_turning(problem.motion, command)
     mechanism = Mechanism() if problem is None else problem.mechanism.nominal
     crank, rod, offset = size.lengths(problem)
     return Machine(mechanism, Linkage(crank, rod, offset, mechanism.branch), problem)
@@ -69,7 +69,7 @@ def turning_problem(job: Path, command: str) -> Problem:
     from ...optimise.job import load_job
 
     problem = load_job(job, require_feasible=False)
-    require_turning(problem, command)
+    require_turning(problem.motion, command)
     return problem
 
 

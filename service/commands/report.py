@@ -53,7 +53,7 @@ def report(
         subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
         if measured is not None:
             design = subject.design
-            require_turning(design.part, "what --measured compares")
+            require_turning(design.part.motion, "what --measured compares")
             samples = read_measured(measured_text(measured), design.mechanism, design.linkage)
             subject = replace(subject, measured=samples)
         made = design_report(subject)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from ...model.errors import InputError
 
 if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
+    from ...model.swing.swing import Swing
 
 
-def require_turning(problem: Problem | None, what: str) -> None:
-    """Refuse the problem of a crank that swings. what: it is of a full turn, as the subject of the sentence."""
-    if problem is not None and problem.motion is not None:
+def require_turning(swing: Swing | None, what: str) -> None:
+    """Refuse a crank that swings. what: it is of a full turn, as the subject of the sentence."""
+    if swing is not None:
         raise InputError(
             f"{what} is of a crank that turns through; got a job whose crank swings; "
             "`slidercrank swing` analyses its designs, of a job with --crank, --rod, --offset, of a run with --design"

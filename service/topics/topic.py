@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .inputs import Input
+from ..designs.turning import require_turning
+from ..runs.result import json_ready
+from .inputs import Input, read_inputs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...model.swing.swing import Swing
     from ...objectives.kinds import System
     from ..figures.sheets import Sheet
     from ..render.blocks import Block
@@ -42,6 +45,27 @@ class Topic:
     def name(self) -> str:
         """Name in `--show`, in JSON and of the figure's file."""
         return self.package.rpartition(".")[2]
+
+    def asked(
+        self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
+    ) -> TopicOfDesign:
+        """Return the topic of one design. swing: that its crank makes. inputs: by name, in SI or as text with a unit.
+
+        Raises `InputError` for a swing, and for inputs that the topic does not take.
+        """
+        require_turning(swing, f"the analysis {self.name}")
+        return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the analysis {self.name}"))
+
+    def answer(
+        self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
+    ) -> dict[str, Any]:
+        """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
+        from ...model.linkage.single import single
+
+        found = self.asked(mechanism, linkage, swing, inputs)
+        single(mechanism, linkage)
+        answer: dict[str, Any] = json_ready(found.numbers(lambda: False))
+        return answer
 
     def of(self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None) -> TopicOfDesign:
         """Return the topic of one design. options: of the topic's `numbers`."""

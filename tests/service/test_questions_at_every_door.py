@@ -1,0 +1,201 @@
+"""Questions to one design: the same answers and refusals in Python, on the command line, in the API and its client."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import slidercrank as sc
+from slidercrank.model.errors import InputError, NotFound
+from slidercrank.optimise.problem import questions as announced
+from slidercrank.service.cli import app as command_line
+from slidercrank.service.client import Client
+from slidercrank.service.topics.discovery import TOPICS
+from tests.doors.scripts import JOBS
+from tests.service import fronts
+from tests.service.api.fixed_front import API, Solved, served
+
+MACHINES = (JOBS / "loose.toml", JOBS / "cylinders.toml")
+"""Between them they have every topic but the press, whose distance is given."""
+TOUCH, RATED = 0.0125, 55.5
+
+
+@pytest.fixture(scope="module")
+def address(solved: Solved) -> Iterator[str]:
+    with served(solved.store) as address:
+        yield address
+
+
+@pytest.fixture(scope="module")
+def client(address: str) -> Iterator[Client]:
+    with Client(address) as client:
+        yield client
+
+
+def some_design(problem: sc.Problem, seed: int) -> list[float]:
+    """Return a design in the ranges that turns fully; its lengths are the same numbers in mm, m and as text."""
+    random = np.random.default_rng(seed)
+    while True:
+        lengths = [round(8e3 * random.uniform(ends.lower, ends.upper)) / 8.0 for ends in problem.ranges.values()]
+        design = [length / 1e3 for length in lengths]
+        linkage = sc.Linkage(design[0], design[1], design[2])
+        if linkage.rotates_fully and linkage.least_transmission_angle > 0.3:
+            return design
+
+
+def told(problem: sc.Problem, question: str, design: list[float], given: dict[str, Any]) -> dict[str, Any] | str:
+    """Return an answer, or the sentence of its refusal."""
+    try:
+        return problem.ask(question, design, **given)
+    except InputError as error:
+        return str(error)
+
+
+@pytest.mark.slow
+def test_every_topic_has_the_same_answer_in_python_on_the_command_line_and_in_the_api(
+    address: str, tmp_path: Path
+) -> None:
+    answered: set[str] = set()
+    for job in MACHINES:
+        tables = tomllib.loads(job.read_text(encoding="utf-8"))
+        tables.pop("clearance", None)  # its simulation takes 15 s
+        file = tmp_path / "job.json"
+        file.write_text(json.dumps(tables), encoding="utf-8")
+        problem = sc.load_job(file, require_feasible=False)
+        design = some_design(problem, 5)
+        sizes = {name: f"{1e3 * length!r} mm" for name, length in zip(("crank", "rod", "offset"), design, strict=True)}
+        options = [word for name, text in sizes.items() for word in (f"--{name}", text)]
+        inputs = ["--touch-distance", f"{TOUCH!r} m", "--rated-torque", f"{RATED!r} N m"]
+        done = CliRunner().invoke(command_line, ["analyse", str(file), *options, "--show", "all", *inputs, "--json"])
+        assert done.exit_code == 0, done.stderr
+        printed = json.loads(done.stdout)
+        sent = httpx.post(f"{address}{API}/analyse", json={"job": tables, **sizes, "show": ["all"]}, timeout=60.0)
+        for name in TOPICS:
+            given = {"touch_distance": TOUCH, "rated_torque": f"{RATED!r} N m"} if name == "press" else {}
+            answer = told(problem, name, design, given)
+            if isinstance(answer, str):
+                assert f"{name}: {answer}" in done.stderr.splitlines()
+            else:
+                answered.add(name)
+                assert list(answer) == list(printed[name])
+                assert answer == printed[name]
+            if not given:
+                assert f"{name}: {answer}" in sent.json()["notes"] or answer == sent.json()["analysis"][name]
+    assert answered == TOPICS.keys() - {"clearance"}
+
+
+def test_designs_of_a_front_have_the_same_answers_in_python_and_by_the_client(solved: Solved, client: Client) -> None:
+    front = sc.solve(sc.load_job(solved.job))
+    random = np.random.default_rng(2)
+    for row in random.choice(len(front), 3, replace=False).tolist():
+        angle = float(random.integers(-3200, 3200) / 8.0)
+        torque = float(random.integers(8, 800) / 8.0)
+        assert_same(
+            front.ask("polygons", row, crank_angle=f"{angle} deg"),
+            client.ask(solved.number, row + 1, "polygons", crank_angle_deg=angle),
+        )
+        given = {"touch_distance_mm": 12.0, "rated_torque_Nm": torque}
+        expected = client.ask(solved.number, row + 1, "press", **given)
+        assert_same(front.ask("press", row, touch_distance="12 mm", rated_torque=torque), expected)
+        assert_same(front.ask("press", row, touch_distance=0.012, rated_torque=torque, dwell_distance=None), expected)
+        part = front.part(row)
+        assert_same(part.ask("press", front.dimensions[row], touch_distance=0.012, rated_torque=torque), expected)
+
+
+def assert_same(answer: Any, expected: Any) -> None:
+    """Compare two answers; stored designs have the last digit of their own."""
+    if isinstance(expected, dict):
+        assert list(answer) == list(expected)
+        for key, value in expected.items():
+            assert_same(answer[key], value)
+    elif isinstance(expected, list):
+        assert len(answer) == len(expected)
+        for one, other in zip(answer, expected, strict=True):
+            assert_same(one, other)
+    else:
+        assert answer == (pytest.approx(expected, rel=1e-9, abs=1e-9) if isinstance(expected, float) else expected)
+
+
+WRONG: list[tuple[str, dict[str, object], str]] = [
+    ("pres", {}, "a design is asked a question by its name; got 'pres'; did you mean press?"),
+    ("weather", {}, "a design is asked a question by its name; got 'weather'; choose from static_forces, friction, "),
+    ("press", {"touch": 1.0}, "press is asked with touch_distance, dwell_distance, rated_torque; got touch; leave"),
+    ("motor", {"limit": 1.0}, "the analysis motor is asked with nothing else; got limit; leave limit out"),
+    ("press", {"touch_distance": "12 kg"}, 'touch_distance must be a length; got "12 kg", which is a mass; write it'),
+    ("press", {"touch_distance": "12"}, 'touch_distance must be a length with its unit; got "12"; write it like'),
+    ("press", {"touch_distance": 0.0}, "touch_distance must be positive; got 0"),
+    ("press", {"touch_distance": [0.1]}, "touch_distance must be a length; got [0.1]"),
+    ("press", {"touch_distance": float("nan")}, "touch_distance must be a finite number; got nan"),
+    ("press", {"touch_distance": 3.0}, "distances before a dead centre must be less than the stroke, 280 mm; got 3000"),
+    ("press", {}, "a press touches its work at a distance before the dead centre; got none; give a touch distance"),
+    ("uneven_speed", {}, "an uneven speed needs a profile; got a constant speed"),
+]
+
+
+@pytest.mark.parametrize(("question", "given", "sentence"), WRONG)
+def test_what_no_design_is_asked_is_refused_in_a_sentence(
+    solved: Solved, question: str, given: dict[str, object], sentence: str
+) -> None:
+    crank = float(sc.crank_from_stroke(0.28, rod=0.4, offset=0.06))
+    with pytest.raises(InputError) as refused:
+        sc.load_job(solved.job).ask(question, [crank, 0.4, 0.06], **given)
+    assert sentence in str(refused.value)
+
+
+def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> None:
+    problem = sc.load_job(solved.job)
+    with pytest.raises(sc.AssemblyError, match="rod must exceed crank"):
+        problem.ask("balance", [0.2, 0.1, 0.06])
+    with pytest.raises(InputError, match="designs need 3 numbers each"):
+        problem.ask("balance", [0.2, 0.1])
+    with pytest.raises(InputError, match="the analysis balance is of a crank that turns through; got a job whose"):
+        sc.load_job("runs/support.toml").ask("balance", [1.4, 1.8, -0.05])
+    with pytest.raises(InputError, match="a design of a problem with choices"):
+        sc.load_job(JOBS / "catalogue.toml").ask("balance", [0.04, 0.1, 0.02])
+    with pytest.raises(InputError, match="a row must be one of the front"):
+        fronts.front(designs=3).ask("balance", 99)
+
+
+def test_an_unknown_question_of_a_client_is_refused_by_the_service(solved: Solved, client: Client) -> None:
+    with pytest.raises(NotFound, match="there is no topic 'pres'; choose from static_forces"):
+        client.ask(solved.number, 1, "pres")
+    with pytest.raises(InputError, match="touch_distance_mm"):
+        client.ask(solved.number, 1, "press", touch_distance_mm="wide")
+    with pytest.raises(InputError, match="touch"):
+        client.ask(solved.number, 1, "press", touch=1.0)
+
+
+def test_installed_packages_add_questions_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Reach:
+        def answer(self, mechanism: Any, linkage: sc.Linkage, swing: Any, inputs: Any) -> dict[str, Any]:
+            return {"reach_mm": 1e3 * float(linkage.crank + linkage.rod), **inputs}
+
+    entries = [metadata.EntryPoint(name, f"{name}:QUESTIONS", announced.GROUP) for name in ("mine", "theirs")]
+    offered: dict[str, dict[str, Any]] = {"mine": {"reach": Reach()}, "theirs": {}}
+    monkeypatch.setattr(metadata, "entry_points", lambda group: entries if group == announced.GROUP else [])
+    monkeypatch.setattr(metadata.EntryPoint, "load", lambda entry: offered[entry.name])
+    announced.questions.cache_clear()
+    problem = fronts.problem()
+    try:
+        assert problem.ask("reach", [0.1, 0.4, 0.0], share=1.0) == {"reach_mm": 500.0, "share": 1.0}
+        with pytest.raises(InputError, match="got 'balance'; choose from reach"):
+            problem.ask("balance", [0.1, 0.4, 0.0])
+        announced.questions.cache_clear()
+        offered["theirs"] = {"reach": Reach()}
+        with pytest.raises(InputError, match="the question reach must come from one installed package; got two"):
+            problem.ask("reach", [0.1, 0.4, 0.0])
+        announced.questions.cache_clear()
+        offered.update(mine={}, theirs={})
+        with pytest.raises(InputError, match="no installed package has one; install slidercrank anew"):
+            problem.ask("reach", [0.1, 0.4, 0.0])
+    finally:
+        announced.questions.cache_clear()
