@@ -50,7 +50,8 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     """Compile the kernels of packages, or modules, that are missing and that no other process is at.
 
     What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas
-    of kernels that this process has compiled, then what is urgent. How far it is stands in the file of `building`.
+    of kernels that this process has compiled, then what is urgent. How far it is stands in the file of `building`. Ends
+    where nothing can be kept.
     """
     names = wanted_files(folder)
     found = _tasks(folder, packages, modules)
@@ -85,7 +86,8 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                     number, name = sum(each.file.exists() for each in told), task.wanted.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
                         building(folder, packages).write_text(f"{number} of {len(told)} done, now {name}")
-                keep(task.file, task.wanted.compile())
+                if not keep(task.file, task.wanted.compile()):
+                    return
                 compiled.update(task.codes)
 
 

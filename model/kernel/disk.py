@@ -77,11 +77,13 @@ def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
     own, root = _package(wanted.module), wanted.module.partition(".")[0] + "."
     related = [module for module in reversed(list(modules)) if module.startswith(root)]
     packages = dict.fromkeys([*map(_package, related), own])
-    compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, wanted.module]))
-    found = read(folder / name)
+    if folder not in _refusing:
+        compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, wanted.module]))
+        found = read(folder / name)
     if found is None:  # no process could be started, or nothing be kept
         found = wanted.compile()
-        keep(folder / name, found)
+        if not keep(folder / name, found):
+            _refusing.add(folder)
     return found
 
 
@@ -107,8 +109,12 @@ def read(file: Path) -> MachineCode | None:
     return None
 
 
-def keep(file: Path, found: MachineCode) -> None:
-    """Keep machine code, and of earlier ones the last few; where there is no room, say so."""
+_refusing: set[Path] = set()
+"""Folders that have not kept what was compiled: each process compiles what it needs, and nothing beside."""
+
+
+def keep(file: Path, found: MachineCode) -> bool:
+    """Keep machine code, and of earlier ones the last few; whether it is kept. Where there is no room, say so."""
     head = found._asdict() | {"code": None, "sha256": sha256(found.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
     with contextlib.suppress(OSError):
@@ -122,6 +128,7 @@ def keep(file: Path, found: MachineCode) -> None:
         earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda other: other.stat().st_mtime)
         for other in earlier[:-_STATES]:
             other.unlink(missing_ok=True)
+    return read(file) is not None
 
 
 @cache

@@ -30,8 +30,11 @@ HEAD_SECONDS = 10.0
 """From connecting, or from the first byte of a request, until its headers are there."""
 BODY_SECONDS = 60.0
 """From the headers until the whole body is there."""
-_PIECE = 1024
-"""Bytes that are read at a time: sizes are looked at in between."""
+_PIECE = {"rest": 1024, "head": 1024, "body": 16_384}
+"""Bytes of each part that are read at a time: sizes are looked at in between."""
+_PIECES = 32
+"""Pieces that are read in one turn, and `_TURN` bytes: then other connections have theirs."""
+_TURN = 32_768
 _END = b"\n\r\n"
 """What every head ends with, and with it most requests."""
 _WRITE_BUFFER = 16_384
@@ -167,12 +170,21 @@ class Connection(HttpToolsProtocol):
         else:
             self.flow.pause_reading()
 
+    @property
+    def _may_read(self) -> bool:
+        """Whether what came can be read now: before the next request the answers so far have to be taken."""
+        return not self.pipeline and (self.is_at_rest or self._part != "rest")
+
     def read(self) -> None:
-        """Read what came to the end of a request; refuse what is too large before it ends."""
-        while self._backlog and not self.pipeline and (self.is_at_rest or self._part != "rest"):
-            end = self._backlog.find(_END, 0, _PIECE)
-            piece = self._backlog[: _PIECE if end < 0 else end + len(_END)]
-            self._backlog = self._backlog[len(piece) :]
+        """Read what came to the end of a request, some of it a turn; refuse what is too large before it ends."""
+        begin = 0
+        for _ in range(_PIECES):
+            if not begin < min(len(self._backlog), _TURN) or not self._may_read:
+                break
+            most = begin + _PIECE[self._part]
+            end = self._backlog.find(_END, begin, most)
+            piece = self._backlog[begin : most if end < 0 else end + len(_END)]
+            begin += len(piece)
             self._size += len(piece)
             if self._size > MOST_HEAD:
                 long = self._part == "head" and len(self.url) > MOST_HEAD // 2
@@ -182,10 +194,15 @@ class Connection(HttpToolsProtocol):
             if self.transport.is_closing():
                 return
             super().data_received(piece)
+        self._backlog = self._backlog[begin:]
         if self._backlog or self.pipeline:
             self.flow.pause_reading()
+        if not self._may_read:
             self._wait(None)
-        elif self._deadline is None and (self._part != "rest" or self._size):
+            return
+        if self._backlog:
+            self._gate.queue(self)
+        if self._deadline is None and (self._part != "rest" or self._size):
             self._wait(BODY_SECONDS if self._part == "body" else HEAD_SECONDS)
 
     def on_message_begin(self) -> None:

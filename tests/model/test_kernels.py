@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -22,10 +23,11 @@ import pytest
 from numba.core import event
 
 from slidercrank.model.errors import SlidercrankError
-from slidercrank.model.kernel import compiler, disk
+from slidercrank.model.kernel import compile_all, compiler, disk
 from slidercrank.model.kernel.arithmetic import arcsine
 from slidercrank.model.kernel.closure import digest
-from slidercrank.model.kernel.disk import keep, read
+from slidercrank.model.kernel.compile_all import compile_missing
+from slidercrank.model.kernel.disk import Wanted, keep, read
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
@@ -110,6 +112,42 @@ def test_a_kernel_is_compiled_where_nothing_can_be_kept_and_no_process_started(
     assert "cannot be written" in messages
 
 
+def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else all kernels were compiled beside for each that was needed, in vain: no end after ten minutes."""
+    code = MachineCode("name", (), (), b"code")
+    begun: list[Path] = []
+    compiled: list[str] = []
+    needed = [of_source(PLAIN.format(**SAME | {"c": float(number)})) for number in range(3)]
+    tasks = [compile_all._task(each, tmp_path) for each in needed]
+
+    def compiles(wanted: Wanted) -> MachineCode:
+        compiled.append(wanted.name)
+        return code
+
+    monkeypatch.setattr(Wanted, "compile", compiles)
+    monkeypatch.setattr(disk, "kernel_folder", lambda: tmp_path)
+    monkeypatch.setattr(disk, "compile_beside", lambda *given: begun.append(given[2]))
+    monkeypatch.setattr(compile_all, "_tasks", lambda *_: tasks)
+    write = Path.write_bytes
+
+    def full(file: Path, content: bytes) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert [disk.machine_code(each.wanted()) for each in needed] == [code] * 3
+    assert len(begun) == 1
+    assert len(compiled) == 3
+    compile_missing(tmp_path, "")
+    assert len(compiled) == 4  # a compiling process ends after the first that it could not keep
+    monkeypatch.setattr(Path, "write_bytes", write)
+    compile_missing(tmp_path, "")
+    assert len(compiled) == 7
+    assert [disk.machine_code(each.wanted()) for each in needed] == [code] * 3
+    assert len(compiled) == 7
+
+
 def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stop() -> None:
         raise TimeoutError
@@ -174,7 +212,7 @@ def test_a_kernel_that_takes_other_arguments_is_said_and_not_called() -> None:
 
 
 def of_source(source: str) -> Kernel:
-    names: dict[str, Any] = {"kernel": kernel, "Row": Row}
+    names: dict[str, Any] = {"kernel": kernel, "Row": Row, "__name__": "made"}
     exec(source, names)
     found: Kernel = names["f"]
     KERNELS.remove(found)

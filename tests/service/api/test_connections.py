@@ -10,6 +10,7 @@ from pathlib import Path
 import httpx
 import psutil
 import pytest
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 from slidercrank.service.api import connections
 from slidercrank.service.api.connections import MOST_HEAD
@@ -106,6 +107,58 @@ def test_a_body_after_a_pipelined_request_is_no_head(open_service: httpx.Client)
             content += part
     assert content.count(b"HTTP/1.1 ") == 2
     assert content.endswith(b'{"status":"live"}')
+
+
+@pytest.fixture
+def turns(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
+    """Give pieces and bytes that the parser gets in each turn of a connection."""
+    found: list[tuple[int, int]] = []
+
+    class Watched(connections.Connection):
+        def read(self) -> None:
+            found.append((0, 0))
+            super().read()
+
+    def fed(protocol: HttpToolsProtocol, data: bytes) -> None:
+        pieces, size = found[-1]
+        found[-1] = pieces + 1, size + len(data)
+        take(protocol, data)
+
+    take = HttpToolsProtocol.data_received
+    monkeypatch.setattr(HttpToolsProtocol, "data_received", fed)
+    monkeypatch.setattr(connections, "Connection", Watched)
+    return found
+
+
+@pytest.mark.parametrize("unit", [b"b", b"\n\r\n"], ids=["plain", "like the ends of heads"])
+def test_a_large_body_takes_short_turns_and_all_of_it_is_read(
+    tmp_path: Path, turns: list[tuple[int, int]], unit: bytes
+) -> None:
+    body = unit * (600_000 // len(unit))
+    post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Length: %d\r\n\r\n" % len(body)
+    last = LIVE + b"Connection: close\r\n\r\n"
+    with Store(tmp_path / "store.db") as store, client_of(store) as client, connected(client) as there:
+        there.sendall(post + body + last)
+        came = there.makefile("rb", 0)
+        assert [status_of(came), status_of(came)] == [415, 200]
+    assert sum(size for _, size in turns) == len(post + body + last)
+    assert max(pieces for pieces, _ in turns) <= 32
+    assert max(size for _, size in turns) < 50_000
+
+
+def test_a_body_that_comes_in_large_parts_has_its_time_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connections, "BODY_SECONDS", 0.3)
+    head = f"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {TOKEN}\r\n".encode()
+    head += b"Content-Type: application/json\r\nContent-Length: 1000000\r\n\r\n"
+    with Store(tmp_path / "store.db") as store, client_of(store, token=TOKEN) as client, connected(client) as there:
+        there.sendall(head)
+        sent_size = 0
+        with contextlib.suppress(ConnectionError):
+            while sent_size < 1_000_000:  # takes 1.25 s
+                there.sendall(b"b" * 40_000)
+                sent_size += 40_000
+                time.sleep(0.05)
+        assert answer(there)[0] == 408
 
 
 def test_a_request_that_never_ends_is_given_up(
