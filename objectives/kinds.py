@@ -166,8 +166,9 @@ PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
     Kind(f"a length per {name}", f"m/{unit}", "", 0.0, per(f"mm/{unit}", 1e3), per(f"in/{unit}", _PER_INCH))
     for name, unit in (("angle", "rad"), ("squared angle", "rad^2"), ("cubed angle", "rad^3"))
 )
+MASS_MOMENT = Kind("a mass times a length", "kg m", "", 0.0, face("kg m"), face("lb in", _PER_INCH / _POUND))
 
-SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE)
+SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE, MASS_MOMENT)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
 
 

@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
@@ -184,12 +183,12 @@ def offset_figure() -> Sheet:
     )
 
 
-def clearance_figure() -> Figure:
+def clearance_figure() -> Sheet:
     """Return slider motion with a loose joint at three speeds (case 2); simulated, which takes some 20 s."""
     return speeds_figure(speed_runs(case_2.LOOSE, case_2.SIEVE))
 
 
-FIGURES: dict[int, dict[str, Callable[[], Sheet | Figure]]] = {
+FIGURES: dict[int, dict[str, Callable[[], Sheet]]] = {
     1: {"polygons": polygon_figure},
     2: {"motion": sieve_figure, "sensitivity": sensitivity_figure, "clearance": clearance_figure},
     3: {"motion_and_forces": in_line_figure},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Any
 
 import typer
@@ -9,7 +10,8 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH
 from ..designs.selection import value_of
-from ..text.options import Dimensions, Figures, JobFile, Json
+from ..designs.shown_units import record_in
+from ..text.options import Dimensions, Figures, JobFile, Json, Units
 from ..text.screen import answer, say, write_figure
 from .job_or_run import turning_problem
 
@@ -23,6 +25,7 @@ def allocate(
         str, typer.Option(metavar="KIND"), 'How errors add up: "worst case" or "rss" (root-sum-square).'
     ] = "worst case",
     figures: Annotated[Figures, "Draw error and costs into allocation.png there."] = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Find the tolerances of least manufacturing cost that keep the position error within a limit.
@@ -46,11 +49,11 @@ def allocate(
     words: Any = kind.strip().casefold().replace("-", " ").replace("_", " ")
     found = convex.allocate(linkage, problem.costs, most, words, mechanism=mechanism)
     numbers = analysis.numbers(found, linkage, problem.costs, mechanism)
-    answer(json, numbers, lambda screen: print_blocks(screen, analysis.blocks(numbers)))
+    answer(json, record_in(numbers, units), lambda screen: print_blocks(screen, analysis.blocks(numbers), units))
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:
         from ..topics.allocation.figure import allocation_curves, allocation_figure
 
         curves = allocation_curves(found, linkage, problem.costs, mechanism)
-        write_figure(figures / "allocation.png", lambda: allocation_figure(curves))
+        write_figure(figures / "allocation.png", partial(allocation_figure, curves, units))

@@ -9,7 +9,8 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import LENGTH, MASS
-from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, given_value
+from ..designs.shown_units import record_in
+from ..text.options import Dimensions, Figures, JobFile, Json, Length, Mass, Units, given_value
 from ..text.screen import answer, say, write_figure
 from .job_or_run import turning_problem
 
@@ -30,6 +31,7 @@ def balance(
     rod_mass: Annotated[Mass, "Greatest mass of it."] = None,
     arm: Annotated[Length, "Count the shaking moment too, as moment / arm; needs a rod balance."] = None,
     figures: Annotated[Figures, "Draw the hodograph before and after into balance.png there."] = None,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Find the counterweight, instead of that of JOB, of least shaking force, and a balance mass on the rod.
@@ -56,11 +58,11 @@ def balance(
         rod=_space(given("--rod-radius", rod_radius, LENGTH), given("--rod-mass", rod_mass, MASS)),
     )
     numbers = analysis.numbers(found, words)
-    answer(json, numbers, lambda screen: print_blocks(screen, analysis.blocks(numbers)))
+    answer(json, record_in(numbers, units), lambda screen: print_blocks(screen, analysis.blocks(numbers), units))
     if not found.converged:
         say(f"not proven to be the best: {found.objective:.6g} N, and no less than {found.bound:.6g} N is possible")
     if figures is not None:
-        write_figure(figures / "balance.png", lambda: analysis.figure(found, title=problem.name))
+        write_figure(figures / "balance.png", lambda: analysis.figure(found, title=problem.name), units)
 
 
 def _space(radius: float | None, mass: float | None) -> RodSpace | None:

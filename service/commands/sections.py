@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..render.terminal import table
-from ..text.options import Dimensions, JobFile, Json
+from ..designs.shown_units import record_in
+from ..render.blocks import Block, Sentence, Table, Value, column, recorded, sentence, words
+from ..render.terminal import print_blocks
+from ..text.options import Dimensions, JobFile, Json, Units
 from ..text.screen import answer, waiting
 from .job_or_run import turning_problem
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from ...model.linkage.linkage import Linkage
     from ...optimise.sizing.sections import Sections
 
@@ -22,6 +22,7 @@ def sections(
     job: Annotated[JobFile, "A job file with a table [sections]."],
     *,
     size: Dimensions,
+    units: Units = "metric",
     json: Json = False,
 ) -> None:
     """Size crank and rod of one design as rectangular bars of least mass.
@@ -38,7 +39,8 @@ def sections(
     linkage = size.linkage(problem)
     with waiting("sizing the sections"):
         found = size_sections(problem.mechanism.nominal, linkage, material, limits)
-    answer(json, _numbers(found, linkage), lambda screen: _show(screen, found))
+    numbers = _numbers(found, linkage)
+    answer(json, record_in(numbers, units), lambda screen: print_blocks(screen, _blocks(numbers), units))
 
 
 def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
@@ -55,13 +57,18 @@ def _numbers(found: Sections, linkage: Linkage) -> dict[str, Any]:
     }
 
 
-def _show(screen: Console, found: Sections) -> None:
-    for name, bar in (("crank", found.crank), ("rod", found.rod)):
-        screen.print(f"{name}: width {1e3 * bar.width:.4g} mm, depth {1e3 * bar.depth:.4g} mm", soft_wrap=True)
-    settled = "" if found.settled else "; sections and dynamics have not settled"
-    screen.print(f"mass of both: {found.mass:.5g} kg, after {found.iterations} iterations{settled}", soft_wrap=True)
-    rows = table("limit", ">used, %", ">1 % more of it saves")
-    for name, used in found.utilisation.items():
-        rate = found.sensitivity[name]
-        rows.add_row(name, f"{100.0 * used:.4g}", f"{rate:.3g} % of mass" if rate > _ACTIVE else "")
-    screen.print(rows)
+def _blocks(numbers: dict[str, Any]) -> list[Block]:
+    def size(of: str) -> Sentence:
+        sides = {side: recorded(numbers, f"{of}_{side}_mm", digits=4) for side in ("width", "depth")}
+        return sentence(f"{of}: width {{width}}, depth {{depth}}", **sides)
+
+    settled = "" if numbers["settled"] else "; sections and dynamics have not settled"
+    together = f"mass of both: {{mass}}, after {numbers['iterations']} iterations{settled}"
+    rows = []
+    for name, used in numbers["utilisation"].items():
+        rate = Value(numbers["mass_percent_per_percent"][name], digits=3)
+        saved = words("{rate} % of mass", rate=rate) if (rate.number or 0.0) > _ACTIVE else ""
+        rows.append((name, Value(100.0 * used, digits=4), saved))
+    columns = column("limit", left=True), column("used, %"), column("1 % more of it saves")
+    mass = recorded(numbers, "mass_kg", digits=5)
+    return [size("crank"), size("rod"), sentence(together, mass=mass), Table(columns, tuple(rows))]

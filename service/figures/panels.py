@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from . import style
 from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet, panel_in
 
 Array = NDArray[np.float64]
+Drawn = Sheet | Figure | Callable[[System], Figure]
+"""A sheet, or a figure: drawn before, or in a system of units when it is needed."""
 
 GREEN = "#009e73"  # of the same palette
 # Told apart by their dashes where colour is lost.
@@ -58,13 +61,15 @@ def draw_sheet(sheet: Sheet, system: System = "metric", *, above: float = 0.0) -
     return figure
 
 
-def figure_of(made: Sheet | Figure, system: System = "metric") -> Figure:
-    """Return the figure of a sheet in a system of units; one drawn before as it is."""
-    return draw_sheet(made, system) if isinstance(made, Sheet) else made
+def figure_of(made: Drawn, system: System = "metric") -> Figure:
+    """Return the figure of a sheet, or of what is drawn otherwise, in a system of units; one drawn before as it is."""
+    if isinstance(made, Figure):
+        return made
+    return draw_sheet(made, system) if isinstance(made, Sheet) else made(system)
 
 
-def save_sheet(made: Sheet | Figure, path: Path, system: System = "metric") -> None:
-    """Write a sheet in a system of units, or a figure drawn before, as PNG."""
+def save_sheet(made: Drawn, path: Path, system: System = "metric") -> None:
+    """Write what `figure_of` returns as PNG."""
     style.save(figure_of(made, system), path)
 
 

@@ -21,7 +21,10 @@ def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
     design = subject.design
     rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
-    return Section("Sensitivity", (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows)),))
+    return Section(
+        "Sensitivity",
+        (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows, subject.system)),),
+    )
 
 
 def tolerance_section(subject: Subject) -> Section | None:
@@ -33,7 +36,9 @@ def tolerance_section(subject: Subject) -> Section | None:
     blocks: tuple[Block, ...] = (
         Facts(_facts(found, subject.system)),
         _sources(found, subject.system),
-        Picture("Position error over a turn", lambda: tolerances_figure(error_bands(mechanism, linkage))),
+        Picture(
+            "Position error over a turn", lambda: tolerances_figure(error_bands(mechanism, linkage), subject.system)
+        ),
         Paragraph(
             f"Random machines: {found['monte_carlo']['samples']}, seed {found['monte_carlo']['seed']}; normal errors, "
             "limits at three standard deviations.",

@@ -14,12 +14,12 @@ from ..runs.result import json_text
 from ..runs.run_folder import disk
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
     from rich.console import Console
     from rich.status import Status
 
+    from ...objectives.kinds import System
     from ...optimise.front.progress import Progress
-    from ..figures.sheets import Sheet
+    from ..figures.panels import Drawn
 
 
 def console() -> Console:
@@ -65,13 +65,13 @@ def waiting(text: str) -> contextlib.AbstractContextManager[Status | None]:
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 
 
-def write_figure(file: Path, draw: Callable[[], Sheet | Figure]) -> None:
+def write_figure(file: Path, draw: Callable[[], Drawn], units: System = "metric") -> None:
     """Write a figure as PNG, its folder made if it is not there, and say where it is."""
     from ..figures.panels import save_sheet
 
     with disk(file.parent), waiting("drawing the figure"):
         file.parent.mkdir(parents=True, exist_ok=True)
-        save_sheet(draw(), file)
+        save_sheet(draw(), file, units)
     say(f"figure: {file}")
 
 

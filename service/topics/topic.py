@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
     from ...model.swing.swing import Swing
     from ...objectives.kinds import System
-    from ..figures.sheets import Sheet
+    from ..figures.panels import Drawn
     from ..render.blocks import Block
 
 
@@ -123,10 +123,10 @@ class TopicOfDesign:
         if hasattr(self._analysis, "prepare"):
             self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
 
-    def _drawn(self) -> Sheet | Figure:
+    def _drawn(self) -> Drawn:
         hidden = {one.name for one in self.topic.inputs if not one.drawn}
         options = {name: value for name, value in self.options.items() if name not in hidden}
-        found: Sheet | Figure = self._analysis.figure(self.mechanism, self.linkage, **options)
+        found: Drawn = self._analysis.figure(self.mechanism, self.linkage, **options)
         return found
 
     @property

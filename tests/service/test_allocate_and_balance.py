@@ -135,7 +135,7 @@ def test_balance_is_that_of_the_model(job: Path, command: Command) -> None:
 def test_what_is_found_is_shown_and_drawn(job: Path, tmp_path: Path, command: Command) -> None:
     done = command("allocate", job, *ALLOCATE, "--kind", "RSS", "--figures", tmp_path / "figures")
     assert done.exit_code == 0, done.stderr
-    for words in ("0.04 mm", "the greatest that is possible", "one µm more of it saves", "in the job: 29"):
+    for words in ("0.04 mm", "the greatest that is possible", "1 µm more of it saves", "in the job: 29"):
         assert words in done.stdout
     done = command("balance", job, "--offset", "60 mm", *ROD, "--measure", "rms", "--figures", tmp_path / "figures")
     assert done.exit_code == 0, done.stderr
@@ -209,9 +209,9 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     theta = np.radians(data.angles)
     now, before = (first_order(each, LINKAGE, theta) for each in (found.mechanism, mechanism))
     errors = [each.worst_case if kind == "worst case" else each.root_sum_square for each in (now, before)]
-    np.testing.assert_allclose(data.parts.sum(axis=0), 1e3 * errors[0], rtol=1e-9)
+    np.testing.assert_allclose(data.parts.sum(axis=0), errors[0], rtol=1e-9)
     assert data.before is not None
-    np.testing.assert_allclose(data.before, 1e3 * errors[1], rtol=1e-9)
+    np.testing.assert_allclose(data.before, errors[1], rtol=1e-9)
     assert data.sources == ("crank", "rod", "offset", "crank angle", "crank pin clearance")
     (span,) = data.counted
     fractions = (LINKAGE.at(np.radians(span)).slider_position - LINKAGE.dead_centres[0]) / LINKAGE.stroke
@@ -219,11 +219,14 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     figure = allocation_figure(data)
     error, cost = figure.axes
     lines: list[Any] = list(error.lines)
-    np.testing.assert_array_equal(lines[0].get_ydata(), data.before)
+    np.testing.assert_allclose(lines[0].get_ydata(), 1e3 * data.before)
     np.testing.assert_array_equal(lines[2].get_xdata(), np.degrees(found.angles))
     widths = [bar.get_width() for bar in cost.patches]  # type: ignore[attr-defined]
     np.testing.assert_allclose(widths, [*(part.cost for part in found.parts), 13.0, 6.0, 10.0], rtol=1e-12)
     assert overlaps(figure) == []
+    inch = allocation_figure(data, "inch")
+    np.testing.assert_allclose(np.asarray(inch.axes[0].lines[0].get_ydata()), data.before / 0.0254)
+    assert inch.axes[0].get_ylabel() == "position error, in"
 
 
 @pytest.mark.parametrize("space", [None, RodSpace(radius=0.06, mass=2.0)])

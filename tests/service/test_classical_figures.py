@@ -10,7 +10,6 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from slidercrank.model.classical.comparison import TORQUE, compare
 from slidercrank.model.classical.polygons import polygons
@@ -196,7 +195,7 @@ def test_offset_panels_are_the_motion_and_virtual_work_of_the_feeder() -> None:
         np.testing.assert_allclose(line(formula, label).y, expected, rtol=0, atol=1e-8)
 
 
-SHEETS: dict[str, Callable[[], Sheet | Figure]] = {
+SHEETS: dict[str, Callable[[], Sheet]] = {
     name: make for of_case in of_cases.FIGURES.values() for name, make in of_case.items() if name != "clearance"
 } | {
     "static forces": lambda: static_analysis.figure(MACHINE, LINKAGE),

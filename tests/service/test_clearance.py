@@ -18,6 +18,8 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
+from slidercrank.service.figures.panels import figure_of
 from slidercrank.service.figures.style import image
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.topics.clearance.analysis import blocks, figure, numbers, simulated
@@ -107,25 +109,34 @@ def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
     curves = loose_curves(run)
     assert (curves.angles[0], curves.angles[-1]) == pytest.approx((0.0, 360.0), abs=1e-9)
     last = run.times >= 3.0 * run.period * (1.0 - 1e-12)
-    np.testing.assert_allclose(curves.curves["slider displacement, mm"], 1e3 * run.slider_position[last])
-    np.testing.assert_allclose(curves.curves["slider velocity, m/s"], run.slider_velocity[last])
-    np.testing.assert_allclose(curves.curves["slider acceleration, m/s²"], run.slider_acceleration[last])
+    np.testing.assert_allclose(curves.curves[LENGTH], run.slider_position[last])
+    np.testing.assert_allclose(curves.curves[SPEED], run.slider_velocity[last])
+    np.testing.assert_allclose(curves.curves[ACCELERATION], run.slider_acceleration[last])
     ideal = LINKAGE.at(np.radians(curves.angles), speed=MACHINE.speed)
     for title, values in zip(
         curves.ideal,
-        (1e3 * ideal.slider_position, ideal.slider_velocity, ideal.slider_acceleration),
+        (ideal.slider_position, ideal.slider_velocity, ideal.slider_acceleration),
         strict=True,
     ):
         np.testing.assert_allclose(curves.ideal[title], values, atol=1e-9 * np.abs(values).max())
-    np.testing.assert_allclose(curves.force, 1e-3 * run.contact_force[last])
-    depth = np.hypot(curves.journal_x, curves.journal_y) - 1.0
-    np.testing.assert_allclose(depth, 1e3 * run.penetration[last], atol=1e-12)
+    np.testing.assert_allclose(curves.force, run.contact_force[last])
+    depth = np.hypot(curves.journal_x, curves.journal_y) - 1e-3
+    np.testing.assert_allclose(depth, run.penetration[last], atol=1e-15)
     assert np.all(curves.force[~curves.touching] == 0.0)
 
 
 def test_figures_are_drawn(run: ClearanceRun) -> None:
     for drawn in (figure(MACHINE, LINKAGE, run=run), speeds_figure([run, run])):
-        assert image(drawn, "png").startswith(b"\x89PNG")
+        metric, inch = figure_of(drawn), figure_of(drawn, "inch")
+        assert image(metric, "png").startswith(b"\x89PNG")
+        for before, after in zip(metric.axes, inch.axes, strict=True):
+            unit = before.get_title(loc="left").rpartition(", ")[2]
+            factor = {"mm": 1.0 / 25.4, "N": 1.0 / 4.4482216152605}.get(unit, 1000.0 / 25.4)  # else m/s or m/s^2
+            if "journal" in before.get_title(loc="left"):
+                factor = 1.0 / 25.4
+            np.testing.assert_allclose(
+                np.asarray(after.lines[0].get_ydata()), factor * np.asarray(before.lines[0].get_ydata()), rtol=1e-9
+            )
 
 
 def test_speeds_are_compared_in_the_direction_of_the_machine() -> None:

@@ -124,24 +124,24 @@ def test_error_bands_are_those_of_the_model() -> None:
     bands = error_bands(GAPPED, SUPPORT, samples=1000, seed=3)
     theta = np.radians(bands.angles)
     linear, exact = first_order(GAPPED, SUPPORT, theta), extremes(GAPPED, SUPPORT, theta)
-    np.testing.assert_allclose(bands.worst_case, 1e3 * linear.worst_case, rtol=1e-9)
-    np.testing.assert_allclose(bands.root_sum_square, 1e3 * linear.root_sum_square, rtol=1e-9)
+    np.testing.assert_allclose(bands.worst_case, linear.worst_case, rtol=1e-9)
+    np.testing.assert_allclose(bands.root_sum_square, linear.root_sum_square, rtol=1e-9)
     assert bands.least is not None
     assert bands.greatest is not None
-    np.testing.assert_allclose(bands.least, 1e3 * exact.least, rtol=1e-9)
-    np.testing.assert_allclose(bands.greatest, 1e3 * exact.greatest, rtol=1e-9)
+    np.testing.assert_allclose(bands.least, exact.least, rtol=1e-9)
+    np.testing.assert_allclose(bands.greatest, exact.greatest, rtol=1e-9)
     errors = simulate(GAPPED, SUPPORT, theta, samples=1000, seed=3).errors
-    np.testing.assert_allclose(bands.percentiles, 1e3 * np.percentile(errors, PERCENTS, axis=0), rtol=1e-9)
+    np.testing.assert_allclose(bands.percentiles, np.percentile(errors, PERCENTS, axis=0), rtol=1e-9)
     np.testing.assert_allclose(bands.shares.sum(axis=0), 100.0, rtol=1e-12)
     assert len(bands.sources) == 8
     figure = tolerances_figure(bands)
-    drawn = lines_of(figure, 0)
-    np.testing.assert_array_equal(drawn[0], bands.worst_case)
-    np.testing.assert_array_equal(drawn[1], -bands.worst_case)
-    np.testing.assert_array_equal(drawn[2], bands.greatest)
-    np.testing.assert_array_equal(drawn[3], bands.least)
-    np.testing.assert_array_equal(drawn[4], bands.root_sum_square)
-    assert overlaps(figure) == []
+    curves = (bands.worst_case, -bands.worst_case, bands.greatest, bands.least, bands.root_sum_square)
+    inch = tolerances_figure(bands, "inch")
+    for drawn, factor in ((figure, 1e3), (inch, 1.0 / 0.0254)):
+        for line, curve in zip(lines_of(drawn, 0), curves, strict=False):
+            np.testing.assert_allclose(line, factor * curve, rtol=1e-12)
+        assert overlaps(drawn) == []
+    assert inch.axes[0].get_ylabel() == "deviation along the line, in"
 
 
 def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
@@ -173,7 +173,11 @@ def test_tornado_draws_the_percentages_most_sensitive_first(offset: float) -> No
         np.testing.assert_allclose(row[columns].to_numpy(dtype=float), expected, rtol=1e-15)
     both = [*columns, *(f"{column}_below" for column in columns)]
     assert rows[both].abs().max(axis=1).is_monotonic_decreasing
+    inch = tornado_figure(rows, "inch")
+    assert inch.axes[2].get_title() == ("offset" if offset else "offset, for 0.01 in")
     figure = tornado_figure(rows)
+    offsets = [[bar.get_width() for bar in each.axes[2].patches] for each in (inch, figure)]  # type: ignore[attr-defined]
+    np.testing.assert_allclose(offsets[0], np.array(offsets[1]) * (1.0 if offset else 0.254))
     for panel, column in zip(figure.axes, columns, strict=True):
         widths = [bar.get_width() for bar in panel.patches]  # type: ignore[attr-defined]
         drawn: list[float] = []

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -228,3 +229,71 @@ def test_the_command_line_tells_a_topic_in_the_units_that_are_asked_for(tmp_path
     assert re.search(r"peak torque +[\d.]+ +lbf in +at ", found)
     assert "metric units" not in found
     assert re.search(r"peak torque +[\d.]+ +N m +at ", command(*given).stdout)
+
+
+SIZING = """
+name = "Press"
+[mechanism]
+speed = "120 rpm"
+crank = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
+rod = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
+slider = { mass = "3 kg" }
+[[load]]
+force = "2 kN"
+opposes = "outward stroke"
+[tolerances]
+crank = "0.05 mm"
+rod = "0.1 mm"
+crank_angle = "0.1 deg"
+[costs]
+crank = { cost = 8.0, at = "0.05 mm" }
+rod = { cost = 6.0, at = "0.1 mm", max = "0.04 mm" }
+crank_angle = { cost = 5.0, at = "0.1 deg" }
+[variables]
+crank = "50 mm"
+rod = ["100 mm", "400 mm"]
+offset = "10 mm"
+[objectives]
+peak_torque = "minimise"
+[sections]
+pins = { crank_pivot = "15 mm", crank_pin = "12 mm", slider_pin = "10 mm" }
+static_safety = 2.5
+[sections.material]
+density = "7850 kg/m^3"
+elasticity = "207 GPa"
+yield_strength = "350 MPa"
+ultimate_strength = "520 MPa"
+endurance = "150 MPa"
+bearing_pressure = "20 MPa"
+"""
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ("allocate", "--limit", "0.3 mm"),
+        ("allocate", "--limit", "0.3 mm", "--kind", "rss"),
+        ("balance", "--mass", "0.5 kg"),
+        ("balance", "--mass", "2 kg", "--rod-radius", "60 mm", "--rod-mass", "2 kg", "--arm", "200 mm"),
+        ("sections",),
+    ],
+    ids=" ".join,
+)
+def test_what_sizes_one_design_says_in_inches_the_metric_numbers(
+    asked: tuple[str, ...], command: Command, tmp_path: Path
+) -> None:
+    job = tmp_path / "press.toml"
+    job.write_text(SIZING)
+    name, *options = asked
+    figures = () if name == "sections" else ("--figures", tmp_path / "figures")
+
+    def said(*more: object) -> str:
+        done = command(name, job, "--rod", "200 mm", *options, *more)
+        assert done.exit_code == 0, done.output
+        return done.stdout
+
+    unit = re.compile(rf"[\d ]({METRIC})(?![\w/])")
+    assert unit.search(said(*figures))
+    assert not unit.search(said(*figures, "--units", "inch"))
+    metric = json.loads(said("--json"))
+    assert json.loads(said("--json", "--units", "inch")) == record_in(metric, "inch") != metric

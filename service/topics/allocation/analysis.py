@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,14 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
 from ....model.tolerance.sources import limits
-from ....objectives.kinds import ANGLE
+from ....objectives.kinds import ANGLE, LENGTH, face
 from ....optimise.problem.costs import NAMES, Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
-from ...render.blocks import Block, Table, Text, Unit, column, heading, joined, recorded, sentence, words
+from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
 from ..peaks import peak
+
+_STEP = replace(LENGTH, metric=face("1 µm", 1e6), inch=face("0.0001 in", 1e4 * LENGTH.face("inch").factor))
+"""A step of length, for what it saves: as a unit of its own."""
 
 
 def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> dict[str, Any]:
@@ -88,10 +92,11 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     holds = sentence("the limit holds nothing back: every tolerance is the greatest that is allowed")
     if numbers["active_angles"]:
         holds = sentence(
-            "the limit holds at {angles} {unit}; one µm more of it saves {saving}",
+            "the limit holds at {angles} {unit}; {step} more of it saves {saving}",
             angles=joined([recorded(at, "crank_angle_deg", digits=4, bare=True) for at in numbers["active_angles"]]),
             unit=Unit(ANGLE),
-            saving=recorded(numbers, "saving_per_um", digits=4),
+            step=Unit(_STEP),
+            saving=_saved(numbers["saving_per_um"]),
         )
     return [
         heading(f"Tolerances of least cost for {{limit}} of position error, {kind}", limit=limit),
@@ -102,16 +107,25 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def _row(tolerance: dict[str, Any]) -> tuple[Text, ...]:
-    unit, step, each = ("mm", "um", "µm") if tolerance["tolerance_deg"] is None else ("deg", "mdeg", "0.001 deg")
+    length = tolerance["tolerance_deg"] is None
     remark: Text = ""
     if tolerance["bound"]:
+        saved = Value(tolerance["bound_saving_per_mdeg"], digits=4)
         remark = words(
-            f"the {tolerance['bound']} that is possible; beyond it would save {{saving}} for each {each}",
-            saving=recorded(tolerance, f"bound_saving_per_{step}", digits=4),
+            f"the {tolerance['bound']} that is possible; beyond it would save {{saving}} for each {{step}}",
+            saving=_saved(tolerance["bound_saving_per_um"]) if length else saved,
+            step=Unit(_STEP) if length else "0.001 deg",
         )
-    size, cost = recorded(tolerance, f"tolerance_{unit}", digits=5), recorded(tolerance, "cost", digits=5)
+    size = recorded(tolerance, "tolerance_mm" if length else "tolerance_deg", digits=5)
+    cost = recorded(tolerance, "cost", digits=5)
     share = f"{tolerance['share_of_cost_percent']:.1f} %"
     return tolerance["name"].replace("_", " "), (size,), cost, share, remark
+
+
+def _saved(per_um: float) -> Value:
+    """Return what a step of length saves."""
+    per = replace(_STEP, metric=face("", 1e-6), inch=face("", 1.0 / _STEP.face("inch").factor))
+    return Value(1e6 * per_um, per, 4)
 
 
 def _before(numbers: dict[str, Any]) -> Text:

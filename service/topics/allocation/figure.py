@@ -13,10 +13,11 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.tolerance.first_order import FirstOrder, first_order
 from ....model.tolerance.sources import SOURCES, counted_angles
+from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.costs import Costs
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
-from ...render.numerals import shown
+from ...render.numerals import shown, with_unit
 from .analysis import costs_before
 
 Array = NDArray[np.float64]
@@ -26,11 +27,11 @@ _SAMPLES = 721
 
 @dataclass(frozen=True)
 class AllocationCurves:
-    """The figure's data: errors in mm over crank angles (m,), deg.
+    """The figure's data: errors in m over crank angles (m,), deg.
 
     sources: (s,), of those that add to the error; parts: (s, m), what each adds (worst case) or its share of the
     squares times the error (root-sum-square), so that both add up to the error. before: (m,), with the tolerances that
-    the mechanism had; None if it had not all of them. limit: mm. counted: crank angles (from, to), deg, of the parts of
+    the mechanism had; None if it had not all of them. limit: m. counted: crank angles (from, to), deg, of the parts of
     the cycle that count. active: crank angles, deg. names, costs, costs_before: of the tolerances that were chosen.
     """
 
@@ -58,9 +59,9 @@ def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before:
     return AllocationCurves(
         np.degrees(theta),
         tuple(name for name, adds in zip(SOURCES, there, strict=True) if adds),
-        1e3 * (share * error)[there],
-        None if was is None else 1e3 * _summed(first_order(before, linkage, theta), found.kind)[1],
-        1e3 * found.limit,
+        (share * error)[there],
+        None if was is None else _summed(first_order(before, linkage, theta), found.kind)[1],
+        found.limit,
         tuple(spans),
         np.degrees(found.angles),
         tuple(part.name.replace("_", " ") for part in found.parts),
@@ -77,30 +78,33 @@ def _summed(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
     return linear.share_of_variance, linear.root_sum_square
 
 
-def allocation_figure(data: AllocationCurves) -> Figure:
-    """Return the figure: above the error over the cycle, below the costs."""
+def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figure:
+    """Return the figure in a system of units: above the error over the cycle, below the costs."""
+    unit = LENGTH.face(system)
+    limit = unit.factor * data.limit
     count = len(data.names)
     foot = 0.55 + 0.42 * count
     figure = style.new_figure(9.2, foot + 4.25)
     gaps = _gaps(data.counted)
-    note = f"{data.kind} within {shown(data.limit)} mm" + ("; pale: not counted" if gaps else "")
+    note = f"{data.kind} within {shown(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
     style.heading(figure, "Tolerances of least cost", note)
     error = style.place(figure, 0.8, foot + 0.85, 5.9, 2.7)
     style.dress(error, up=6)
     style.over_turn(error)
-    style.draw_stack(error, data.angles, data.parts, data.sources)
+    style.draw_stack(error, data.angles, unit.factor * data.parts, data.sources)
     if data.before is not None:
-        error.plot(data.angles, data.before, color=style.BLUE, linewidth=1.3, linestyle=":", label="as in the job")
-    error.axhline(data.limit, color=style.VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
+        errors = unit.factor * data.before
+        error.plot(data.angles, errors, color=style.BLUE, linewidth=1.3, linestyle=":", label="as in the job")
+    error.axhline(limit, color=style.VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
     error.plot(
-        data.active, np.full(len(data.active), data.limit), linestyle="none", marker="o", markersize=6,
+        data.active, np.full(len(data.active), limit), linestyle="none", marker="o", markersize=6,
         markerfacecolor="white", markeredgecolor=style.VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
     )  # fmt: skip
     for start, end in gaps:
         error.axvspan(start, end, color=style.SHADE, alpha=0.8, linewidth=0, zorder=4)
     tops = [float(data.parts.sum(axis=0).max()), data.limit, *([] if data.before is None else [data.before.max()])]
-    error.set_ylim(0.0, 1.06 * max(tops))
-    error.set_ylabel("position error, mm", fontsize=style.TEXT)
+    error.set_ylim(0.0, 1.06 * unit.factor * max(tops))
+    error.set_ylabel(with_unit("position error", unit.symbol), fontsize=style.TEXT)
     error.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     style.legend_beside(error, stacked=len(data.sources))
 

@@ -6,6 +6,7 @@ import contextlib
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ....model.clearance.run import ClearanceProgress, ClearanceRun, simulate
@@ -17,6 +18,8 @@ from ...render.blocks import Block, Table, Text, Unit, column, heading, note, re
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ....objectives.kinds import System
 
 CYCLES, DISCARD = 12, 4
 
@@ -120,11 +123,11 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Figure:
+def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Callable[[System], Figure]:
     """Return the last turn of a simulation. run: one that was done before; else `simulated` does it now."""
     from .figure import clearance_figure
 
-    return clearance_figure(run or simulated(mechanism, linkage))
+    return partial(clearance_figure, run or simulated(mechanism, linkage))
 
 
 @contextlib.contextmanager

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, kind_in
+from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, face
 from ....optimise.sizing.counterweight import Balance, Shaking
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...render.blocks import (
@@ -71,9 +72,14 @@ def _shaking(shaking: Shaking) -> dict[str, float]:
 def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the numbers for people."""
     mass, radius, angle = (recorded(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg"))
-    moment = Value(numbers["counterweight_moment_kg_m"], kind_in("kg m"))
+    moment = recorded(numbers, "counterweight_moment_kg_m")
     saving = numbers["saving_N_per_kg"]
-    remark = f"the heaviest that is allowed; each kg more would save {saving:.4g} N" if saving else ""
+    remark: Text = ""
+    if saving:
+        inch = FORCE.face("inch").factor / MASS.face("inch").factor
+        per_mass = replace(FORCE, metric=face("N"), inch=face("lbf", inch))
+        text = "the heaviest that is allowed; each {unit} more would save {saving}"
+        remark = words(text, unit=Unit(MASS), saving=Value(saving, per_mass, 4))
     shown: list[NamedNumber] = [
         ("counterweight: mass times radius", moment, remark),
         ("its angle from the crank", angle, "180 deg is opposite to the crank pin"),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ....model.linkage.dimensions import DIMENSIONS
@@ -90,8 +92,8 @@ def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
     return words("{below} / {above}", below=value(below), above=value(above))
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:
+def figure(mechanism: Mechanism, linkage: Linkage) -> Callable[[System], Figure]:
     """Return the tornado figure: a bar for each quantity and dimension."""
     from .figure import tornado_figure, tornado_rows
 
-    return tornado_figure(tornado_rows(mechanism, linkage))
+    return partial(tornado_figure, tornado_rows(mechanism, linkage))

@@ -11,10 +11,14 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing
+from ....objectives.kinds import System
 from ....objectives.tables.sensitivity import sensitivity
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
 from ...render.numerals import shown
 from ..peaks import row_of
+
+_STEPS: dict[System, tuple[str, float]] = {"metric": ("1 mm", 1.0), "inch": ("0.01 in", 0.254)}
+"""For how much more of an offset of zero the percentages are, and in mm."""
 
 
 def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None) -> pd.DataFrame:
@@ -36,8 +40,11 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
     return rows.loc[most.index].reset_index(drop=True)
 
 
-def tornado_figure(rows: pd.DataFrame) -> Figure:
-    """Return the figure: a panel for each dimension, a bar for each quantity."""
+def tornado_figure(rows: pd.DataFrame, system: System = "metric") -> Figure:
+    """Return the figure in a system of units: a panel for each dimension, a bar for each quantity."""
+    step, millimetres = _STEPS[system]
+    if rows.attrs.get("offset per mm", False):
+        rows = rows.assign(**{name: millimetres * rows[name] for name in ("offset_percent", "offset_percent_below")})
     count = max(1, len(rows))
     height = 1.55 + 0.24 * count
     figure = new_figure(10.6, height)
@@ -61,7 +68,7 @@ def tornado_figure(rows: pd.DataFrame) -> Figure:
         panel.tick_params(labelleft=n == 0, left=False)
         panel.axvline(0.0, color=FRAME, linewidth=0.8)
         per_mm = name == "offset" and rows.attrs.get("offset per mm", False)
-        panel.set_title(f"{name}, for 1 mm" if per_mm else name, fontsize=TEXT, color=INK, pad=4)
+        panel.set_title(f"{name}, for {step}" if per_mm else name, fontsize=TEXT, color=INK, pad=4)
         panel.set_xlabel("%", fontsize=SMALL)
         for at, above, below in zip(places, rows[column], rows[f"{column}_below"], strict=False):
             if np.isnan(above):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from ....model.tolerance.exact import worst
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
 from ....model.tolerance.sources import SOURCES, limits, source_influences
-from ....objectives.kinds import LENGTH
+from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
 from ..peaks import row_of
 
@@ -163,8 +165,8 @@ def _sources(contributions: list[dict[str, Any]]) -> Table:
     return Table((column("where it comes from", left=True), *heads), tuple(rows))
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Figure:
+def figure(mechanism: Mechanism, linkage: Linkage) -> Callable[[System], Figure]:
     """Return the bands of the error over the cycle, and where they come from."""
     from .figure import error_bands, tolerances_figure
 
-    return tolerances_figure(error_bands(mechanism, linkage))
+    return partial(tolerances_figure, error_bands(mechanism, linkage))

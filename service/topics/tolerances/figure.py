@@ -17,7 +17,9 @@ from ....model.tolerance.exact import extremes
 from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, variances
 from ....model.tolerance.sources import SOURCES, limits
+from ....objectives.kinds import LENGTH, System
 from ...figures import style
+from ...render.numerals import with_unit
 
 Array = NDArray[np.float64]
 SAMPLES, ANGLES = 10_000, 181
@@ -26,7 +28,7 @@ PERCENTS = (0.135, 5.0, 95.0, 99.865)
 
 @dataclass(frozen=True)
 class Bands:
-    """Deviations of the slider over the cycle, mm, each (m,), at crank angles, deg.
+    """Deviations of the slider over the cycle, m, each (m,), at crank angles, deg.
 
     least, greatest: exact; None where a linkage within the tolerances does not turn. percentiles: (4, m), `PERCENTS`.
     shares: (s, m), of the variance, in percent, of the sources named.
@@ -48,24 +50,25 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
     least = greatest = None
     with contextlib.suppress(AssemblyError):
         exact = extremes(mechanism, linkage, theta)
-        least, greatest = 1e3 * exact.least, 1e3 * exact.greatest
+        least, greatest = exact.least, exact.greatest
     linear = cycle(mechanism, linkage, theta)
     errors = simulate(mechanism, linkage, theta, samples=samples, seed=seed).errors
     there = limits(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),
-        1e3 * linear.position_error,
-        1e3 * linear.position_error_rss,
+        linear.position_error,
+        linear.position_error_rss,
         least,
         greatest,
-        1e3 * np.nanpercentile(errors, PERCENTS, axis=0),
+        np.nanpercentile(errors, PERCENTS, axis=0),
         tuple(name for name, given in zip(SOURCES, there, strict=True) if given),
         100.0 * shares(variances(mechanism, linkage, theta))[there],
     )
 
 
-def tolerances_figure(bands: Bands) -> Figure:
-    """Return the figure: above the bands, below where they come from."""
+def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
+    """Return the figure in a system of units: above the bands, below where they come from."""
+    unit = LENGTH.face(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
     style.heading(figure, "Position error of the slider from tolerances", note)
@@ -73,21 +76,20 @@ def tolerances_figure(bands: Bands) -> Figure:
     for panel in (upper, lower):
         style.dress(panel, up=6)
         style.over_turn(panel)
-    low, inner_low, inner_high, high = bands.percentiles
+    low, inner_low, inner_high, high = unit.factor * bands.percentiles
     upper.fill_between(bands.angles, low, high, color="#e4e4e4", linewidth=0, label="Monte Carlo, 99.73 %")
     upper.fill_between(bands.angles, inner_low, inner_high, color="#bdbdbd", linewidth=0, label="Monte Carlo, 90 %")
     for sign, label in ((1.0, "worst case, first order"), (-1.0, None)):
-        upper.plot(bands.angles, sign * bands.worst_case, color=style.BLUE, linewidth=1.6, label=label)
+        upper.plot(bands.angles, sign * unit.factor * bands.worst_case, color=style.BLUE, linewidth=1.6, label=label)
     if bands.least is not None and bands.greatest is not None:
         exact = {"color": style.VERMILION, "linewidth": 1.2, "linestyle": (0, (5, 3))}
-        upper.plot(bands.angles, bands.greatest, **exact, label="worst case, exact")  # type: ignore[arg-type]
-        upper.plot(bands.angles, bands.least, **exact)  # type: ignore[arg-type]
+        upper.plot(bands.angles, unit.factor * bands.greatest, **exact, label="worst case, exact")  # type: ignore[arg-type]
+        upper.plot(bands.angles, unit.factor * bands.least, **exact)  # type: ignore[arg-type]
     for sign, label in ((1.0, "root-sum-square"), (-1.0, None)):
-        upper.plot(
-            bands.angles, sign * bands.root_sum_square, color=style.INK, linewidth=1.2, linestyle=":", label=label
-        )
+        error = sign * unit.factor * bands.root_sum_square
+        upper.plot(bands.angles, error, color=style.INK, linewidth=1.2, linestyle=":", label=label)
     upper.axhline(0.0, color=style.FRAME, linewidth=0.8)
-    upper.set_ylabel("deviation along the line, mm", fontsize=style.TEXT)
+    upper.set_ylabel(with_unit("deviation along the line", unit.symbol), fontsize=style.TEXT)
     lower.set_ylabel("share of the variance, %", fontsize=style.TEXT)
     lower.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     lower.set_ylim(0, 100)
