@@ -6,6 +6,7 @@ import copyreg
 import difflib
 import pkgutil
 from collections.abc import Collection
+from dataclasses import fields, replace
 from importlib import import_module
 from typing import Any
 
@@ -31,13 +32,21 @@ QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.it
 """Quantities that every problem has."""
 
 
-def _of_product(name: str) -> Quantity:
-    return FACTS[name]
+def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
+    return replace(FACTS[name], **changes) if changes else FACTS[name]
 
 
 def _reduced(of: Quantity) -> tuple[Any, ...] | str:
-    """Return how a quantity is pickled: one of the product by its name, since its formulas may be without one."""
-    return (_of_product, (of.name,)) if FACTS.get(of.name) is of else object.__reduce_ex__(of, 4)
+    """Return how a quantity is pickled: one of the product by its name and changes, since its formulas may be without.
+
+    So may what its needs ask of a machine.
+    """
+    fact = FACTS.get(of.name)
+    if type(fact) is not type(of):
+        return object.__reduce_ex__(of, 4)
+    facts = (field.name for field in fields(of) if field.init)
+    changes = {name: getattr(of, name) for name in facts if getattr(of, name) is not getattr(fact, name)}
+    return _of_product, (of.name, changes)
 
 
 for _kind in {type(of) for of in FACTS.values()}:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from dataclasses import field as _field
-from typing import Literal
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 
@@ -81,6 +82,10 @@ class RobustQuantity(Quantity):
         }
         for fact in fields(Quantity):  # the others are those of the quantity
             object.__setattr__(self, fact.name, own.get(fact.name, getattr(self.inner, fact.name)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        options = {field.name for field in fields(self)} - {fact.name for fact in fields(Quantity)}
+        return partial(type(self), **{name: getattr(self, name) for name in options}), ()
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:

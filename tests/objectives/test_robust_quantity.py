@@ -1,5 +1,6 @@
 """Quantities under tolerances: worst case and percentile, against machines that are drawn one by one."""
 
+import pickle
 from dataclasses import replace
 from itertools import product
 
@@ -150,6 +151,14 @@ def test_it_is_infinite_to_the_bad_side_where_tolerances_reach_locking(kind: str
     tight = np.array([[0.05, 0.1003, 0.05]])
     assert of("peak_torque", "high", kind, order).evaluate(COARSE, tight).values[0] == np.inf
     assert of("transmission_angle", "low", kind, order).evaluate(COARSE, tight).values[0] == -np.inf
+
+
+def test_it_is_the_same_where_another_process_takes_it_up() -> None:
+    for inner in QUANTITIES.values():
+        robust = RobustQuantity(inner=inner, side="low", case="worst case", order=1, suffix="low")
+        taken = pickle.loads(pickle.dumps(robust))
+        assert taken == robust
+        assert (taken.inner, taken.title, taken.needs) == (inner, robust.title, inner.needs)
 
 
 def test_names_and_fields_say_robust_before_the_unit() -> None:
