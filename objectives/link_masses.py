@@ -41,10 +41,6 @@ def _link(number: Number, length: Any, first: int) -> Any:
     return link_properties(length, *(number(first + slot) for slot in range(9)))[0]
 
 
-def _moving(number: Number) -> Any:
-    return _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
-
-
 _mass = partial(
     Mass, kind=MASS, group=Group.STRENGTH, section="22. Strength of crank and rod", plain=True, turning=False
 )
@@ -68,7 +64,7 @@ ROD_MASS = _mass(
 )
 MOVING_MASS = _mass(
     name="moving_mass",
-    of=_moving,
+    of=lambda number: _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS),
     place=434,
     sentence="The mass of all that moves: crank, counterweight, rod and slider.",
     advice="With sections as variables it trades against their safety, and it drives forces and torque.",

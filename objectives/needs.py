@@ -46,44 +46,8 @@ class Need:
         return self.missing.partition(";")[0]
 
 
-def _tolerances(machine: Mechanism) -> bool:
-    return machine.fullest.tolerances.given
-
-
 def _friction(machine: Mechanism) -> bool:
     return machine.fullest.friction.acts
-
-
-def _speed(machine: Mechanism) -> bool:
-    return machine.fullest.speed != 0.0
-
-
-def _motion(machine: Mechanism) -> bool:
-    return machine.fullest.speed != 0.0 or machine.fullest.acceleration != 0.0
-
-
-def _masses(machine: Mechanism) -> bool:
-    return crank_weighs(machine.fullest) or moves(machine.fullest)
-
-
-def _swinging(machine: Mechanism) -> bool:
-    return moves(machine.fullest) or machine.fullest.acceleration != 0.0
-
-
-def _driven(machine: Mechanism) -> bool:
-    return drive_loaded(machine.fullest)
-
-
-def _loaded(machine: Mechanism) -> bool:
-    return linkage_loaded(machine.fullest)
-
-
-def _alike_in_time(machine: Mechanism) -> bool:
-    return machine.speed_profile is None or cylinder_count(machine) == 1
-
-
-def _pivot_loaded(machine: Mechanism) -> bool:
-    return pivot_loaded(machine.fullest)
 
 
 _defining = partial(Need, without="undefined")
@@ -96,7 +60,7 @@ _SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;") + " o
 _SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
-    _tolerances,
+    lambda machine: machine.fullest.tolerances.given,
     'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(
@@ -104,20 +68,26 @@ FRICTION = Need(
     "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use {instead}",
     without="equal",
 )
-SPEED = _defining(_speed, _SPEED)
+SPEED = _defining(lambda machine: machine.fullest.speed != 0.0, _SPEED)
 REPEATS = _defining(
     lambda machine: machine.fullest.acceleration == 0.0,
     "a stroke time needs a speed that repeats every turn; got a crank acceleration; leave it out, or use time_ratio",
 )
-MOTION = _defining(_motion, _SPEED)
+MOTION = _defining(
+    lambda machine: machine.fullest.speed != 0.0 or machine.fullest.acceleration != 0.0,
+    _SPEED,
+)
 """A crank that turns or is about to."""
-MASSES = Need(_masses, _MASSES)
-SWINGING_MASSES = Need(_swinging, _MASSES)
+MASSES = Need(lambda machine: crank_weighs(machine.fullest) or moves(machine.fullest), _MASSES)
+SWINGING_MASSES = Need(
+    lambda machine: moves(machine.fullest) or machine.fullest.acceleration != 0.0,
+    _MASSES,
+)
 """Masses whose angular momentum changes: a crank at constant speed shakes by a force through its pivot."""
-DRIVEN = Need(_driven, _LOADS)
-LOADED = Need(_loaded, _SLIDER_LOADS)
+DRIVEN = Need(lambda machine: drive_loaded(machine.fullest), _LOADS)
+LOADED = Need(lambda machine: linkage_loaded(machine.fullest), _SLIDER_LOADS)
 """Masses or loads beyond the crank."""
-PIVOT_LOADED = Need(_pivot_loaded, _SLIDER_LOADS)
+PIVOT_LOADED = Need(lambda machine: pivot_loaded(machine.fullest), _SLIDER_LOADS)
 WORK = Need(
     works_over_a_turn,
     "a machine that takes no work over a turn has none, whatever its dimensions; got no friction in joints that carry "
@@ -178,7 +148,7 @@ ONE_CYLINDER = _defining(
     "a stroke is of one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
 )
 ONE_TIMING = _defining(
-    _alike_in_time,
+    lambda machine: machine.speed_profile is None or cylinder_count(machine) == 1,
     "along a speed profile each cylinder has its own stroke times; got several cylinders on one crankshaft; use "
     "crank_angle_ratio, which is the same for all, or the least value over the cylinders: outward_to_inward_time_ratio "
     "or inward_to_outward_time_ratio",

@@ -25,14 +25,6 @@ def _strokes(box: Ranges) -> tuple[float, float]:
     return float(geometry.stroke(box.r0, box.l1, box.a0)), float(greatest)
 
 
-def _to_offset(box: Ranges) -> tuple[float, float]:
-    return (max(box.l0 / box.a1, 1.0) if box.a1 else math.inf), (box.l1 / box.a0 if box.a0 else math.inf)
-
-
-def _to_crank(box: Ranges) -> tuple[float, float]:
-    return max(box.l0 / box.r1, 1.0), box.l1 / box.r0
-
-
 STROKE = ClosedFormQuantity(
     name="stroke",
     kind=LENGTH,
@@ -68,7 +60,10 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     domain=_ABOVE_ONE,
     in_line=math.inf,
     reach=Reach(
-        bounds=_to_offset,
+        bounds=lambda box: (
+            max(box.l0 / box.a1, 1.0) if box.a1 else math.inf,
+            box.l1 / box.a0 if box.a0 else math.inf,
+        ),
         more="a longer rod or a smaller |offset|",
         less="a shorter rod or a larger |offset|",
     ),
@@ -90,7 +85,7 @@ ROD_TO_CRANK = ClosedFormQuantity(
     better="high",
     domain=_ABOVE_ONE,
     reach=Reach(
-        bounds=_to_crank,
+        bounds=lambda box: (max(box.l0 / box.r1, 1.0), box.l1 / box.r0),
         more="a longer rod or a shorter crank",
         less="a shorter rod or a longer crank",
     ),

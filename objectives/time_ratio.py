@@ -46,7 +46,9 @@ class TimeRatio(ClosedFormQuantity):
         if self.is_closed(mechanism):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
         found, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
-        return Values(np.maximum(found, 1.0 / found), None if slopes is None else _greater_slopes(found, slopes))
+        if slopes is not None:
+            slopes = np.where((found >= 1.0 / found)[:, None], slopes, _inverse_slopes(found, slopes))
+        return Values(np.maximum(found, 1.0 / found), slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greater of its two ratios; see `Quantity`."""
@@ -62,10 +64,6 @@ class TimeRatio(ClosedFormQuantity):
 def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
     """Return the derivatives of the inverse of a ratio."""
     return -slopes / np.square(ratio)[:, None]
-
-
-def _greater_slopes(ratio: Array, slopes: Array) -> Array:
-    return np.where((ratio >= 1.0 / ratio)[:, None], slopes, _inverse_slopes(ratio, slopes))
 
 
 _REACH = Reach(

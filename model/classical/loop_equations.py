@@ -81,7 +81,10 @@ def solve_loop(
         if not np.any(moving):
             break
     else:
-        raise InputError(_not_converged(most, moving, theta))
+        raise InputError(
+            f"the iteration must end within {most} steps; got none at crank angle "
+            f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
+        )
     jacobian = _jacobian(l, phi)
     everywhere = np.ones(theta.shape, dtype=np.bool_)
     turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
@@ -118,13 +121,6 @@ def _solve(jacobian: Array, right: Array, wanted: Mask, theta: Array) -> Array:
     found = np.zeros_like(right)
     found[wanted] = np.linalg.solve(jacobian[wanted], right[wanted][..., None])[..., 0]
     return found
-
-
-def _not_converged(most: int, moving: Mask, theta: Array) -> str:
-    return (
-        f"the iteration must end within {most} steps; got none at crank angle "
-        f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
-    )
 
 
 def _first_degrees(where: Mask, theta: Array) -> Any:

@@ -127,9 +127,12 @@ def simulate(
     linkage = single(mechanism, linkage)
     integrator = _start(mechanism, linkage, clearance, tolerance)
     period = 2.0 * math.pi / abs(mechanism.speed)
+    # Shares of a turn at which the dead centres are passed.
+    turn, way = 2.0 * math.pi, math.copysign(1.0, mechanism.speed)
+    dead_centres = sorted(float(angle * way % turn) / turn for angle in linkage.dead_centre_angles)
     done = 0
     while done < cycles:
-        ends = [(done + share) * period for share in (*_changes(linkage, mechanism.speed), 1.0)]
+        ends = [(done + share) * period for share in (*dead_centres, 1.0)]
         reached = all(
             integrator.advance(end, outward=_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
             for before, end in zip([done * period, *ends], ends, strict=False)
@@ -153,14 +156,6 @@ def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, toleran
         slow_impact=clearance.slow_impact,
         tolerance=tolerance,
         state=np.zeros(7),
-    )
-
-
-def _changes(linkage: Linkage, speed: float) -> list[float]:
-    """Return the shares of a turn at which the dead centres are passed, ascending."""
-    return sorted(
-        float(angle * math.copysign(1.0, speed) % (2.0 * math.pi)) / (2.0 * math.pi)
-        for angle in linkage.dead_centre_angles
     )
 
 

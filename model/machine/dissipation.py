@@ -28,7 +28,7 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     a formula of their own, loads that differ between the strokes and loads over crank angle (`Load.turn_work`). Of
     numbers that vary two values each are tried, neither of them special.
     """
-    return any(map(_works, _tried(mechanism)))
+    return any(machine.acceleration != 0.0 or _rubs(machine) or _load_works(machine) for machine in _tried(mechanism))
 
 
 def load_works_over_a_turn(mechanism: Mechanism) -> bool:
@@ -123,17 +123,9 @@ def _tried(mechanism: Mechanism) -> list[Mechanism]:
     return [mechanism.fullest, mechanism.at(inner)]
 
 
-def _works(machine: Mechanism) -> bool:
-    return machine.acceleration != 0.0 or _rubs(machine) or _load_works(machine)
-
-
 def _load_works(machine: Mechanism) -> bool:
     sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
     for load in _acting_loads(machine):
         for key, own in load.turn_work(moving=machine.speed != 0.0).items():
             sizes[key].extend(own)
-    return any(map(_adds_up, sizes.values()))
-
-
-def _adds_up(parts: list[float]) -> bool:
-    return abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts))
+    return any(abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts)) for parts in sizes.values())

@@ -34,7 +34,7 @@ from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .places import Place, Places, places_of
 from .section_forces import Stress, at_share
-from .stress_points import Field, field_of
+from .stress_points import field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_of, propose, room_for
 
 KEPT = 8
@@ -170,12 +170,10 @@ def _gradients(bars: Places, faces: Array, criteria: Array, maxima: _Maxima, pin
     return summed
 
 
-@remembered_batch
-def _kept_field(mechanism: Mechanism, designs: Array) -> Field:
-    return field_of(mechanism, designs)
-
-
 _FACES = np.array([1.0, -1.0])
+
+
+_kept_field = remembered_batch(field_of)
 
 
 def _peaks(bars: Places, criteria: Array, gradients: bool, kept: int) -> StressPeaks:

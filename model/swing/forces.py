@@ -128,7 +128,8 @@ def swing_curves(
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
-    found_load, drive, power = (_chopped(values) for values in (found.load, drive, power))
+    # Without those of a crank that hardly moves.
+    load, drive, power = (np.where(np.abs(each) < _NOTHING, 0.0, each) for each in (found.load, drive, power))
     return SwingCurves(
         share=share,
         crank_angle=theta,
@@ -137,7 +138,7 @@ def swing_curves(
         slider_position=m.x,
         slider_velocity=m.x_1 * speed,
         slider_acceleration=m.x_2 * speed**2 + m.x_1 * rise,
-        load=found_load,
+        load=load,
         drive=drive,
         power=power,
         rate=rate,
@@ -146,11 +147,6 @@ def swing_curves(
         rod_rate=m.rod_1,
         **joints,
     )
-
-
-def _chopped(values: Array) -> Array:
-    """Return values without those of a crank that hardly moves."""
-    return np.where(np.abs(values) < _NOTHING, 0.0, values)
 
 
 JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")

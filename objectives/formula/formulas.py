@@ -261,7 +261,8 @@ class Formulas:
                 self._intervals[part.name] = self._interval(part)
                 self._linears.setdefault(part.name, None)
         linears = self._linears if self._turning else dict.fromkeys(self._linears)
-        return Ranges(self._intervals, linears, self._advice(names_in(node))).of(node)
+        off_zero = {name: self._keeping(name) for name in names_in(node)}
+        return Ranges(self._intervals, linears, off_zero).of(node)
 
     def _sign(self, name: str) -> int:
         of = self._intervals.get(name, Interval(-1.0, 1.0))
@@ -291,11 +292,8 @@ class Formulas:
         lower, upper = reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
         return Interval(lower, upper, found.apart)
 
-    def _advice(self, names: Iterable[str]) -> dict[str, str]:
-        """Return how each name is kept off zero."""
-        return {name: self._keeping(name) for name in names}
-
     def _keeping(self, name: str) -> str:
+        """Return how a number is kept off zero."""
         if name in self._places:
             of = self._intervals[name]
             return f"keep variables.{name} off zero: it is from {_ends(of, self._kinds[name])}"

@@ -10,15 +10,6 @@ import numpy as np
 from ..quantity import Array, Values
 from .expression import Number
 
-
-def _quotient(a: Array, b: Array) -> Array:
-    return np.where(b == 0.0, np.nan, a / b)  # not infinite: min, max and atan would make a number of that
-
-
-def _power(a: Array, b: Array) -> Array:
-    return np.where((a == 0.0) & (b < 0.0), np.nan, np.power(a, b))
-
-
 Slope = Callable[[Array, Array], Array]
 UNARY: dict[str, tuple[Callable[[Array], Array], Slope]] = {
     "neg": (np.negative, lambda x, y: np.full_like(x, -1.0)),
@@ -37,10 +28,16 @@ BINARY: dict[str, tuple[Callable[[Array, Array], Array], Callable[[Array, Array,
     "+": (np.add, lambda a, b, y: (np.ones_like(a), np.ones_like(b))),
     "-": (np.subtract, lambda a, b, y: (np.ones_like(a), np.full_like(b, -1.0))),
     "*": (np.multiply, lambda a, b, y: (b, a)),
-    "/": (_quotient, lambda a, b, y: (1.0 / b, -y / b)),
-    "**": (_power, lambda a, b, y: (np.where(b == 0.0, 0.0, b * np.power(a, b - 1.0)), y * np.log(a))),
+    "/": (lambda a, b: np.where(b == 0.0, np.nan, a / b), lambda a, b, y: (1.0 / b, -y / b)),
+    "**": (
+        lambda a, b: np.where((a == 0.0) & (b < 0.0), np.nan, np.power(a, b)),
+        lambda a, b, y: (np.where(b == 0.0, 0.0, b * np.power(a, b - 1.0)), y * np.log(a)),
+    ),
 }
-"""Operations on two arguments a and b, and their derivatives by both and the value y."""
+"""Operations on two arguments a and b, and their derivatives by both and the value y.
+
+What divides by zero is undefined and not infinite: min, max and atan would make a number of that.
+"""
 
 
 @dataclass(frozen=True)

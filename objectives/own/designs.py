@@ -195,7 +195,8 @@ class Designs:
         order = np.where(there, order, order[:, :1])  # fewer peaks: the highest again
         centre, half = np.take_along_axis(tau, order, axis=1), spacing
         for _ in range(_ZOOMS):
-            centre = self._best(curve, centre, np.linspace(-half, half, _WITHIN))
+            steps = np.linspace(-half, half, _WITHIN)
+            centre = centre + steps[np.argmax(self._around(curve, centre, steps), axis=2)]
             half *= 2.0 / (_WITHIN - 1)
         centre = self._vertex(curve, centre, half)
         angle = self._uncrowded(centre)[0]
@@ -266,9 +267,6 @@ class Designs:
         """Return the curve (n, p, s) at steps (s,) from crowded angles (n, p)."""
         tau = centre[:, :, None] + steps
         return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
-
-    def _best(self, curve: Curve, centre: Numbers, steps: Numbers) -> Numbers:
-        return np.asarray(centre + steps[np.argmax(self._around(curve, centre, steps), axis=2)])
 
     def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
         """Return where the derivative vanishes, by one step of Newton's; as before where no smooth peak is seen."""

@@ -98,7 +98,10 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("torque", f"drive torque{of}", torque, TORQUE),
         Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, POWER),
         Curve("load", "load on the slider", acting.load, FORCE),
-        *(Curve(name, _force_title(name), getattr(acting, name), FORCE) for name in _FORCES),
+        *(
+            Curve(name, f"{name[:-2].replace('_', ' ')} force along {name[-1]}", getattr(acting, name), FORCE)
+            for name in _FORCES
+        ),
         Curve("guide", "guide force", acting.guide, FORCE),
         Curve("position_error", "position error, worst case", acting.position_error, LENGTH),
         Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, LENGTH),
@@ -141,7 +144,3 @@ def _jerk(mechanism: Mechanism, m: Motion, third: Array, theta: Array) -> Array:
         return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
     speed, acceleration = pace(mechanism, theta)
     return np.asarray((third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * bend(mechanism, theta)) * speed)
-
-
-def _force_title(name: str) -> str:
-    return f"{name[:-2].replace('_', ' ')} force along {name[-1]}"

@@ -193,7 +193,8 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     if factor is not None:
         return Column(spoken[said], factor, kind)
     if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
-        raise InputError(f"{said} is read in {_units_of(kind)}; got {text!r}; write it like {example}")
+        units_read = " or ".join(dict.fromkeys(face.symbol for face in _faces(kind)))
+        raise InputError(f"{said} is read in {units_read}; got {text!r}; write it like {example}")
     known = (other for other in SHOWN if _factor(unit, other) or (units is not None and units(unit, other)))
     other = next(known, None)
     if other is None:  # no unit: more of a name that is none here
@@ -211,10 +212,6 @@ def _factor(unit: str, kind: Kind) -> float | None:
 
 def _faces(kind: Kind) -> list[Face]:
     return [face for face in (kind.metric, Face(kind.unit, ""), kind.inch) if face is not None and face.symbol]
-
-
-def _units_of(kind: Kind) -> str:
-    return " or ".join(dict.fromkeys(face.symbol for face in _faces(kind)))
 
 
 def _after(said: str, text: str) -> str:

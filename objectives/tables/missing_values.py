@@ -56,7 +56,9 @@ def missing_value_reasons(
     rows = np.flatnonzero(locked)
     undetermined = rows[_undetermined(quantity, mechanism, designs[rows])] if len(rows) else rows
     for row in undetermined.tolist():
-        reasons[row] = f"friction locks this design: {_locking_reason(mechanism, designs[row], swing)}"
+        linkage = Linkage(*designs[row].tolist())
+        why = _LOCKED_SWING if swing is not None else locking_reason(mechanism.friction, linkage)
+        reasons[row] = f"friction locks this design: {why}"
     for row in np.flatnonzero(~np.isfinite(values)).tolist():
         reasons[row] = reasons[row] or _own_reason(quantity, float(values[row]), mechanism, designs[row : row + 1])
     return reasons
@@ -67,10 +69,6 @@ def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = N
     if swing is not None:
         return ~running(mechanism, swing, designs)
     return np.asarray(~(locking_margin(mechanism.friction, designs)[0] > 0.0))
-
-
-def _locking_reason(mechanism: Mechanism, design: Array, swing: Swing | None) -> str:
-    return _LOCKED_SWING if swing is not None else locking_reason(mechanism.friction, Linkage(*design.tolist()))
 
 
 def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:

@@ -55,7 +55,8 @@ class Outcome:
         if self.kind == "value":
             return own + self._against_wish(system)
         if self.kind == "limit":
-            return f"{own}, at {self._worst} {self._value(cast(float, self.wished), system)} allowed"
+            worst = {"minimise": "most", "maximise": "least", "target": "worst"}[self.objective.sense]
+            return f"{own}, at {worst} {self._value(cast(float, self.wished), system)} allowed"
         if self.kind == "free" and self.changed is None:
             return f"{own}, free"
         free = ", free" if self.kind == "free" else ""
@@ -63,10 +64,6 @@ class Outcome:
         if abs(changed) <= _ROUNDING * self.range_:
             return f"{own}, as before{free}"
         return f"{own}, {self._amount(changed, system)} {'worse' if changed > 0.0 else 'better'} than before{free}"
-
-    @property
-    def _worst(self) -> str:
-        return {"minimise": "most", "maximise": "least", "target": "worst"}[self.objective.sense]
 
     def _against_wish(self, system: System) -> str:
         short, wished = cast(float, self.short), self._value(cast(float, self.wished), system)

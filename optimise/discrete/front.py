@@ -60,9 +60,13 @@ def discrete_front(
     if not exact and not len(continuous):
         return replace(continuous, problem=problem)
     if not whole:
-        chosen = [(index, row) for index, each in enumerate(axes) for row in _rows(each, continuous, index, exact)]
+        for index, each in enumerate(axes):
+            rows = each.designs(0, each.count) if exact else neighbours(each, _own(continuous, index), SOLVED)
+            chosen += [(index, row) for row in rows]
         chosen = _fewest(chosen)
-        seen = [_numbers(each, [row for of, row in chosen if of == index]) for index, each in enumerate(axes)]
+        for index, each in enumerate(axes):
+            own = [row for of, row in chosen if of == index]
+            seen.append(each.numbers(np.array(own)) if own else np.zeros(0, np.int64))
     elif not exact:
         share, window = most // len(axes), min(most, _WINDOW) // len(axes)
         both = [near(each, _own(continuous, index), window, share, stand) for index, each in enumerate(axes)]
@@ -81,10 +85,6 @@ def discrete_front(
     if not exact and len(front):
         front = _without_proof(front, axes, chosen, seen)
     return _told(problem, front, continuous, chosen, answer)
-
-
-def _numbers(axes: Axes, designs: list[Array]) -> Whole:
-    return axes.numbers(np.array(designs)) if designs else np.zeros(0, np.int64)
 
 
 def _without_proof(front: ParetoFront, axes: list[Axes], chosen: Chosen, seen: list[Whole]) -> ParetoFront:
@@ -127,10 +127,6 @@ def _own(front: ParetoFront, variant: int) -> Array:
     first = [row for row in front.extremes().values() if row in own]
     order = [*dict.fromkeys(first), *(row for row in own.tolist() if row not in first)]
     return front.dimensions[order]
-
-
-def _rows(axes: Axes, continuous: ParetoFront, index: int, exact: bool) -> Array:
-    return axes.designs(0, axes.count) if exact else neighbours(axes, _own(continuous, index), SOLVED)
 
 
 def _fewest(chosen: Chosen) -> Chosen:

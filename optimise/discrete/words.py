@@ -69,9 +69,8 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
         asked = item.upper if item.upper is not None and here > item.upper else item.lower
         if short > worst and asked is not None:
             worst = short
-            shown, off = (
-                f"{size * of.unit.factor:.{digits}g} {of.unit.symbol}".rstrip() for size, digits in _both(here, asked)
-            )
+            shown = f"{here * of.unit.factor:.7g} {of.unit.symbol}".rstrip()
+            off = f"{abs(here - asked) * of.unit.factor:.3g} {of.unit.symbol}".rstrip()
             told = f"{of.title} {shown}, {off} {'above' if here > asked else 'below'} what is asked"
             remedy = "ask for a range instead of one value" if item.equality else "relax it"
     remedies = f"{remedy}, or give smaller steps or other ranges"
@@ -80,7 +79,3 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
 
 def _many(count: int) -> str:
     return counted(count, "combination")
-
-
-def _both(here: float, asked: float) -> tuple[tuple[float, int], tuple[float, int]]:
-    return (here, 7), (abs(here - asked), 3)

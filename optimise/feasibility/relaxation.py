@@ -58,14 +58,12 @@ class Relaxation:
         """Return the relaxation in words. kept: what the other requirements are called."""
         reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
         asked = "is kept where a job sets none" if self.standing else "is asked"
-        return f"{self._asked()} {asked}, {reach} {self.with_unit} can be had with {kept} kept"
+        requirement = f"{self.title} {self.relation} {self._number_asked()}"
+        return f"{requirement} {asked}, {reach} {self.with_unit} can be had with {kept} kept"
 
     def instead(self) -> str:
         """Return the reachable requirement to ask for instead, in words."""
         return f"{self.title} {self.relation} {self.with_unit} instead of {self._number_asked()}"
-
-    def _asked(self) -> str:
-        return f"{self.title} {self.relation} {self._number_asked()}"
 
     def _number_asked(self) -> str:
         return f"{self.asked:.10g} {self.unit}".rstrip()

@@ -174,16 +174,14 @@ class RoundingSearch:
 
     def _reaches(self) -> list[int]:
         """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""
-        fitting = [reach for reach in (*range(1, REACHES[0]), *REACHES) if self._size(reach) <= self.most]
+        every = (*range(1, REACHES[0]), *REACHES)
+        fitting = [reach for reach in every if math.prod(map(len, self._ladders(reach))) <= self.most]
         if not fitting:
             raise InputError(
                 f"at most {int(math.log2(self.most))} numbers are rounded together; got {len(self.steps)}; leave some "
                 "without a step"
             )
         return [reach for reach in fitting if reach >= REACHES[0]] or fitting[-1:]
-
-    def _size(self, reach: int) -> int:
-        return math.prod(len(ladder) for ladder in self._ladders(reach))
 
     def _window(self, reach: int) -> Array:
         """Return the combinations (n, 3 + v) of the multiples around the design that turn fully or make the swing."""

@@ -113,7 +113,8 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
         compared += [] if column.word is None and wanted is None else [column.said.partition(" (")[0]]
         if wanted is not None:
-            blanks |= {row: f"no {_plain(column)}, which the job asks for" for row in np.flatnonzero(blank).tolist()}
+            without = f"no {column.name.replace('_', ' ')}, which the job asks for"
+            blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), without)
             beyond |= _beyond(constraints.get(column.name), column, values, rows)
             floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
             (costs if wanted.way else fixed).append(np.maximum(wanted.way * values, floor) if wanted.way else values)
@@ -150,10 +151,6 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         compared=tuple(compared),
         asked=frozenset(asked),
     )
-
-
-def _plain(column: Column) -> str:
-    return column.name.replace("_", " ")
 
 
 def _beyond(bounds: object, column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:

@@ -121,7 +121,8 @@ def _multiples(
         )
     exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
     every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
-    return [value for value in every if lower <= value <= upper], f"multiples of {_text(given['step'])}"
+    written = given["step"].strip() if isinstance(given["step"], str) else f"{given['step']:g}"
+    return [value for value in every if lower <= value <= upper], f"multiples of {written}"
 
 
 def step_of(given: object, read: Callable[[object], float]) -> float:
@@ -156,10 +157,6 @@ def _parts(given: object) -> tuple[Decimal, str]:
     """Return number and unit of a value; a plain number has none."""
     parts = _NUMBER.fullmatch(given) if isinstance(given, str) else None
     return (Decimal(str(given)), "") if parts is None else (Decimal(parts[1]), parts[2])
-
-
-def _text(given: object) -> str:
-    return given.strip() if isinstance(given, str) else f"{given:g}" if isinstance(given, int | float) else shown(given)
 
 
 def grid_schema(one: list[dict[str, Any]]) -> list[dict[str, Any]]:

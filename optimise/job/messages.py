@@ -65,8 +65,9 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     """
     unknown, wrong, missing, meant = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
     listed = error.errors(include_url=False)[:LONGEST]
+    above = {details["loc"][:steps] for details in listed for steps in range(len(details["loc"]))}
     for details in listed:
-        if details["type"] == "too_short" and any(_within(other, details) for other in listed):
+        if details["type"] == "too_short" and details["loc"] in above:
             continue  # a list that is too short for want of the entries that were refused
         if details["type"] == "extra_forbidden":
             unknown[details["loc"]], near = _unknown(details["loc"], details["input"], schema)
@@ -93,10 +94,6 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
             )
             meant.add(owner.strip("[]"))
     return [*unknown.values(), *wrong, *(text for key, text in missing.items() if not {key, key.split(".")[0]} & meant)]
-
-
-def _within(inner: ErrorDetails, outer: ErrorDetails) -> bool:
-    return len(inner["loc"]) > len(outer["loc"]) and inner["loc"][: len(outer["loc"])] == outer["loc"]
 
 
 def _is_tag(part: object) -> bool:

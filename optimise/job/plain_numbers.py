@@ -41,7 +41,8 @@ class PlainNumbers:
     def warning(self) -> str | None:
         """Warning for numbers of a size that is not believed, or beside others with a unit; None for others."""
         numbers = plain_in(self.value)
-        doubtful = [number for number in numbers if not self._is_believed(number)]
+        believed = self.kind.believed
+        doubtful = [n for n in numbers if believed is not None and not believed[0] <= abs(n) < believed[1]]
         mixed = any(isinstance(value, str) for value in values_in(self.value))
         if not doubtful and not mixed:
             return None
@@ -68,9 +69,6 @@ class PlainNumbers:
     def concerns(self, key: str) -> bool:
         """Return whether the value stands at a key of the job, in it, or in the table of it."""
         return any(f"{one}.".startswith(f"{other}.") for one, other in ((self.key, key), (key, self.key)))
-
-    def _is_believed(self, number: float) -> bool:
-        return self.kind.believed is None or self.kind.believed[0] <= abs(number) < self.kind.believed[1]
 
     def _usual(self, number: float, form: str) -> str:
         """Return the number in the usual unit in a form of words; "" if that is the SI unit."""

@@ -146,10 +146,6 @@ def _sense(value: object) -> object:
     return value
 
 
-def _form(value: object) -> str:
-    return "(word)" if isinstance(value, str) else "(target)"
-
-
 _KEY = "(formulas)"
 """Key of formulas within a table, in brackets, so that messages leave it out."""
 _PATTERN = rf"[^A-Za-z0-9_]|^({'|'.join(DIMENSIONS)})$"
@@ -259,7 +255,7 @@ def _wish(target: type[Target]) -> Any:
     words = Literal["minimise", "maximise", "minimize", "maximize"]
     return Annotated[
         Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],
-        Discriminator(_form),
+        Discriminator(lambda value: "(word)" if isinstance(value, str) else "(target)"),
         BeforeValidator(_sense),
     ]
 

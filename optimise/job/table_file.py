@@ -198,7 +198,8 @@ class TableFile:
             said += f"write {example.replace(decimal, '')}"
         if (example is not None or decimal == ",") and said not in self.said:
             self.said.append(said)
-        wrong = re.compile(rf"^(?!{_whole(grouping, decimal)}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
+        in_threes = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{EXPONENT}"
+        wrong = re.compile(rf"^(?!{in_threes}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
         for _, cells in parts:
             for n, text in cells.items():
                 if grouping in text:  # what is not parted in threes is no number
@@ -271,11 +272,6 @@ class _Signs:
 def _group(sign: str) -> str:
     """Return the form of a number whose one sign is decimal or parts thousands: 1.300, but not 0.300."""
     return rf"[+-]?[1-9]\d{{0,2}}\{sign}\d{{3}}"
-
-
-def _whole(grouping: str, decimal: str) -> str:
-    """Return the form of a number that is parted in threes."""
-    return rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{EXPONENT}"
 
 
 def _sure(decimal: str, grouping: str) -> str:

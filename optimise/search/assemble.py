@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask, Whole, distinct
 from ...model.kinematics.in_line import without_rounding
@@ -148,7 +146,11 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
         return parts[0]
     place = np.argsort(np.concatenate(order))
     names = dict.fromkeys(name for part in parts for name in part)
-    return {name: np.concatenate([_column(part, name) for part in parts])[place] for name in names}
+    absent = [np.full(len(rows), np.nan) for rows in order]  # for a column that only other machines have
+    return {
+        name: np.concatenate([part.get(name, nothing) for part, nothing in zip(parts, absent, strict=True)])[place]
+        for name in names
+    }
 
 
 def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
@@ -163,11 +165,6 @@ def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
         for head in problem.heads(name):
             columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in own])
     return columns
-
-
-def _column(part: Columns, name: str) -> NDArray[Any]:
-    """Return a column of one machine's designs; NaN where only other machines have it."""
-    return part.get(name, np.full(len(next(iter(part.values()))), np.nan))
 
 
 def _slacks(problem: Problem, dimensions: Array) -> Columns:

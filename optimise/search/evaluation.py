@@ -122,7 +122,7 @@ class Evaluator:
         return rows[had], objectives[had], violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
-        parts: list[list[Array]] = self.chunked(_quickly, tuple(names), dimensions)
+        parts: list[list[Array]] = self.chunked(quickly, tuple(names), dimensions)
         return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
     def _geometry_violation(self, dimensions: Array) -> Array:
@@ -174,7 +174,7 @@ class Evaluator:
         objectives = self.problem.objectives if goals else ()
         wanted = [objective.quantity for objective in objectives]
         names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
-        found = joined(self.chunked(_exactly, names, dimensions))
+        found = joined(self.chunked(exactly, names, dimensions))
         pieces = {name: _in_box(own, jacobian) for name, own in zip(names, found, strict=True)}
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(objectives):
@@ -191,14 +191,6 @@ class Evaluator:
             own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
             parts += [(index, _beyond(own, *side)) for side in _range_sides(self.sheet.bounds[name])]
         return aims, _stack(parts, len(u), self.dimension)
-
-
-def _quickly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Array]:
-    return quickly(evaluator, names, dimensions)
-
-
-def _exactly(evaluator: Evaluator, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
-    return exactly(evaluator, names, dimensions)
 
 
 def _in_box(found: Pieces, jacobian: Array) -> Pieces:

@@ -20,7 +20,7 @@ from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, none_meets, part_of
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import tagged
-from ..runs.result import Cell, json_ready
+from ..runs.result import json_ready
 from .models import PLAIN_DIGITS, JobNumber
 from .problems import problem_responses, tagged_json
 from .settings import StoreDep
@@ -298,18 +298,18 @@ def _asked(found: StoredFront, columns: str | None) -> Sequence[Column]:
 
 def _content(found: StoredFront, shown: Sequence[Column], *, compressed: bool) -> bytes:
     rows = found.result.designs
+    values = {column.key: [row[column.key] for row in rows] for column in shown}
+    for key, cells in values.items():
+        if math.inf in cells or -math.inf in cells:
+            values[key] = json_ready(cells)
     answer = {
         "job": found.job.id,
         "count": len(rows),
         "columns": [column.model_dump() for column in column_models(shown)],
-        "values": {column.key: _written([row[column.key] for row in rows]) for column in shown},
+        "values": values,
     }
     content = to_json(answer, inf_nan_mode="null")
     return gzip.compress(content, compresslevel=1, mtime=0) if compressed and len(content) > _WORTHWHILE else content
-
-
-def _written(cells: list[Cell]) -> list[Cell]:
-    return json_ready(cells) if math.inf in cells or -math.inf in cells else cells
 
 
 def column_models(columns: Iterable[Column]) -> list[ColumnModel]:

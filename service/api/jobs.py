@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
 from ..page.router import tag_of, tagged
-from ..store import Job, State
+from ..store import State
 from .exports import download, formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
 from .problems import problem_responses, tagged_json
@@ -44,7 +44,8 @@ def list_jobs(
     """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
     found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
     page = found[:limit]
-    return {"jobs": [_row(job) for job in page], "next": page[-1].id if len(found) > limit else None}
+    rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
+    return {"jobs": rows, "next": page[-1].id if len(found) > limit else None}
 
 
 @router.get("/front-points", **tagged_json(FrontPointsList, "The points"))
@@ -105,11 +106,6 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     file = store.artefact(number, name)
     # Saved, never shown: what a job brought along must not run in a browser that has the token.
     return download(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
-
-
-def _row(job: Job) -> dict[str, Any]:
-    """Return a job of which `JobRow` takes its part."""
-    return job.record() if job.state == "running" else {**job.record(), "progress": None}
 
 
 @contextlib.contextmanager

@@ -116,7 +116,7 @@ async def _not_valid(request: Request, error: Exception) -> Response:
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
         sentence = f"body: is a JSON object of the type application/json; got {kind}; send it as that{turned}"
         return problem(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
-    sentences = [_sentence(one) for one in found[:_MOST]]
+    sentences = [f"{_place(one['loc'])}: {rule_and_value(one)}" for one in found[:_MOST]]
     more = ["... and more"] if len(found) > _MOST else []
     return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *more]))
 
@@ -140,11 +140,6 @@ def _methods(request: Request) -> list[str]:
         return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
 
     return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if known(method)]
-
-
-def _sentence(details: Mapping[str, Any]) -> str:
-    """Return place, rule and value of one thing that is wrong in a request."""
-    return f"{_place(details['loc'])}: {rule_and_value(details)}"
 
 
 def rule_and_value(details: Mapping[str, Any]) -> str:

@@ -126,15 +126,16 @@ class StoredFronts:
         with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
             front = self._kept.get(key)
             if front is None:
-                front = StoredFront(job, self._store.result(number), lambda: self._problem(number))
+                front = StoredFront(
+                    job,
+                    self._store.result(number),
+                    lambda: bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_ANSWER),
+                )
                 if job.finished is not None:
                     self._keep(key, front)
             else:
                 self._kept.move_to_end(key)
         return front
-
-    def _problem(self, number: int) -> Problem:
-        return bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_ANSWER)
 
     def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
         self._kept[key] = front

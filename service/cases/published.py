@@ -47,6 +47,11 @@ class Row:
     verdict: Verdict
     why: str
 
+    @property
+    def column(self) -> str:
+        """The key without its row in a printed table; the whole key of any other number."""
+        return self.key.rpartition("_")[0] if ", row " in self.where else self.key
+
 
 @dataclass(frozen=True, kw_only=True)
 class Case:

@@ -33,7 +33,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     rows = table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True)
     reasons: list[str] = []
     folded = 0
-    for _, group in groupby(case.rows, key=lambda row: _column(row, full)):
+    for _, group in groupby(case.rows, key=lambda row: row.key if full else row.column):
         first, *more = cells = list(group)
         if first.why and first.why not in reasons:
             reasons.append(first.why)
@@ -51,11 +51,6 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     if folded:
         screen.print(f"All {folded} numbers of the printed table: slidercrank cases --case {case.number}", style="dim")
     screen.print()
-
-
-def _column(row: Row, full: bool) -> str:
-    """Return the column of a printed table whose cells are shown as one; the row alone if `full`."""
-    return row.key.rpartition("_")[0] if ", row " in row.where and not full else row.key
 
 
 def counted(rows: Sequence[Row]) -> str:

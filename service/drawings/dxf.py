@@ -98,7 +98,9 @@ def _add(found: Document, space: BaseLayout, shape: Shape) -> None:
 
 
 def _label(space: BaseLayout, shape: Label, on: dict[str, Any]) -> None:
-    text = space.add_text(_plain(shape.text), height=shape.height, rotation=shape.angle, dxfattribs=on)
+    # Without what would end its line or be taken for a code.
+    plain = " ".join(shape.text.replace("%%", "% %").split()).replace("^", "^ ")
+    text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=on)
     text.dxf.insert = shape.at
     if shape.anchor != "start":
         text.dxf.halign, text.dxf.align_point = _ANCHORS[shape.anchor], shape.at
@@ -133,8 +135,3 @@ def _deviations(shape: Dimension) -> dict[str, Any]:
     decimals = decimals_of(shape.tolerance)
     equal = {"dimtol": 1, "dimtp": shape.tolerance, "dimtm": shape.tolerance, "dimtfac": 1.0}
     return equal | {"dimdec": decimals, "dimtdec": decimals, "dimzin": 0}
-
-
-def _plain(text: str) -> str:
-    """Return a text without what would end its line or be taken for a code."""
-    return " ".join(text.replace("%%", "% %").split()).replace("^", "^ ")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from ...model.cycle.gas_cycle import cylinders
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.machine.links import Bar, Link
+from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
@@ -106,7 +106,8 @@ def look_between(
     """
     r, l, e = (_MM * float(value) for value in (linkage.crank, linkage.rod, linkage.offset))
     described = (mechanism.crank, mechanism.rod)
-    crank, rod = (_width(link, min(0.05 * (l + r), 0.5 * r)) for link in described)
+    usual = min(0.05 * (l + r), 0.5 * r)
+    crank, rod = (_MM * link.width if isinstance(link, Bar) else usual for link in described)
     block = max(0.16 * (r + max(r, abs(e))), 0.05 * (max(map(abs, reach)) + r))
     pin = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r)
     half = 0.5 * crank
@@ -129,10 +130,6 @@ def lengths_in_words(linkage: Linkage, digits: int, *, stroke: bool = False) -> 
     """Return the dimensions of a linkage, with its stroke where that is asked."""
     names = (*DIMENSIONS, *(["stroke"] if stroke else []))
     return ", ".join(f"{name} {_MM * float(getattr(linkage, name)):.{digits}g} mm" for name in names)
-
-
-def _width(link: Link, usual: float) -> float:
-    return _MM * link.width if isinstance(link, Bar) else usual
 
 
 def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:

@@ -78,8 +78,12 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
     dead = float(np.degrees(inner)), float(np.degrees(outer))
     slow = str(slow_stroke(mechanism, linkage))
-    has_slow = slow in ("outward", "inward")
-    across = CRANK_ANGLE + (f" (shaded: {slow} stroke, the slow one)" if has_slow else "")
+    across, shaded = CRANK_ANGLE, tuple[tuple[float, float], ...]()
+    if slow in ("outward", "inward"):
+        across += f" (shaded: {slow} stroke, the slow one)"
+        # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
+        start, end = dead if (slow == "outward") == (mechanism.direction > 0.0) else dead[::-1]
+        shaded = ((start, end),) if start < end else ((0.0, end), (start, 360.0))
     panels = []
     for name, extreme in extremes.items():
         found = computed[name]
@@ -90,9 +94,6 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
             lines.append(Line("", degrees[at : at + 1], found.values[at : at + 1], points=True))
             peaked = Value(float(found.values[at]), found.kind, 4, bare=True)
             note = words(f"{word} {{value}} at {shown(degrees[at])}°", value=peaked)
-        # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
-        ahead = (slow == "outward") == (mechanism.direction > 0.0)
-        shaded = _span(*(dead if ahead else dead[::-1])) if has_slow else ()
         panels.append(replace(over_turn(found.title, *lines, kind=found.kind, note=note), across=across, shaded=shaded))
     return Curves(degrees, tuple(panels), *dead)
 
@@ -124,8 +125,3 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
             fontsize=SMALL,
             color=MUTED,
         )
-
-
-def _span(start: float, end: float) -> tuple[tuple[float, float], ...]:
-    """Return the spans within a turn, deg, that a crank passes counter-clockwise from start to end."""
-    return ((start, end),) if start < end else ((0.0, end), (start, 360.0))

@@ -110,11 +110,12 @@ def files_of(folder: Path) -> dict[str, _File]:
     texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}
     styles = {name: text for name, text in texts.items() if name.endswith(".css")}
     joined = {"app.js": joined_modules(texts, "app.js"), "style.css": joined_styles(styles)}
-    return {name: _file(Path(name).suffix, text.encode()) for name, text in {**texts, **joined}.items()}
-
-
-def _file(kind: str, content: bytes) -> _File:
-    return _File(_TYPES[kind], content, gzip.compress(content, mtime=0), f'W/"{tag_of(content)}"')
+    files = {}
+    for name, text in {**texts, **joined}.items():
+        content = text.encode()
+        compressed = gzip.compress(content, mtime=0)
+        files[name] = _File(_TYPES[Path(name).suffix], content, compressed, f'W/"{tag_of(content)}"')
+    return files
 
 
 _FILES = files_of(Path(__file__).parent / "static")

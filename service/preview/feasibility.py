@@ -88,6 +88,10 @@ def possible(problem: Problem) -> Possible:
     made = within(PATIENCE, lambda: screened(problem)) if costly else None
     found, violation = screened(light) if made is None else made
     feasible = violation <= FEASIBLE
+    if made is None:
+        hardest = _hardest(light, box[turning])
+    else:
+        hardest = within(PATIENCE, lambda: _hardest(problem, box[turning][:_BATCH]))
     return Possible(
         turning=float(turning.mean()),
         stroke=_reach(light, "stroke"),
@@ -96,7 +100,7 @@ def possible(problem: Problem) -> Possible:
         slow_strokes=_slow_strokes(light, found[feasible] if feasible.any() else box[turning]),
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
-        hardest=_hardest(light, box[turning]) if made is None else _hardest_of_all(problem, box[turning]),
+        hardest=hardest,
         example=lengths_of(example_of(found, violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if made is None else (),
@@ -259,11 +263,6 @@ def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
     if constraint.upper is not None:
         good &= values <= constraint.upper + _CLOSE * abs(constraint.upper)
     return np.asarray(good)
-
-
-def _hardest_of_all(problem: Problem, designs: Array) -> tuple[str, float] | None:
-    """Return what `_hardest` does, from the first designs that turn; None if they take longer than a moment."""
-    return within(PATIENCE, lambda: _hardest(problem, designs[:_BATCH]))
 
 
 def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:

@@ -144,8 +144,9 @@ def said(problem: Problem, found: Possible, held: Sequence[str]) -> list[str]:
     elif found.sampled and found.feasible == 0.0 and not sentences:
         hardest = ""
         if found.hardest is not None and found.hardest[1] < 1.0:
-            title = problem.quantity(found.hardest[0]).title
-            hardest = f"; on its own, {title} is met by {_percent(found.hardest[1])} of those that turn"
+            name, share = found.hardest
+            percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
+            hardest = f"; on its own, {problem.quantity(name).title} is met by {percent} of those that turn"
         values = f" with the job's values of {', '.join(held)}" if held else ""
         sentences.append(
             f"none of {counted(found.sampled, 'design')} tried{values} meets every requirement{hardest}; "
@@ -164,7 +165,3 @@ def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
         if item is not None:
             found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
     return found
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"

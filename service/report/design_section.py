@@ -32,7 +32,10 @@ def design_section(subject: Subject) -> Section:
     return Section(
         subject.label.capitalize(),
         (
-            Picture("The linkage, to scale", partial(_drawing, subject)),
+            Picture(
+                "The linkage, to scale",
+                lambda: drawing_figure(design_drawing(subject.design, name=subject.result.name, design=subject.label)),
+            ),
             *_rules(subject),
             *(Paragraph(f"Beyond what is allowed: {unit_text(line)}.", "bad") for line in subject.violated),
             *_optimality(subject),
@@ -50,10 +53,11 @@ def numbers_section(subject: Subject) -> Section:
     """Return every column of the design that its machine has, rounded and as it is stored."""
     columns, absent = _of_machine(subject)
     lengths = _toleranced(subject)
+    at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
     rows = tuple(
         (
             column.title,
-            lengths.get(column.key, "0" if _at_bound(subject, column) else rounded(subject.row[column.key])),
+            lengths.get(column.key, "0" if column.key in at_bound else rounded(subject.row[column.key])),
             unit_text(column.unit),
             as_stored(subject.row[column.key]),
             column.key,
@@ -114,10 +118,6 @@ def _toleranced(subject: Subject) -> dict[str, str]:
         if isinstance(value, float):
             found[key] = toleranced(value, tolerance).replace("-", "−")
     return found
-
-
-def _at_bound(subject: Subject, column: Column) -> bool:
-    return column.key.startswith("slack_") and _active(subject, column)
 
 
 def _rules(subject: Subject) -> list[Block]:
@@ -188,10 +188,6 @@ def _optimality(subject: Subject) -> list[Block]:
     if sentences:
         blocks.append(Paragraph("Trade-offs here, to first order: " + unit_text("; ".join(sentences)) + "."))
     return blocks
-
-
-def _drawing(subject: Subject) -> Figure:
-    return drawing_figure(design_drawing(subject.design, name=subject.result.name, design=subject.label))
 
 
 def _sheet(subject: Subject) -> Figure:

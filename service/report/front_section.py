@@ -11,7 +11,6 @@ from ..designs.violations import front_violations_in_words
 from ..figures.parallel import parallel_coordinates
 from ..figures.scatter import scatter_matrix
 from ..render.numerals import measured, rounded
-from ..runs.result import Wanted
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -46,7 +45,8 @@ def _ranges(subject: Subject) -> Table:
         place = 1 + sum(wanted.rank(row) < wanted.rank(subject.row) for row in ranked)
         rank = f"{place} of {len(ranked) + (subject.changed is not None)}"
         numbers = (rounded(value), rounded(best), rounded(worst), unit_text(wanted.unit), rank)
-        rows.append((wanted.title, _sense(wanted), *numbers))
+        sense = wanted.sense if wanted.target is None else f"target {measured(wanted.target, wanted.unit)}"
+        rows.append((wanted.title, sense, *numbers))
     return Table(
         f"Objectives: {subject.label}{',' if subject.changed else ''} within the front",
         ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
@@ -54,10 +54,6 @@ def _ranges(subject: Subject) -> Table:
         (0.29, 0.13, 0.13, 0.12, 0.12, 0.08, 0.13),
         frozenset({2, 3, 4, 6}),
     )
-
-
-def _sense(wanted: Wanted) -> str:
-    return wanted.sense if wanted.target is None else f"target {measured(wanted.target, wanted.unit)}"
 
 
 def _marked(subject: Subject) -> Table:

@@ -245,11 +245,10 @@ def json_ready(value: Any, *, gaps: bool = False) -> Any:
 
 def read_row(row: Mapping[str, Any]) -> Row:
     """Return a design of `json_ready` with its infinite numbers; words of choices stay words."""
-    return {key: _infinite(cell) if not key.startswith("choice_") else cell for key, cell in row.items()}
-
-
-def _infinite(cell: Any) -> Any:
-    return float(cell) if cell in ("inf", "-inf") else cell
+    return {
+        key: float(cell) if cell in ("inf", "-inf") and not key.startswith("choice_") else cell
+        for key, cell in row.items()
+    }
 
 
 def json_text(value: Any) -> str:

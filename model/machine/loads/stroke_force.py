@@ -68,14 +68,6 @@ class StrokeForce(Load):
         return "throughout"
 
 
-def _opposing(force: float, opposes: str, over: StrokePart) -> Load:
-    return _along(-force, opposes, over)
-
-
-def _helping(force: float, helps: str, over: StrokePart) -> Load:
-    return _along(force, helps, over, drives=True)
-
-
 def _along(force: float, stroke: str, over: StrokePart, *, drives: bool = False) -> Load:
     """Return a force along the motion, N, in a part of a stroke, or all of it, or of both ("motion")."""
     outward = 0.0 if stroke == "inward stroke" else force
@@ -124,7 +116,7 @@ StrokeForce.tables = (
         "size).",
         (_SIZE, Entry("opposes", _STROKES, "what it resists", "outward stroke"), _OVER),
         {"force": "100 N", "opposes": "outward stroke"},
-        _opposing,
+        lambda force, opposes, over: _along(-force, opposes, over),
     ),
     Table(
         "helps",
@@ -133,7 +125,7 @@ StrokeForce.tables = (
         "A force of constant size that helps a stroke or a part of it, or every motion.",
         (_SIZE, Entry("helps", _STROKES, "what it helps", "inward stroke"), _OVER),
         {"force": "100 N", "helps": "inward stroke"},
-        _helping,
+        lambda force, helps, over: _along(force, helps, over, drives=True),
     ),
     Table(
         "direction",
