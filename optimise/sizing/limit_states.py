@@ -95,8 +95,7 @@ def limit_states(
     w: Any,
     d: Any,
     z: Any,
-    length: float,
-    held: float,
+    buckling_length: float,
     loads: BarLoads,
     material: Material,
     limits: SectionLimits,
@@ -104,7 +103,7 @@ def limit_states(
 ) -> dict[str, Any]:
     """Return the utilisation of each limit state (1 is the limit), by name.
 
-    held: K of the plane's buckling length. z: amplification. cvxpy expressions give posynomials. Numbers, with z None,
+    buckling_length: in the plane, m. z: amplification. cvxpy expressions give posynomials. Numbers, with z None,
     give numbers: z is then at its least, infinite where the bar buckles, and of an eye the stress in its net section
     counts, of which a posynomial has the limit alone.
     """
@@ -115,7 +114,7 @@ def limit_states(
         return stress / (1.0 - hole) if exact and hole < 1.0 else stress + hole
 
     static = limits.static_safety / material.yield_strength
-    euler = 12.0 * (held * length) ** 2 / (math.pi**2 * material.elasticity) * loads.compression
+    euler = 12.0 * buckling_length**2 / (math.pi**2 * material.elasticity) * loads.compression
     u = above(limits.static_safety * euler / (d * w**3))
     if z is None:
         z = 1.0 / (1.0 - u) if u < 1.0 else math.inf

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -56,28 +56,41 @@ _INPUT_OPTIONS = tuple(
 )
 
 
+@dataclass(frozen=True)
+class Setting(Dimensions):
+    """A design as it is given, and what its machine has other than JOB says."""
+
+    speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None
+    put: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE"),
+        'A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
+    ] = None
+    design: DesignOfRun = None
+
+
+@dataclass(frozen=True)
+class Files:
+    """Files that are read and written besides the numbers."""
+
+    measured: Annotated[
+        File,
+        "A CSV file of measured curves to compare: a column crank_angle_deg, or time_s from crank angle 0 on, and "
+        "others such as slider_position_mm or torque_Nm.",
+    ] = None
+    figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None
+    cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None
+
+
 def analyse(
     job: Annotated[
         JobOrRun, "A job file: what masses, loads, tolerances and speed come from. A run with --design."
     ] = None,
     *,
-    size: Dimensions,
-    speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None,
-    put: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="PATH=VALUE"),
-        'A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
-    ] = None,
-    design: DesignOfRun = None,
+    setting: Setting,
     show: Annotated[list[str] | None, typer.Option(metavar="TOPIC"), _TOPIC_HELP] = None,
     inputs: Annotated[dict[str, str | None], _INPUT_OPTIONS],
-    measured: Annotated[
-        File,
-        "A CSV file of measured curves to compare: a column crank_angle_deg, or time_s from crank angle 0 on, and "
-        "others such as slider_position_mm or torque_Nm.",
-    ] = None,
-    figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None,
-    cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None,
+    files: Files,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
@@ -90,12 +103,14 @@ def analyse(
     have a topic, the reason is given after everything else; the exit code is then 2 if the topic was named, and 0
     with `--show all`.
     """
-    require_ending("--cycle", cycle, ".csv")
+    require_ending("--cycle", files.cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(inputs, topics)
-    mechanism, linkage, problem = machine_of("analyse", job, size, design, runs, put=put or (), turning=True)
-    if speed is not None:
-        mechanism = replace(mechanism, speed=speed_option(speed))
+    mechanism, linkage, problem = machine_of(
+        "analyse", job, setting, setting.design, runs, put=setting.put or (), turning=True
+    )
+    if setting.speed is not None:
+        mechanism = replace(mechanism, speed=speed_option(setting.speed))
     own = () if problem is None else problem.own
     row, undefined = numbers_of(mechanism, linkage, own)
     notes = _leave_out(row, mechanism, alone=problem is None)
@@ -105,15 +120,15 @@ def analyse(
             mechanism,
             linkage,
             topics,
-            more=() if measured is None else (_measured(measured, mechanism, linkage),),
+            more=() if files.measured is None else (_measured(files.measured, mechanism, linkage),),
             options=options,
             notes=notes,
             cancelled=interruption.asked,
             lenient=True,
             undefined=None if problem is None else undefined,
         )
-    if cycle is not None:
-        _write_cycle(mechanism, linkage, cycle, units, machine=problem is not None)
+    if files.cycle is not None:
+        _write_cycle(mechanism, linkage, files.cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
     if json:
         give(json_text(found.record(units) | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
@@ -133,8 +148,8 @@ def analyse(
             print_blocks(screen, topic.blocks(found.found[topic.name]), units)
     for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
-    if figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, found.topics, figures, units)
+    if files.figures is not None and not interruption.asked():
+        _draw(problem, mechanism, linkage, row, found.topics, files.figures, units)
     if interruption.asked():
         raise typer.Exit(INTERRUPTED)
     if found.refused and ALL not in (show or ()):

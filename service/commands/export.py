@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,14 +11,14 @@ import typer
 from ...model.errors import InputError
 from ...objectives.counted import counted
 from ...objectives.kinds import ANGLE, System
-from ..designs.selection import chosen_rows, none_meets, numbered, part_of
+from ..designs.selection import none_meets, numbered, part_of
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
 from ..text.options import Angle, File, Output, Run, Runs, Units, given_value, require_ending
 from ..text.screen import give, say, waiting
 from .ending import end_without_design
-from .run_choice import Choice, Where, run_of, shown_result
+from .run_choice import Choice, Selection, Where, run_of, shown_result
 
 if TYPE_CHECKING:
     from ..designs.stored_designs import StoredDesign
@@ -32,22 +33,47 @@ _FILES = {
 """Options that write one design, and how their files may end."""
 
 
-def export(
-    run: Run,
-    csv: Annotated[Output, "Write the designs as CSV; - is standard output."] = None,
-    json: Annotated[Output, "Write all of it as JSON; - is standard output."] = None,
-    *,
-    choice: Choice,
-    dxf: Annotated[File, "Write the linkage of one design at true scale as DXF."] = None,
-    svg: Annotated[File, "Write the same drawing as SVG."] = None,
-    motion: Annotated[File, "Write its motion as an HTML file that needs nothing else."] = None,
-    gif: Annotated[File, "Write its motion as an animated GIF."] = None,
-    cycle: Annotated[File, "Write its motion, forces and torque over the cycle as CSV."] = None,
-    where: Where = None,
+@dataclass(frozen=True)
+class Tables:
+    """Files with all designs."""
+
+    csv: Annotated[Output, "Write the designs as CSV; - is standard output."] = None
+    json: Annotated[Output, "Write all of it as JSON; - is standard output."] = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether there is one."""
+        return self.csv is not None or self.json is not None
+
+
+@dataclass(frozen=True)
+class DesignFiles:
+    """Files with one design, see `_FILES`."""
+
+    dxf: Annotated[File, "Write the linkage of one design at true scale as DXF."] = None
+    svg: Annotated[File, "Write the same drawing as SVG."] = None
+    motion: Annotated[File, "Write its motion as an HTML file that needs nothing else."] = None
+    gif: Annotated[File, "Write its motion as an animated GIF."] = None
+    cycle: Annotated[File, "Write its motion, forces and torque over the cycle as CSV."] = None
+
+
+@dataclass(frozen=True)
+class TableSelection(Selection):
+    """The designs of a table, and those that one is chosen among."""
+
+    where: Where = None
     sort: Annotated[
         str | None, typer.Option(metavar="NAME"), "Sort the designs of --csv and --json, as in `front`."
-    ] = None,
-    reverse: Annotated[bool, "Turn the order round."] = False,
+    ] = None
+
+
+def export(
+    run: Run,
+    *,
+    tables: Tables,
+    choice: Choice,
+    of_design: DesignFiles,
+    selection: TableSelection,
     at: Annotated[Angle, 'Crank angle of the drawing.  [default: "60 deg"; of a swing half-way]'] = None,
     runs: Runs = None,
     units: Units = "metric",
@@ -59,19 +85,19 @@ def export(
     """
     from ..designs.stored_designs import stored_design
 
-    given = zip(_FILES, (dxf, svg, motion, gif, cycle), strict=True)
-    files = {option: file for option, file in given if file is not None}
+    files = {f"--{name}": file for name, file in vars(of_design).items() if file is not None}
+    csv, json, where = tables.csv, tables.json, selection.where
     if (choice.design is not None or choice.picking) and not files:
         raise InputError(f"a design is written with {', '.join(_FILES)}; got none of them; give one")
-    if csv is None and json is None and not files:
+    if not tables.asked and not files:
         raise InputError(
             f"say what to export: --csv FILE, --json FILE, or of one design {', '.join(_FILES)}, each with a FILE"
         )
     if csv == json == "-":
         raise InputError("only one of --csv and --json can go to standard output; name a file for the other")
-    if at is not None and dxf is None and svg is None:
+    if at is not None and not files.keys() & {"--dxf", "--svg"}:
         raise InputError("--at is for --dxf and --svg, which are not asked for; add one or leave --at out")
-    if (sort is not None or reverse) and csv is None and json is None:
+    if selection.sorts and not tables.asked:
         raise InputError(
             "--sort and --reverse are for --csv and --json, which are not asked for; add one or leave them out"
         )
@@ -83,13 +109,13 @@ def export(
     folder, result = run_of(run, runs)
     made: dict[Path, bytes] = {}
     if files:
-        of_table = csv is not None or json is not None
-        number = choice.number(result, run, None if choice.design is not None and of_table else where)
+        of_table = choice.design is not None and tables.asked
+        number = choice.number(result, run, None if of_table else where)
         found = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}
         with waiting("drawing"):
             made = {file: _content(option, found, angle, units, **named) for option, file in files.items()}
-    chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse) if result.designs else []
+    chosen = selection.rows(result) if result.designs else []
     if where and not chosen:
         end_without_design(none_meets(result, where))
     shown = shown_result(result, units, None if json is None else folder)

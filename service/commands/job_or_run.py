@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ..designs.picking_options import require_alone
 from ..designs.selection import plain_number
 from ..designs.turning import require_turning
@@ -49,7 +50,8 @@ def machine_of(
     from ...model.machine.mechanism import Mechanism
 
     if design is not None:
-        stored = design_of_run(command, job, design, runs, {**vars(size), "set": put or None})
+        lengths = {name: getattr(size, name) for name in DIMENSIONS}
+        stored = design_of_run(command, job, design, runs, {**lengths, "set": put or None})
         if turning:
             require_turning(stored.part.motion, command)
         return Machine(stored.mechanism, stored.linkage, stored.part)

@@ -7,7 +7,7 @@ import shlex
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -41,16 +41,43 @@ _SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job",
 _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
 
 
+@dataclass(frozen=True)
+class Places:
+    """Where runs and jobs are kept, as it is given."""
+
+    runs: Runs = None
+    store: Address = None
+
+    def command_again(self, run: str) -> str:
+        """Return the command that resumes a run, with the places that were named but without passwords."""
+        from ..store.address import without_secrets
+
+        given = ["--runs", str(self.runs)] if self.runs else []
+        given += ["--store", without_secrets(self.store)] if self.store else []
+        return shlex.join(["slidercrank", "optimise", "--resume", run, *given])
+
+
+@dataclass(frozen=True)
+class SettingOptions:
+    """Settings of the optimiser in place of the job's."""
+
+    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None
+    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Those that are given."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
 def optimise(
     job: Annotated[Path | None, typer.Argument(metavar="JOB"), "The job file, .toml or .json."] = None,
     resume: Annotated[
         str | None, typer.Option(metavar="RUN"), "Instead of a job: go on with an interrupted or cancelled run."
     ] = None,
-    runs: Runs = None,
-    store: Address = None,
-    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None,
-    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None,
     *,
+    places: Places,
+    settings: SettingOptions,
     engine: EngineOptions,
     units: Units = "metric",
     json: Json = False,
@@ -76,23 +103,23 @@ def optimise(
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
-    if resume is not None and (designs is not None or seed is not None):
+    if resume is not None and settings.given:
         raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
     if figures:
         required("matplotlib", "figures need")
-    options = engine.checked()
+    options, place = engine.checked(), runs_place(places.runs)
     with contextlib.ExitStack() as opened:
         listed = True
         if job is not None:
-            problem, tables = _problem(job, designs, seed)
-            jobs, listed = opened.enter_context(_store_or_own(store, runs))
-            begin = _new(job, jobs, problem, tables, runs_place(runs))
+            problem, tables = _problem(job, settings)
+            jobs, listed = opened.enter_context(_store_or_own(places))
+            begin = _new(job, jobs, problem, tables, place)
         else:
-            jobs = opened.enter_context(open_store(store, runs))
-            begin = _again(resume or "", jobs, runs_place(runs))
+            jobs = opened.enter_context(open_store(places.store, places.runs))
+            begin = _again(resume or "", jobs, place)
         interruption = opened.enter_context(Interruption())
         run, problem, claim = opened.enter_context(begin)
-        again = _again_command(claim.job.run, runs, store) if listed else ""
+        again = places.command_again(claim.job.run) if listed else ""
         opened.enter_context(told(claim, again=again))
         opened.enter_context(Heartbeat(claim))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
@@ -132,22 +159,14 @@ def optimise(
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
 
 
-def _again_command(run: str, runs: Path | None, store: str | None) -> str:
-    """Return the command that resumes a run, with the places that were named but without passwords."""
-    from ..store.address import without_secrets
-
-    places = [*(["--runs", str(runs)] if runs else []), *(["--store", without_secrets(store)] if store else [])]
-    return shlex.join(["slidercrank", "optimise", "--resume", run, *places])
-
-
 @contextlib.contextmanager
-def _store_or_own(option: str | None, runs: Path | None) -> Iterator[tuple[Store, bool]]:
+def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
     """Give the store, or a temporary one for this run where it cannot be used, and which it is."""
     from ..store import Store
 
     with contextlib.ExitStack() as opened:
         try:
-            store = opened.enter_context(open_store(option, runs))
+            store = opened.enter_context(open_store(places.store, places.runs))
             store.require_writable()
             listed = True
         except StoreError as error:
@@ -217,7 +236,7 @@ def show_files(run: Path) -> None:
         screen.print(f"  {', '.join(listed)}", soft_wrap=True)
 
 
-def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem, dict[str, Any]]:
+def _problem(job: Path, given: SettingOptions) -> tuple[Problem, dict[str, Any]]:
     """Return the problem of a job file and its tables, both with the options that were given."""
     from ...optimise.job import load_job, read_job
     from ...optimise.job.notes import notes_of
@@ -225,10 +244,9 @@ def _problem(job: Path, designs: int | None, seed: int | None) -> tuple[Problem,
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):
         say(f"note: {note}")
-    settings = problem.settings
-    settings = replace(settings, designs=designs or settings.designs, seed=settings.seed if seed is None else seed)
-    given = {"designs": settings.designs, "seed": settings.seed}
-    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **given}}
+    settings = replace(problem.settings, **given.given)
+    used = {"designs": settings.designs, "seed": settings.seed}
+    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **used}}
 
 
 def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim, engine: Engine) -> ParetoFront:

@@ -66,6 +66,32 @@ Where = Annotated[
 
 
 @dataclass(frozen=True)
+class Selection:
+    """Options that take a part of a run's designs and sort them."""
+
+    where: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CONDITION"),
+        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
+    ] = None
+    sort: Annotated[
+        str | None,
+        typer.Option(metavar="NAME"),
+        "Sort by a quantity or column: best first for an objective, else smallest first.",
+    ] = None
+    reverse: Annotated[bool, "Turn the order round."] = False
+
+    @property
+    def sorts(self) -> bool:
+        """Whether the order is other than the run's."""
+        return self.sort is not None or self.reverse
+
+    def rows(self, result: Result) -> list[int]:
+        """Return the rows of the designs, in their order."""
+        return chosen_rows(result, self.where or [], sort=self.sort, reverse=self.reverse)
+
+
+@dataclass(frozen=True)
 class Choice:
     """Options that name one design of a run."""
 

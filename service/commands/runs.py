@@ -9,34 +9,24 @@ import typer
 from ...objectives.counted import counted
 from ...objectives.keys import key_in
 from ..designs.columns import find_columns
-from ..designs.selection import chosen_rows, none_meets, part_of
+from ..designs.selection import none_meets, part_of
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, give
 from ..text.tables import ROWS, show_design, show_front, show_violated
 from .ending import NoDesigns, end_without_design
 from .optimise import show_files, show_result
-from .run_choice import Choice, run_of, shown_result
+from .run_choice import Choice, Selection, run_of, shown_result
 
 
 def front(
     run: Run,
-    where: Annotated[
-        list[str] | None,
-        typer.Option(metavar="CONDITION"),
-        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
-    ] = None,
-    sort: Annotated[
-        str | None,
-        typer.Option(metavar="NAME"),
-        "Sort by a quantity or column: best first for an objective, else smallest first.",
-    ] = None,
-    reverse: Annotated[bool, "Turn the order round."] = False,
+    *,
+    selection: Selection,
     columns: Annotated[
         str | None, typer.Option(metavar="NAMES"), "Quantities or columns to show, separated by commas."
     ] = None,
     rows: Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."] = ROWS,
-    *,
     choice: Choice,
     runs: Runs = None,
     units: Units = "metric",
@@ -50,11 +40,11 @@ def front(
     if not result.designs:
         raise NoDesigns(result)
     wanted = find_columns(columns, list(result.designs[0])) if columns else None
-    chosen = chosen_rows(result, where or [], sort=sort, reverse=reverse)
+    chosen, where = selection.rows(result), selection.where
     one = choice.row(result, chosen) if choice.design is None else choice.number(result, run, where) - 1
     if one is not None:
         chosen = [one]
-    told = not where and (json or not (sort or reverse or columns or one is not None or rows != ROWS))
+    told = not where and (json or not (selection.sorts or columns or one is not None or rows != ROWS))
     result = shown_result(result, units, folder if told else None)
     shown = names = None
     if wanted is not None:
@@ -71,7 +61,7 @@ def front(
         show_design(screen, result.designs[one], only=names)
         of_one = {key: by[one] for key, by in result.violated.items() if by[one] > 0.0}
         show_violated(screen, of_one, result.designs[one])
-    elif not (where or sort or reverse or columns or rows != ROWS):
+    elif not (where or selection.sorts or columns or rows != ROWS):
         show_result(result)
         show_files(folder)
     elif chosen:

@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
@@ -24,6 +25,25 @@ TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
 
 
+@dataclass(frozen=True)
+class Access:
+    """Who may call the service, by which names, and how much may be asked of it."""
+
+    token: Annotated[
+        str | None,
+        f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
+        f"[default: {TOKEN_VARIABLE}, else a random one, printed once]",
+    ] = None
+    no_token: Annotated[bool, "Let in all users of this machine."] = False
+    allow_host: Annotated[
+        list[str] | None, typer.Option(metavar="NAME"), "By which the service may be called, too. Repeatable."
+    ] = None
+    submissions: Annotated[
+        int, typer.Option("--submissions-per-minute", min=0), "Sum over all clients; 0 is no limit."
+    ] = 600
+    most_queued: Annotated[int, typer.Option(min=1), "Most jobs that may wait."] = 10_000
+
+
 def serve(
     store: Address = None,
     host: Annotated[str, "Address of this machine to listen on."] = "127.0.0.1",
@@ -33,20 +53,8 @@ def serve(
         typer.Option(min=0, max=256),
         "How many jobs are solved here at a time.  [default: one a processor, at most 4]",
     ] = None,
-    token: Annotated[
-        str | None,
-        f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
-        f"[default: {TOKEN_VARIABLE}, else a random one, printed once]",
-    ] = None,
-    no_token: Annotated[bool, "Let in all users of this machine."] = False,
-    allow_host: Annotated[
-        list[str] | None, typer.Option(metavar="NAME"), "By which the service may be called, too. Repeatable."
-    ] = None,
-    submissions: Annotated[
-        int, typer.Option("--submissions-per-minute", min=0), "Sum over all clients; 0 is no limit."
-    ] = 600,
-    most_queued: Annotated[int, typer.Option(min=1), "Most jobs that may wait."] = 10_000,
     *,
+    access: Access,
     options: WorkOptions,
     engine: EngineOptions,
 ) -> None:
@@ -62,19 +70,21 @@ def serve(
     from ..workers.heartbeat import end_children
     from ..workers.supervisor import Supervisor
 
-    secret, made = _token(token, no_token, host)
+    secret, made = _token(access.token, access.no_token, host)
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers
     work = options.settings(store_address(store), engine, processes)
     settings = Settings(
         token=secret,
-        hosts=(*names_of(host), *(allow_host or ())),
-        submissions_per_minute=submissions,
+        hosts=(*names_of(host), *(access.allow_host or ())),
+        submissions_per_minute=access.submissions,
         allowed_quantities=frozenset(work.terms.allowed_quantities),
         limits=work.terms.limits,
     )
     with Interruption(service=True) as termination, listen(host, port) as socket, open_store(store) as opened:
         opened.require_writable()
-        analysing = partial(computing_app, work.address, settings, most_queued=most_queued, log_format=work.log_format)
+        analysing = partial(
+            computing_app, work.address, settings, most_queued=access.most_queued, log_format=work.log_format
+        )
         computing = Computing(analysing, modules=MODULES)
         app = create_app(opened, settings, computing)
         give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,17 +30,25 @@ _SELDOM = 5.0  # s between two lines of a long stage
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
+@dataclass(frozen=True)
+class JobLimits:
+    """What the search of a job may take."""
+
+    seconds: Annotated[float | None, "End its search after so long, with what it found."] = None
+    evaluations: Annotated[int | None, "End its search after so many designs, with what it found."] = None
+    memory: Annotated[
+        str | None, typer.Option(metavar="SIZE"), 'Let it fail if its worker takes more, such as "2 GB".'
+    ] = None
+
+
 def submit(
     job: Annotated[JobFile, "The job file, .toml or .json."],
     store: Address = None,
     priority: Annotated[int, "-1000 to 1000; jobs of higher priority are solved first."] = 0,
     key: Annotated[str | None, "Key of this submission: repeating it with the same key gives the same job."] = None,
     attempts: Annotated[int, "Number of tries, without progress, before it fails."] = 3,
-    seconds: Annotated[float | None, "End its search after so long, with what it found."] = None,
-    evaluations: Annotated[int | None, "End its search after so many designs, with what it found."] = None,
-    memory: Annotated[
-        str | None, typer.Option(metavar="SIZE"), 'Let it fail if its worker takes more, such as "2 GB".'
-    ] = None,
+    *,
+    most: JobLimits,
     watch: Annotated[bool, "Show what happens to it until it ends."] = False,
     json: Json = False,
 ) -> None:
@@ -55,8 +64,8 @@ def submit(
     load_job(job)  # for its messages, which name the file
     tables = read_job(job)
     functions = sorted(set(functions_of(tables).values()))
-    most = None if memory is None else size_of(memory, "--memory")
-    limits = Limits(seconds=seconds, evaluations=evaluations, memory=most)
+    memory = None if most.memory is None else size_of(most.memory, "--memory")
+    limits = Limits(seconds=most.seconds, evaluations=most.evaluations, memory=memory)
     with open_store(store) as opened:
         queued = put_in(
             opened,

@@ -14,6 +14,7 @@ import typer
 
 from ...model.errors import InputError
 from ...model.extras import required
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
 from ..designs.selection import value_of
 
@@ -122,7 +123,7 @@ class Dimensions:
 
     def lengths(self, problem: Problem | None) -> list[float]:
         """Return crank, rod and offset, m, each as `length_option` gives it."""
-        return [length_option(name, text, problem) for name, text in vars(self).items()]
+        return [length_option(name, getattr(self, name), problem) for name in DIMENSIONS]
 
     def linkage(self, problem: Problem) -> Linkage:
         """Return the linkage of a job's branch."""

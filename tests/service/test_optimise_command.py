@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.service.commands.optimise import _again_command
+from slidercrank.service.commands.optimise import Places
 from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -242,10 +242,10 @@ def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
 
 
 def test_the_command_that_goes_on_names_the_places_that_were_named() -> None:
-    assert _again_command("a-run", None, None) == "slidercrank optimise --resume a-run"
-    named = _again_command("a-run", Path("my runs"), "my store.db")
+    assert Places().command_again("a-run") == "slidercrank optimise --resume a-run"
+    named = Places(Path("my runs"), "my store.db").command_again("a-run")
     assert named == "slidercrank optimise --resume a-run --runs 'my runs' --store 'my store.db'"
-    secret = _again_command("a-run", None, "postgresql://clerk:geheim@host/jobs?sslmode=require&sslpassword=auch")
+    secret = Places(store="postgresql://clerk:geheim@host/jobs?sslmode=require&sslpassword=auch").command_again("a-run")
     assert "geheim" not in secret
     assert "auch" not in secret
     assert "--store 'postgresql://clerk:***@host/jobs?" in secret
