@@ -46,6 +46,7 @@ _COMMANDS = (
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
+_MODULES |= dict.fromkeys(("inverse", "swing"), "question")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of the commands that have none of their own name."""
 

@@ -298,8 +298,8 @@ class Problem:
     def ask(self, question: str, design: ArrayLike, /, **inputs: object) -> dict[str, Any]:
         """Return the answer of a design (3 + k,) to a question, as JSON has it: `problem.ask("press", design)`.
 
-        question: a topic of `analyse --show`, or a question that another installed package has. inputs: those that it
-        takes, in SI or as text with a unit, `touch_distance="12 mm"`. Keys and values are those of
+        question: a topic of `analyse --show`, "inverse", "swing", or one that another installed package has. inputs:
+        those that it takes, in SI or as text with a unit, `touch_distance="12 mm"`. Keys and values are those of
         `analyse --show press --json`. Raises `InputError` for an unknown question or input, for what the design does
         not have, and as `analyse` does.
         """

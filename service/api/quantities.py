@@ -168,9 +168,7 @@ def list_topics() -> TopicList:
 
 
 def _topic(of: Topic) -> TopicModel:
-    inputs = [
-        InputModel(key=one.key, title=one.title, unit=one.kind.metric.symbol, usual=one.usual) for one in of.inputs
-    ]
+    inputs = [InputModel(key=one.key, title=one.title, unit=one.unit.symbol, usual=one.usual) for one in of.inputs]
     title = of.name.replace("_", " ").capitalize()
     return TopicModel(name=of.name, title=title, shows=of.shows, inputs=inputs)
 

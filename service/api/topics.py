@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Path, Query, Response
+from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
@@ -14,12 +13,12 @@ from ...model.errors import NotFound
 from ...objectives.kinds import System
 from ..runs.result import json_ready
 from ..topics.discovery import INPUTS, TOPIC_OF, TOPICS
-from ..topics.inputs import Input
 from ..topics.topic import Topic, TopicOfDesign
 from .computing import LongRoute
 from .exports import SEALED, of_type
 from .figures import require_figures
 from .fronts import OfDesign
+from .input_parameters import inputs_in_address, parameter_of
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import ShownDep, ShownDesign
@@ -69,26 +68,14 @@ class Asked:
         return f"topic {topic.name} {what} {self.units} {sorted(self.given.items())}"
 
 
-def _asked(units: System = "metric", **given: float | None) -> Asked:
-    """Return how a topic is asked for. given: inputs by their keys, in their metric units; None for usual ones."""
-    typed = ((one, given[one.key]) for one in INPUTS.values())
-    return Asked(units, {one.name: f"{value!r} {one.kind.metric.symbol}" for one, value in typed if value is not None})
+_PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF[name]}: ") for name, one in INPUTS.items())
+GivenDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
 
 
-def _parameter(one: Input) -> inspect.Parameter:
-    """Return the parameter of an address for an input of a topic."""
-    factor = one.kind.metric.factor
-    most = factor * one.kind.limit
-    limits: dict[str, Any] = {"gt": 0.0} if one.positive else {"ge": -most}
-    limits |= {"le": most} if one.below is None else {"lt": factor * one.below}
-    query = Query(**limits, allow_inf_nan=False, description=f"for the topic {TOPIC_OF[one.name]}: {one.help}")
-    return inspect.Parameter(
-        one.key, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[float | None, query]
-    )
+def _asked(given: GivenDep, units: UnitsAsked = "metric") -> Asked:
+    return Asked(units, given)
 
 
-_UNITS = inspect.Parameter("units", inspect.Parameter.KEYWORD_ONLY, default="metric", annotation=UnitsAsked)
-_asked.__signature__ = inspect.Signature([_UNITS, *map(_parameter, INPUTS.values())])  # type: ignore[attr-defined]
 AskedDep = Annotated[Asked, Depends(_asked)]
 
 
@@ -122,7 +109,7 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
         from ..render.formatting import plain_blocks
 
         found = asked.of(of, shown)
-        numbers = found.numbers(lambda: False)
+        numbers = found.numbers()
         blocks = [BlockModel(**vars(block)) for block in plain_blocks(found.blocks(numbers), asked.units)]
         record = found.numbers_in(json_ready(numbers), asked.units)
         answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)

@@ -5,35 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from ...model.swing.words import Driver, Law, Side
 from ...objectives.kinds import System
+from ..topics.discovery import COMMANDS
 from .connection import Connection, Record, given
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class SwingAsked(TypedDict, total=False):
-    """A swing, as the API asks for it: what is left out is as the job has it.
-
-    start_deg, end_deg: crank angles. slider_start_mm, slider_end_mm: slider positions instead, with the crank pin on
-    the crank_side of the line to the slider pin. Without a swing of the job the crank drives, slowly.
-
-    duration_s: of one way, for a law other than slow. actuator_tolerance_mm: how far the driven slider may be off.
-    """
-
-    start_deg: float
-    end_deg: float
-    slider_start_mm: float
-    slider_end_mm: float
-    crank_side: Side
-    driver: Driver
-    law: Law
-    duration_s: float | None
-    actuator_tolerance_mm: float
 
 
 class Designs:
@@ -47,10 +27,12 @@ class Designs:
         return self._asked(number, design, "analysis", {"show": list(show)})
 
     def ask(self, number: int, design: int, question: str, /, **inputs: object) -> Record:
-        """Return the answer of a design to a question, a topic of `analyse --show`, as `--json` prints it.
+        """Return the answer of a design to a question as `--json` prints it: a topic of `analyse --show`, or a command.
 
         inputs: those of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
         """
+        if question in COMMANDS:
+            return self._asked(number, design, question, given(**inputs))
         path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"
         found: Record = self._connection.ask(path, given(**inputs))["numbers"]
         return found
@@ -65,12 +47,15 @@ class Designs:
         acceleration_m_s2: float | None = None,
     ) -> Record:
         """Return every crank angle of a design for a slider position, as `slidercrank inverse --json` prints it."""
-        rates = given(slider_velocity_m_s=velocity_m_s, slider_acceleration_m_s2=acceleration_m_s2)
-        return self._asked(number, design, "inverse", {"slider_position_mm": position_mm, **rates})
+        rates = {"slider_velocity_m_s": velocity_m_s, "slider_acceleration_m_s2": acceleration_m_s2}
+        return self.ask(number, design, "inverse", slider_position_mm=position_mm, **rates)
 
-    def swing(self, number: int, design: int, **asked: Unpack[SwingAsked]) -> Record:
-        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them; see `SwingAsked`."""
-        return self._asked(number, design, "swing", given(**asked))
+    def swing(self, number: int, design: int, **asked: float | str | None) -> Record:
+        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them.
+
+        asked: as the API asks for it, start_deg=30, end_deg=90, driver="slider". What is left out is as the job has it.
+        """
+        return self.ask(number, design, "swing", **asked)
 
     def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
         """Return the optimal design that comes nearest to wishes, as `slidercrank wish --json` prints it.

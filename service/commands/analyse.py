@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -35,6 +34,7 @@ from ..topics.design_analysis import analysis_of, numbers_of
 from ..topics.discovery import ALL, INPUTS, TOLD_THERE, TOPIC_OF, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
+from .input_options import option_of
 from .job_or_run import machine_of
 
 if TYPE_CHECKING:
@@ -43,17 +43,7 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
-_INPUT_OPTIONS = tuple(
-    inspect.Parameter(
-        one.name,
-        inspect.Parameter.KEYWORD_ONLY,
-        default=None,
-        annotation=Annotated[
-            str | None, typer.Option(one.flag, metavar=one.kind.plain.upper().replace(" ", "_"), help=one.remark)
-        ],
-    )
-    for one in INPUTS.values()
-)
+_INPUT_OPTIONS = tuple(map(option_of, INPUTS.values()))
 
 
 @dataclass(frozen=True)

@@ -123,14 +123,18 @@ def plain_number(text: str) -> float | None:
         return None
 
 
-def value_of(key: str, text: str, kind: Kind, *, sign: Any = "any") -> float:
-    """Return a value in SI. Raises `InputError` that begins with the key; a unit is needed unless the kind has none."""
+def value_of(key: str, given: object, kind: Kind, *, sign: Any = "any") -> float:
+    """Return the value in SI of a text, which needs a unit unless the kind has none, or of a number in SI.
+
+    Raises `InputError` that begins with the key.
+    """
     from ...objectives.units import shown, to_si
 
-    if kind.unit and plain_number(text) is not None:
-        raise InputError(f'{key} must be {kind.name} with its unit; got {shown(text)}; write it like "{kind.example}"')
+    text = isinstance(given, str)
+    if text and kind.unit and plain_number(str(given)) is not None:
+        raise InputError(f'{key} must be {kind.name} with its unit; got {shown(given)}; write it like "{kind.example}"')
     try:
-        return to_si(text, kind, sign=sign, plain=False)
+        return to_si(given, kind, sign=sign, plain=not text)
     except InputError as error:
         raise InputError(f"{key} {error}") from None
 

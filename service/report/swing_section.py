@@ -13,7 +13,8 @@ from ..designs.swing_curves import driven, error_kind
 from ..render.blocks import Table as Numbers
 from ..render.formatting import cells, heads
 from ..render.numerals import length, rounded
-from ..swing.record import swing_blocks, swing_record, swing_title
+from ..topics.swing.analysis import blocks as swing_blocks
+from ..topics.swing.analysis import swing_record, swing_title
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 

@@ -19,8 +19,12 @@ def _found() -> dict[str, Topic]:
     return {topic.name: topic for topic in sorted((t for t in declared if t is not None), key=lambda t: t.place)}
 
 
-TOPICS = _found()
-"""By name, in the order in which they are shown."""
+ASKED = _found()
+"""All that one design can be asked, by name."""
+COMMANDS = {name: topic.command for name, topic in ASKED.items() if topic.command is not None}
+"""Those that are commands of their own."""
+TOPICS = {name: topic for name, topic in ASKED.items() if name not in COMMANDS}
+"""Those that `analyse` shows, in their order."""
 TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
 """Columns that topics show; the table of a design leaves them out."""
 

@@ -23,6 +23,23 @@ if TYPE_CHECKING:
     from ..render.blocks import Block
 
 
+@dataclass(frozen=True, kw_only=True)
+class Command:
+    """What a topic says that has a command and an address of its own, in place of `analyse --show`.
+
+    help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
+    help on JOB, and on what holds without. example: inputs of the example. curves: what the command can write and draw,
+    by functions `curves` and `figure` that take what `numbers` takes and `units`.
+    """
+
+    help: str
+    endpoint: str
+    job: str
+    alone: str
+    example: tuple[str, ...]
+    curves: str = ""
+
+
 @dataclass(frozen=True)
 class Topic:
     """A topic, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
@@ -32,14 +49,18 @@ class Topic:
     the table of a design therefore leaves out. inputs: what it may be asked with. A function `prepare` of that module,
     if it has one, gives further options for numbers and figure. A function `in_units`, if it has one, gives the numbers
     in a system of units.
+
+    command: if it is one of its own. Its numbers also take `swing`, that the crank makes in its job, and `words`, what
+    the door calls the inputs; the design need not turn fully. `note` or `notes` among them say what is undefined.
     """
 
     package: str
-    place: int
-    shows: str
+    place: int = 0
+    shows: str = ""
     needs_job: bool = True
     tells: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
+    command: Command | None = None
 
     @property
     def name(self) -> str:
@@ -47,14 +68,23 @@ class Topic:
         return self.package.rpartition(".")[2]
 
     def asked(
-        self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
+        self,
+        mechanism: Mechanism,
+        linkage: Linkage,
+        swing: Swing | None,
+        inputs: Mapping[str, object],
+        words: Mapping[str, str] | None = None,
     ) -> TopicOfDesign:
         """Return the topic of one design. swing: that its crank makes. inputs: by name, in SI or as text with a unit.
 
-        Raises `InputError` for a swing, and for inputs that the topic does not take.
+        words: what the door calls the inputs, if not by their names. Raises `InputError` for a swing, unless the topic
+        takes it, and for inputs that the topic does not take.
         """
+        if self.command is not None:
+            given = read_inputs(self.inputs, inputs, self.name, words)
+            return self.of(mechanism, linkage, {"swing": swing, "words": words, **given})
         require_turning(swing, f"the analysis {self.name}")
-        return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the analysis {self.name}"))
+        return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the analysis {self.name}", words))
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
@@ -63,8 +93,9 @@ class Topic:
         from ...model.linkage.single import single
 
         found = self.asked(mechanism, linkage, swing, inputs)
-        single(mechanism, linkage)
-        answer: dict[str, Any] = json_ready(found.numbers(lambda: False))
+        if self.command is None:
+            single(mechanism, linkage)
+        answer: dict[str, Any] = json_ready(found.numbers())
         return answer
 
     def of(self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None) -> TopicOfDesign:
@@ -86,7 +117,7 @@ class TopicOfDesign:
         """Name of the topic."""
         return self.topic.name
 
-    def numbers(self, cancelled: Callable[[], bool]) -> dict[str, Any]:
+    def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
         """Return the topic's numbers, ready for JSON. Raises `InputError` where the design has none."""
         self._prepare(cancelled)
         found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
@@ -103,6 +134,10 @@ class TopicOfDesign:
         """Return the topic's numbers, metric as they are, for people."""
         found: list[Block] = self._analysis.blocks(numbers)
         return found
+
+    def written(self, name: str, units: System) -> Any:
+        """Return what a command writes, by the name of its function: rows of `curves`, or a `figure`."""
+        return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
         """Write the topic's figure into a folder, after its numbers; return the file."""

@@ -56,7 +56,7 @@ def test_any_value_gives_the_same_numbers_by_option_and_in_the_api(
 ) -> None:
     one, topic, random = INPUTS[name], TOPIC_OF[name], np.random.default_rng(3)
     for value in random.uniform(*RANGES[name], 3).tolist():
-        typed = f"{value!r} {one.kind.metric.symbol}".strip()
+        typed = f"{value!r} {one.unit.symbol}".strip()
         expected = printed(solved, "--show", topic, one.flag, typed)[topic]
         answer = client.get(f"{solved.path}/designs/2/topics/{topic}", params={one.key: value})
         assert answer.json()["numbers"] == expected
@@ -75,7 +75,7 @@ def test_the_list_of_topics_has_what_each_is_asked_with(client: httpx.Client) ->
     assert listed["polygons"] == [{"key": "crank_angle_deg", "title": "Crank angle", "unit": "deg", "usual": "30 deg"}]
 
 
-LIMIT = Input("limit", LENGTH, "Limit", "A limit.", "2 mm", positive=True, below=1.0)
+LIMIT = Input("limit", LENGTH, "Limit", "A limit.", "2 mm", sign="positive", below=1.0)
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_a_value_that_is_none_is_refused_in_a_sentence(given: object, sentence: 
 def test_texts_and_numbers_in_si_are_read_and_none_is_not_given() -> None:
     assert read_inputs((LIMIT,), {"limit": "0.5 mm"}, "yield") == read_inputs((LIMIT,), {"limit": 5e-4}, "yield")
     assert read_inputs((LIMIT,), {"limit": None}, "yield") == {}
-    assert Input("share", RATIO, "Share", "A share.", "0.5").default == 0.5
+    assert Input("share", RATIO, "Share", "A share.").read("0.5", "share") == 0.5
     with pytest.raises(InputError, match="yield is asked with limit; got speed; leave speed out"):
         read_inputs((LIMIT,), {"speed": 1.0}, "yield")
     with pytest.raises(InputError, match="motor is asked with nothing else; got limit; leave limit out"):

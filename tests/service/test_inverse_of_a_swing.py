@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from slidercrank.model.swing.swing import placed, require_swing
-from slidercrank.service.designs.inverse import SliderMotion, inverse_record
+from slidercrank.service.topics.inverse.analysis import numbers
 from tests.model.swing.swings import random_swings
 
 
@@ -21,7 +21,7 @@ def test_the_angle_that_a_place_comes_from_is_found_within_the_swing() -> None:
         for share in (0.0, 1.0, *random.random(3)):
             angle = between.start + (between.end - between.start) * share
             place = float(own.at(angle).slider_position)
-            found = inverse_record(mechanism, linkage, swing, SliderMotion(place))["solutions"]
+            found = numbers(mechanism, linkage, swing=swing, slider_position=place)["solutions"]
             angles = [each["crank_angle_deg"] for each in found]
             assert min(abs(each - math.degrees(angle)) for each in angles) < 1e-5
             assert low - 1e-6 <= min(angles) <= max(angles) <= high + 1e-6

@@ -6,6 +6,7 @@ import json
 import tomllib
 from collections.abc import Iterator
 from importlib import metadata
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from slidercrank.model.errors import InputError, NotFound
 from slidercrank.optimise.problem import questions as announced
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
-from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.topics.discovery import ASKED, COMMANDS, TOPICS
 from tests.doors.scripts import JOBS
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, served
@@ -111,6 +112,76 @@ def test_designs_of_a_front_have_the_same_answers_in_python_and_by_the_client(so
         assert_same(part.ask("press", front.dimensions[row], touch_distance=0.012, rated_torque=torque), expected)
 
 
+def test_random_motions_have_the_same_crank_angles_at_every_door(solved: Solved, client: Client) -> None:
+    front, random = sc.solve(sc.load_job(solved.job)), np.random.default_rng(8)
+    for row in random.choice(len(front), 4, replace=False).tolist():
+        inner, outer = sc.Linkage(*front.dimensions[row][:3]).dead_centres
+        position = round(8e3 * float(inner + random.uniform(0.1, 0.9) * (outer - inner))) / 8.0
+        velocity, acceleration = random.uniform(-3.0, 3.0), random.uniform(-50.0, 50.0)
+        motion = {"slider_position_mm": position, "slider_velocity_m_s": velocity}
+        given = {**motion, "slider_acceleration_m_s2": acceleration}
+        expected = client.ask(solved.number, row + 1, "inverse", **given)
+        rates = {"slider_velocity": velocity, "slider_acceleration": f"{acceleration!r} m/s^2"}
+        assert_same(front.ask("inverse", row, slider_position=f"{position!r} mm", **rates), expected)
+        options = [f"--slider-position={position!r} mm", f"--slider-velocity={velocity!r} m/s"]
+        printed = printed_by("inverse", solved, row, *options, f"--slider-acceleration={acceleration!r} m/s^2")
+        assert_same(printed, expected)
+        rates_in_api = {"velocity_m_s": velocity, "acceleration_m_s2": acceleration}
+        assert client.inverse(solved.number, row + 1, position_mm=position, **rates_in_api) == expected
+
+
+def test_random_swings_have_the_same_numbers_at_every_door(solved: Solved, client: Client) -> None:
+    front, random = sc.solve(sc.load_job(solved.job)), np.random.default_rng(9)
+    for row in random.choice(len(front), 4, replace=False).tolist():
+        start, end = (float(angle) for angle in random.integers(8, 600, 2) / 8.0)
+        law, duration = str(random.choice(["harmonic", "cycloidal", "trapezoid"])), float(random.integers(1, 9))
+        given: dict[str, Any] = {"start_deg": start, "end_deg": end, "law": law, "duration_s": duration}
+        expected = client.ask(solved.number, row + 1, "swing", **given)
+        inputs = {"start": f"{start!r} deg", "end": float(np.radians(end)), "law": law, "duration": duration}
+        assert_same(front.ask("swing", row, **inputs), expected)
+        options = [f"--from={start!r} deg", f"--to={end!r} deg", "--law", law, f"--duration={duration!r} s"]
+        assert_same(printed_by("swing", solved, row, *options), expected)
+        assert client.swing(solved.number, row + 1, **given) == expected
+
+
+def printed_by(name: str, solved: Solved, row: int, *options: str) -> Any:
+    place = ["latest", "--runs", str(solved.folder.parent), "--design", str(row + 1), "--json"]
+    done = CliRunner().invoke(command_line, [name, *place, *options])
+    assert done.exit_code == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_a_swing_of_a_job_is_asked_in_python_as_on_the_command_line() -> None:
+    design, words = [1.4, 1.8, -0.05], ["--crank", "1.4 m", "--rod", "1.8 m", "--offset", "-50 mm", "--json"]
+    support = sc.load_job("runs/support.toml")
+    for name, options, inputs in (
+        ("swing", ["--to", "60 deg", "--actuator-tolerance", "0 mm"], {"end": "60 deg", "actuator_tolerance": 0.0}),
+        ("inverse", ["--slider-position", "2.9 m"], {"slider_position": 2.9}),
+    ):
+        done = CliRunner().invoke(command_line, [name, "runs/support.toml", *words, *options])
+        assert support.ask(name, design, **inputs) == json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_example_of_an_endpoint_is_the_answer_of_its_linkage(address: str, name: str) -> None:
+    topic = ASKED[name]
+    given = {one.name: one.example for one in topic.inputs if one.name in COMMANDS[name].example}
+    described = httpx.get(f"{address}{API}/openapi.json", timeout=60.0).json()
+    (example,) = described["components"]["schemas"][f"{name.capitalize()}Model"]["properties"][name]["examples"]
+    assert example == without_gaps(topic.answer(sc.Mechanism(), sc.Linkage(0.06, 0.23, 0.07), None, given))
+    asked = described["paths"][f"/api/v1/jobs/{{number}}/designs/{{design}}/{name}"]["get"]
+    assert (asked["operationId"], asked["description"]) == (COMMANDS[name].endpoint, cleandoc(COMMANDS[name].help))
+    keys = [parameter["name"] for parameter in asked["parameters"]]
+    assert [key for key in keys if key not in ("number", "design", "units")] == [one.key for one in topic.inputs]
+
+
+def without_gaps(record: Any) -> Any:
+    """Return a record without what is null, which FastAPI leaves out of descriptions."""
+    if isinstance(record, dict):
+        return {key: without_gaps(value) for key, value in record.items() if value is not None}
+    return [without_gaps(one) for one in record] if isinstance(record, list) else record
+
+
 def assert_same(answer: Any, expected: Any) -> None:
     """Compare two answers; stored designs have the last digit of their own."""
     if isinstance(expected, dict):
@@ -127,7 +198,11 @@ def assert_same(answer: Any, expected: Any) -> None:
 
 WRONG: list[tuple[str, dict[str, object], str]] = [
     ("pres", {}, "a design is asked a question by its name; got 'pres'; did you mean press?"),
-    ("weather", {}, "a design is asked a question by its name; got 'weather'; choose from static_forces, friction, "),
+    (
+        "weather",
+        {},
+        "a design is asked a question by its name; got 'weather'; choose from inverse, swing, ",
+    ),
     ("press", {"touch": 1.0}, "press is asked with touch_distance, dwell_distance, rated_torque; got touch; leave"),
     ("motor", {"limit": 1.0}, "the analysis motor is asked with nothing else; got limit; leave limit out"),
     ("press", {"touch_distance": "12 kg"}, 'touch_distance must be a length; got "12 kg", which is a mass; write it'),
@@ -137,6 +212,20 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
     ("press", {"touch_distance": float("nan")}, "touch_distance must be a finite number; got nan"),
     ("press", {"touch_distance": 3.0}, "distances before a dead centre must be less than the stroke, 280 mm; got 3000"),
     ("press", {}, "a press touches its work at a distance before the dead centre; got none; give a touch distance"),
+    ("inverse", {}, "inverse needs slider_position; got none; give it like 240 mm"),
+    ("inverse", {"slider_position": None}, "inverse needs slider_position; got none"),
+    ("inverse", {"slider_position": 9.0}, "the slider position must be in reach of the open branch"),
+    ("inverse", {"slider_position": 0.3, "start": 0.1}, "inverse is asked with slider_position, slider_velocity, "),
+    ("swing", {"start": 0.1}, "a swing runs from one crank angle to another; got no end; give both"),
+    (
+        "swing",
+        {"start": 0.1, "slider_end": 0.2},
+        "two places of the slider; got start, slider_end; give the two",
+    ),
+    ("swing", {"start": 0.1, "end": 0.5, "driver": "motor"}, "driver must be 'crank' or 'slider'; got 'motor'"),
+    ("swing", {"start": 0.1, "end": 0.5, "law": ["slow"]}, "law must be 'slow' or "),
+    ("swing", {"start": 0.1, "end": 0.5, "actuator_tolerance": -1e-3}, "actuator_tolerance must be zero or more"),
+    ("swing", {"start": "1 mm", "end": 0.5}, 'start must be an angle; got "1 mm"'),
     ("uneven_speed", {}, "an uneven speed needs a profile; got a constant speed"),
 ]
 

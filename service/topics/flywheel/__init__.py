@@ -10,7 +10,7 @@ FLUCTUATION = Input(
     "Speed fluctuation, at most",
     "Speed fluctuation that the flywheel is for.",
     "0.02",  # pumps and machine tools: 1/30 to 1/50 in textbooks
-    positive=True,
+    sign="positive",
     below=1.0,
 )
 TOPIC = Topic(__name__, 100, "flywheel for a speed --fluctuation", inputs=(FLUCTUATION,))

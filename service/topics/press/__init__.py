@@ -9,14 +9,14 @@ TOUCH = Input(
     LENGTH,
     "Touches its work, before the dead centre",
     "Distance before the dead centre at which a press touches its work.  [default: of the job's slider]",
-    positive=True,
+    sign="positive",
 )
 DWELL = Input(
     "dwell_distance",
     LENGTH,
     "Dwells within",
     "Distance from the dead centre within which a press dwells.  [default: of the job's slider]",
-    positive=True,
+    sign="positive",
     drawn=False,
 )
 RATED = Input(
@@ -24,7 +24,7 @@ RATED = Input(
     TORQUE,
     "Rated torque",
     "Torque that clutch or motor may give at the crank.  [default: peak torque of the design]",
-    positive=True,
+    sign="positive",
 )
 TOPIC = Topic(
     __name__, 46, "force, speed and work of a press before a dead centre, dwell", inputs=(TOUCH, DWELL, RATED)

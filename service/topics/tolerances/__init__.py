@@ -9,7 +9,7 @@ LIMIT = Input(
     LENGTH,
     "Position error, at most",
     "Position error that a machine may have: gives the yield.",
-    positive=True,
+    sign="positive",
     drawn=False,
 )
 TOPIC = Topic(

@@ -4,23 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ...model.machine.mechanism import Mechanism, Window
-from ...model.swing.over import At, Over
-from ...model.swing.summary import SwingSummary
-from ...objectives.keys import kind_of_key
-from ...objectives.kinds import ANGLE, FORCE, POWER, TORQUE
-from ..designs.swing_curves import (
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism, Window
+from ....model.swing.asked import AskedSwing, asked_swing
+from ....model.swing.over import At, Over
+from ....model.swing.summary import SwingSummary, summarise
+from ....model.swing.swing import Swing
+from ....model.swing.words import Side
+from ....objectives.keys import kind_of_key
+from ....objectives.kinds import ANGLE, FORCE, POWER, TORQUE
+from ...designs.shown_units import rows_in
+from ...designs.swing_curves import (
     drive_kind,
     driven,
     error_kind,
     motion_and_drive,
     sizes_of_forces,
+    swing_rows,
 )
-from ..render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
-from ..render.extremes import extremes_table
-from ..text.tables import plain
+from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
+from ...render.extremes import extremes_table
+from ...text.tables import plain
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ....objectives.kinds import System
 
 WITHOUT_LOADS = (
     "the drive is zero: no load acts and no mass weighs or is moved; "
@@ -44,6 +55,40 @@ _TITLES = {
     "energy_back": "energy of the drive, back",
     "stored_energy": "stored forth, without friction",
 }
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str, Any]:
+    """Return the numbers of a swing, ready for JSON. options: the inputs, in SI, with `swing` and `words`.
+
+    Raises `AssemblyError` where the linkage does not close, and as `asked_swing` does.
+    """
+    machine, swing = _asked(mechanism, **options)
+    return swing_record(machine, summarise(machine, linkage, swing))
+
+
+def _asked(
+    mechanism: Mechanism,
+    *,
+    swing: Swing | None,
+    words: Mapping[str, str] | None = None,
+    crank_side: Side | None = None,
+    **inputs: Any,
+) -> tuple[Mechanism, Swing]:
+    return asked_swing(mechanism, swing, AskedSwing(side=crank_side, **inputs), words)
+
+
+def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
+    """Return rows of the curves of both ways."""
+    machine, swing = _asked(mechanism, **options)
+    return rows_in(swing_rows(machine, linkage, swing), units)
+
+
+def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> Figure:
+    """Return the curves of both ways below the machine."""
+    from ...figures.swing import swing_figure
+
+    machine, swing = _asked(mechanism, **options)
+    return swing_figure(machine, linkage, swing, units)
 
 
 def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
@@ -146,7 +191,7 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
     return [*shown, ("held by friction alone, all over", "yes" if record["holds_by_friction"] else "no", "")]
 
 
-def swing_blocks(record: Mapping[str, Any]) -> list[Block]:
+def blocks(record: Mapping[str, Any]) -> list[Block]:
     """Return the numbers of a metric record, and the extremes of its curves."""
     title = heading("Extremes over both ways, crank angles continuous")
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]

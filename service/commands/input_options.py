@@ -1,0 +1,24 @@
+"""Options of the command line for what a topic is asked with."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Annotated, Any
+
+import typer
+
+from ..topics.inputs import Input
+
+
+def option_of(one: Input) -> inspect.Parameter:
+    """Return the option of an input, a text or a word that typer knows."""
+    metavar = None if one.kind is None else one.kind.plain.upper().replace(" ", "_")
+    kind: Any = one.words or str
+    return inspect.Parameter(
+        one.name,
+        inspect.Parameter.KEYWORD_ONLY,
+        default=inspect.Parameter.empty if one.required else None,
+        annotation=Annotated[
+            kind if one.required else kind | None, typer.Option(one.flag, metavar=metavar, help=one.remark)
+        ],
+    )

@@ -1,0 +1,125 @@
+"""Crank angles that put the slider of a design at a position: the record of JSON, in metric units.
+
+Of a crank that swings they are those of its swing: it has no others.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from ....model.errors import AssemblyError
+from ....model.linkage.from_slider import CrankSolution
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.swing.swing import Swing, dead_points, placed, require_swing
+from ....objectives.keys import kind_of_key
+from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
+from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
+
+_NEAR = 1e-9  # rad, beyond an end of a swing: rounding
+UNDEFINED = "at a dead centre a slider at rest goes with any crank speed: crank speed and acceleration are undefined"
+"""Reason why there is no crank speed where a slider velocity is given."""
+
+
+_GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
+
+
+def numbers(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    swing: Swing | None,
+    words: object = None,
+    slider_position: float,
+    slider_velocity: float | None = None,
+    slider_acceleration: float | None = None,
+) -> dict[str, Any]:
+    """Return dimensions, slider motion and every solution with keys that carry their units, and a note.
+
+    The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. Of a crank that swings the angles of
+    its swing alone count. null: what is not asked for, and what a dead centre leaves undefined; the note then says so.
+    Raises what `Linkage.from_slider` and `require_swing` raise, and `AssemblyError` for a position beyond the swing.
+    """
+    every = linkage.from_slider(slider_position, velocity=slider_velocity, acceleration=slider_acceleration)
+    found, said = every, []
+    if swing is not None:
+        own = require_swing(mechanism, linkage, swing)
+        swing = placed(mechanism, own, swing)
+        found = _within(every, swing)
+        ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
+        if not found:
+            places = sorted(1e3 * float(own.at(angle).slider_position) for angle in _turning_angles(own, swing))
+            raise AssemblyError(
+                f"the slider stays between {places[0]:.9g} and {places[-1]:.9g} mm while the crank swings {ends}; got "
+                f"{1e3 * slider_position:.9g} mm; take a position between"
+            )
+        if len(found) < len(every):
+            other = "one other crank angle that gives it lies" if len(every) - len(found) == 1 else "others lie"
+            said.append(f"{other} outside of the swing {ends}")
+    if slider_velocity is not None and any(each.speed is None for each in found):
+        said.append(UNDEFINED)
+    return {
+        **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
+        "branch": linkage.branch,
+        "slider_position_mm": 1e3 * slider_position,
+        "slider_velocity_m_s": slider_velocity,
+        "slider_acceleration_m_s2": slider_acceleration,
+        "solutions": [_solution(each) for each in found],
+        "note": "; ".join(said),
+    }
+
+
+def _within(found: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
+    """Return the solutions of a swing between crank angles, their angles as it has them."""
+    kept = []
+    for each in found:
+        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.inside(each.crank_angle + near)]
+        kept += [replace(each, crank_angle=angles[0])] if angles else []
+    return tuple(sorted(kept, key=lambda each: each.crank_angle))
+
+
+def _turning_angles(own: Linkage, swing: Swing) -> list[float]:
+    """Return the ends of a swing, and where the slider turns back within."""
+    return [swing.start, swing.end, *(angle for dead in dead_points(own) for angle in swing.inside(dead))]
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.6g}"
+
+
+def blocks(record: dict[str, Any]) -> list[Block]:
+    """Return the slider's motion and the crank angles."""
+    given = [
+        words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=recorded(record, key))
+        for key in _GIVEN
+        if record[key] is not None
+    ]
+    asked = [
+        (key, column(title, kind))
+        for key, title, kind, of in (
+            ("crank_speed_rpm", "crank speed", ANGULAR_SPEED, "slider_velocity_m_s"),
+            ("crank_acceleration_rad_s2", "crank acceleration", ANGULAR_ACCELERATION, "slider_acceleration_m_s2"),
+        )
+        if record[of] is not None
+    ]
+    rows = []
+    for solution in record["solutions"]:
+        _, stroke, *_ = solution.values()
+        rates = (recorded(solution, key) for key, _ in asked)
+        rows.append((recorded(solution, "crank_angle_deg"), stroke or "dead centre", *rates))
+    heads = (column("crank angle", ANGLE), column("stroke, counter-clockwise", left=True))
+    return [
+        sentence("slider: {given}", given=joined(given)),
+        Table((*heads, *(head for _, head in asked)), tuple(rows), ruled=True),
+    ]
+
+
+def _solution(found: CrankSolution) -> dict[str, Any]:
+    return {
+        "crank_angle_deg": ANGLE.metric.factor * found.crank_angle,
+        "stroke": found.stroke,
+        "crank_speed_rpm": None if found.speed is None else ANGULAR_SPEED.metric.factor * found.speed,
+        "crank_acceleration_rad_s2": found.acceleration,
+    }
