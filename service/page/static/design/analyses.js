@@ -7,9 +7,9 @@ import { measured } from "../lib/measured.js";
 import { apiSystem, unitOf } from "../lib/numbers.js";
 import { beforePrinting } from "../lib/printing.js";
 import { capital, inWords } from "../lib/words.js";
-import { scrolled } from "./numbers.js";
 import { proof } from "./proof.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { headsOf, scrolledTable } from "../lib/table.js";
 
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
@@ -233,43 +233,18 @@ function asking(inputs, ask) {
 /** @param {Api.Told} block */
 function block({ sentence, heading, heads, right, rows }) {
   if (!rows.length) return h(heading ? "h3" : "p", {}, sentence);
-  /** @param {number} n */
-  const side = (n) => (right[n] ? "number" : null);
-  const head =
-    heads.some(Boolean) &&
+  const lines = rows.map((cells) =>
     h(
-      "thead",
+      "tr",
       {},
-      h(
-        "tr",
-        {},
-        heads.map((title, n) =>
-          h(title ? "th" : "td", { scope: title ? "col" : null, class: side(n) }, title),
-        ),
-      ),
-    );
-  return scrolled(
-    "Numbers of the analysis",
-    h(
-      "table",
-      {},
-      h("caption", { class: "hidden" }, "Numbers of the analysis"),
-      head,
-      h(
-        "tbody",
-        {},
-        rows.map((cells) =>
-          h(
-            "tr",
-            {},
-            cells.map((cell, n) =>
-              n
-                ? h("td", { class: side(n) }, cell)
-                : h("th", { scope: "row", class: side(n) }, cell),
-            ),
-          ),
-        ),
+      cells.map((cell, n) =>
+        h(n ? "td" : "th", { scope: n ? null : "row", class: right[n] ? "number" : null }, cell),
       ),
     ),
+  );
+  return scrolledTable(
+    "Numbers of the analysis",
+    heads.some(Boolean) && headsOf(heads, (n) => right[n]),
+    lines,
   );
 }

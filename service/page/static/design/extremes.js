@@ -2,7 +2,7 @@
 
 import { fill, h } from "../lib/dom.js";
 import { text, unitOf, valueOf } from "../lib/numbers.js";
-import { scrolled } from "./numbers.js";
+import { headsOf, scrolled, table } from "../lib/table.js";
 
 const ENDS = ["least", "greatest"];
 /** Heads of a table of the extremes of curves. */
@@ -86,7 +86,7 @@ export function endsOf(found, { curveColumns, sliderEnds: [inner], turns }) {
 
 /** @param {Api.Extremes} found */
 function curves({ curves: every }) {
-  return table("Extremes of every curve", HEADS, extremeRows(every));
+  return numbersTable("Extremes of every curve", HEADS, extremeRows(every));
 }
 
 /** Return a row for each curve. @param {Api.Extremes["curves"]} every */
@@ -120,7 +120,11 @@ function strokes({ strokes: both }) {
       cell(both, ratio),
     ),
   );
-  return table("Outward and inward stroke", ["Stroke", ...STROKES, "difference", "ratio"], rows);
+  return numbersTable(
+    "Outward and inward stroke",
+    ["Stroke", ...STROKES, "difference", "ratio"],
+    rows,
+  );
 }
 
 /** @param {Record<string, unknown>} record @param {string} name @param {{ withUnit?: boolean }} looks */
@@ -137,26 +141,7 @@ function cell(record, name, { withUnit = false } = {}) {
 }
 
 /** Return a table of numbers. @param {string} caption @param {readonly string[]} heads @param {Node[]} rows */
-export function table(caption, heads, rows) {
-  return h(
-    "table",
-    {},
-    h("caption", { class: "hidden" }, caption),
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        heads.map((head, n) =>
-          h(
-            "th",
-            { scope: "col", class: n && !["Unit", "Where"].includes(head) ? "number" : null },
-            head,
-          ),
-        ),
-      ),
-    ),
-    h("tbody", {}, rows),
-  );
+export function numbersTable(caption, heads, rows) {
+  const cells = headsOf(heads, (n) => n && !["Unit", "Where"].includes(heads[n]));
+  return table(caption, cells, rows);
 }

@@ -4,6 +4,7 @@ import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { text, unitOf, withUnit } from "../lib/numbers.js";
 import { groupsOf } from "./groups.js";
+import { scrolled, scrolledTable } from "../lib/table.js";
 
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
 
@@ -153,11 +154,6 @@ function heading({ name, series }) {
   return h("th", { scope: "col", class: "number", "data-series": series }, name);
 }
 
-/** Return a node within a region that scrolls sideways, by keyboard, too. @param {string} label @param {Element} node */
-export function scrolled(label, node) {
-  return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
-}
-
 /** @param {Shown[]} designs @param {Api.Requirement[]} requirements @param {string | null | undefined} slow @param {Record<string, string>} names */
 function limits(designs, requirements, slow, names) {
   const ofStroke =
@@ -201,27 +197,16 @@ function limits(designs, requirements, slow, names) {
       ]),
     );
   });
-  const head = h(
-    "tr",
-    {},
+  const heads = [
     h("th", { scope: "col" }, "Requirement"),
     designs.map((one) => [heading(one), h("th", { scope: "col" }, "how close")]),
-  );
+  ];
   return h(
     "section",
     { class: "panel group limits" },
     h("h3", {}, "Requirements of the job"),
     requirements.length || slow
-      ? scrolled(
-          "Requirements of the job",
-          h(
-            "table",
-            {},
-            h("caption", { class: "hidden" }, "Requirements of the job"),
-            h("thead", {}, head),
-            h("tbody", {}, ofStroke, rows),
-          ),
-        )
+      ? scrolledTable("Requirements of the job", heads, [ofStroke, rows])
       : h("p", { class: "quiet" }, "The job sets none."),
   );
 }

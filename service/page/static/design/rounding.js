@@ -7,8 +7,9 @@ import { read } from "../lib/typed.js";
 import { kindOf, measureOf } from "../lib/units.js";
 import { capital } from "../lib/words.js";
 import { rankOf } from "./standing.js";
-import { difference, scrolled } from "./numbers.js";
+import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { headsOf, scrolledTable } from "../lib/table.js";
 
 const USUAL = { si: "0.5", inch: "1/64" }; // mm, in: what drawings and stock are made to
 const COUNT = 5;
@@ -154,7 +155,7 @@ export function rounding(
   /** @param {Api.Rounded} found */
   function tell(found) {
     const heads = [
-      "",
+      h("span", { class: "hidden" }, "Apply"),
       ...numbers.map(({ title }) => capital(title)),
       ...objectives.map(({ title }) => title),
       "Requirements",
@@ -191,29 +192,10 @@ export function rounding(
       answer,
       h("p", { class: found.met ? null : "bad" }, `${inShownUnits(capital(found.message))}.`),
       found.designs.length > 0 &&
-        scrolled(
+        scrolledTable(
           "Round numbers and what they cost",
-          h(
-            "table",
-            {},
-            h("caption", { class: "hidden" }, "Round numbers and what they cost"),
-            h(
-              "thead",
-              {},
-              h(
-                "tr",
-                {},
-                heads.map((title, n) =>
-                  h(
-                    "th",
-                    { scope: "col", class: n && n < heads.length - 1 ? "number" : null },
-                    title || h("span", { class: "hidden" }, "Apply"),
-                  ),
-                ),
-              ),
-            ),
-            h("tbody", {}, lines),
-          ),
+          headsOf(heads, (n) => n && n < heads.length - 1),
+          lines,
         ),
       found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)),
     );

@@ -3,10 +3,10 @@
 import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { readySystem, text, unitOf, valueOf } from "../lib/numbers.js";
-import { extremeRows, HEADS, table } from "./extremes.js";
-import { scrolled } from "./numbers.js";
+import { extremeRows, HEADS, numbersTable } from "./extremes.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
+import { scrolled } from "../lib/table.js";
 
 /** @type {Record<string, string>} */
 const TITLES = {
@@ -42,7 +42,7 @@ export async function swinging(place, { job, number, signal }) {
         h("h3", {}, "Extremes over both ways"),
         scrolled(
           "Extremes of every curve",
-          table("Extremes of every curve", HEADS, extremeRows(found.extremes)),
+          numbersTable("Extremes of every curve", HEADS, extremeRows(found.extremes)),
         ),
         found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)),
       );
@@ -96,7 +96,7 @@ function numbers(found) {
       ),
     ];
   });
-  return table("Numbers of the swing", ["Number", "value", "Unit", "Where"], rows);
+  return numbersTable("Numbers of the swing", ["Number", "value", "Unit", "Where"], rows);
 }
 
 /** Return a key without its unit. @param {string} key */

@@ -4,9 +4,9 @@ import { get, isAbort } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
-import { scrolled } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
+import { headsOf, scrolledTable } from "../lib/table.js";
 
 /** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
 /** @type {[Key, string, string][]} */
@@ -175,29 +175,10 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
     );
     fill(
       answer,
-      scrolled(
+      scrolledTable(
         "Crank angles found",
-        h(
-          "table",
-          {},
-          h("caption", { class: "hidden" }, "Crank angles found"),
-          h(
-            "thead",
-            {},
-            h(
-              "tr",
-              {},
-              heads.map((head, n) =>
-                h(
-                  head ? "th" : "td",
-                  { scope: head ? "col" : null, class: n !== 1 && head ? "number" : null },
-                  head,
-                ),
-              ),
-            ),
-          ),
-          h("tbody", {}, rows),
-        ),
+        headsOf(heads, (n) => n !== 1 && heads[n]),
+        rows,
       ),
       h(
         "p",

@@ -11,6 +11,7 @@ import { lengthsOf } from "./loading.js";
 import { keeping } from "./keeping.js";
 import { rankOf } from "./standing.js";
 import { sentenceOf } from "../lib/refusals.js";
+import { headsOf, table } from "../lib/table.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
 const LENGTHS = [
@@ -392,23 +393,10 @@ function comparison(objectives, before, after) {
       ),
     );
   });
-  return h(
-    "table",
-    { class: "before-after" },
-    h("caption", { class: "hidden" }, "Objectives before and after the change"),
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        ["Objective", "before", "after", "change"].map((title, n) =>
-          h("th", { scope: "col", class: n === 1 || n === 2 ? "number" : null }, title),
-        ),
-      ),
-    ),
-    h("tbody", {}, rows),
-  );
+  const heads = headsOf(["Objective", "before", "after", "change"], (n) => n === 1 || n === 2);
+  const found = table("Objectives before and after the change", heads, rows);
+  found.classList.add("before-after");
+  return found;
 }
 
 /** @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {Api.Objective[]} objectives @param {string} job */

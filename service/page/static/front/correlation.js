@@ -2,6 +2,7 @@
 
 import { fill, h } from "../lib/dom.js";
 import { capital } from "../lib/words.js";
+import { headsOf, table } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -132,21 +133,10 @@ export function correlations(explorer) {
     );
     fill(
       matrix,
-      h(
-        "table",
-        {},
-        h("caption", { class: "hidden" }, "Rank correlation of every pair of objectives"),
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            h("td", {}),
-            columns.slice(0, -1).map(({ title }) => h("th", { scope: "col" }, title)),
-          ),
-        ),
-        h("tbody", {}, rows),
+      table(
+        "Rank correlation of every pair of objectives",
+        headsOf(["", ...columns.slice(0, -1).map(({ title }) => title)], () => false),
+        rows,
       ),
     );
   }

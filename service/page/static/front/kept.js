@@ -8,6 +8,7 @@ import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
 import { searching } from "../design/keeping.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
+import { headsOf, table as tableOf } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -256,8 +257,10 @@ export function keptPanel(explorer) {
       ],
     );
     why.hidden = !decided;
+    /** @param {string} title */
+    const unseen = (title) => h("span", { class: "hidden" }, title);
     const heads = [
-      "",
+      unseen("Star"),
       "name",
       ...data.objectives.map(({ title }) => title),
       "note",
@@ -266,40 +269,16 @@ export function keptPanel(explorer) {
       "crank",
       "rod",
       "offset",
-      "",
-      "",
+      unseen("Search near"),
+      unseen("Drop"),
     ];
     const words = 2 + data.objectives.length; // where those that are no numbers begin
     fill(
       table,
-      h(
-        "table",
-        {},
-        h("caption", { class: "hidden" }, "Kept designs"),
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            heads.map((title, n) =>
-              h(
-                "th",
-                {
-                  scope: "col",
-                  class: n > 1 && (n < words || n > words + 2) && title ? "number" : null,
-                },
-                title ||
-                  h(
-                    "span",
-                    { class: "hidden" },
-                    n ? (n < heads.length - 1 ? "Search near" : "Drop") : "Star",
-                  ),
-              ),
-            ),
-          ),
-        ),
-        h("tbody", {}, shown.map(line)),
+      tableOf(
+        "Kept designs",
+        headsOf(heads, (n) => n > 1 && (n < words || n > words + 2) && n < heads.length - 2),
+        shown.map(line),
       ),
     );
     if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();

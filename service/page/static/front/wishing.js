@@ -12,6 +12,7 @@ import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
+import { headsOf, scrolledTable } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
@@ -355,73 +356,34 @@ export function wishingPanel(explorer) {
         ),
       );
     });
-    return h(
-      "div",
-      { class: "scroll", tabindex: 0, role: "region", "aria-label": "Wished and reached" },
-      h(
-        "table",
-        {},
-        h("caption", { class: "hidden" }, "Wished and reached"),
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            h("th", { scope: "col" }, "Objective"),
-            h("th", { scope: "col", class: "number" }, "wished"),
-            h("th", { scope: "col", class: "number" }, "reached"),
-            h("th", { scope: "col" }, h("span", { class: "hidden" }, "met")),
-            h("th", { scope: "col", class: "number" }, "against ", nearby),
-          ),
-        ),
-        h("tbody", {}, lines),
+    const unseen = h("span", { class: "hidden" }, "met");
+    return scrolledTable(
+      "Wished and reached",
+      headsOf(
+        ["Objective", "wished", "reached", unseen, ["against ", nearby]],
+        (n) => n && n !== 3,
       ),
+      lines,
     );
   }
 
   /** @param {Api.Wished} given @param {Api.Row} wished */
   function numbers({ columns }, wished) {
     const shown = columns.filter(({ key }) => !key.startsWith("slack_"));
-    return h(
-      "div",
-      {
-        class: "scroll",
-        tabindex: 0,
-        role: "region",
-        "aria-label": "All numbers of the wished design",
-      },
-      h(
-        "table",
-        {},
-        h("caption", { class: "hidden" }, "All numbers of the wished design"),
+    return scrolledTable(
+      "All numbers of the wished design",
+      headsOf(["Quantity", "wished design", `design ${near}`], (n) => n),
+      shown.map(({ key, title, unit }) =>
         h(
-          "thead",
+          "tr",
           {},
+          h("th", { scope: "row" }, title),
           h(
-            "tr",
-            {},
-            ["Quantity", "wished design", `design ${near}`].map((title, n) =>
-              h("th", { scope: "col", class: n ? "number" : null }, title),
-            ),
+            "td",
+            { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") },
+            withUnit(wished[key], unit),
           ),
-        ),
-        h(
-          "tbody",
-          {},
-          shown.map(({ key, title, unit }) =>
-            h(
-              "tr",
-              {},
-              h("th", { scope: "row" }, title),
-              h(
-                "td",
-                { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") },
-                withUnit(wished[key], unit),
-              ),
-              h("td", { class: "number quiet" }, withUnit(beside[key], unit)),
-            ),
-          ),
+          h("td", { class: "number quiet" }, withUnit(beside[key], unit)),
         ),
       ),
     );

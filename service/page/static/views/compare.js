@@ -9,6 +9,7 @@ import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
+import { headsOf, table as tableOf } from "../lib/table.js";
 
 export const title = "Compare runs";
 
@@ -170,39 +171,29 @@ export async function show(place, { query, signal }) {
       );
     fill(
       table,
-      h(
-        "table",
-        {},
-        h("caption", { class: "hidden" }, "Runs side by side"),
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            h("td", {}),
-            runs.map(({ job }, index) =>
-              h(
-                "th",
-                { scope: "col", class: "number" },
-                sign(index),
-                " ",
-                h("a", { href: link(["jobs", job.id]) }, job.name),
-                h("div", { class: "quiet" }, `run ${job.id}`),
-              ),
+      tableOf(
+        "Runs side by side",
+        [
+          h("td", {}),
+          runs.map(({ job }, index) =>
+            h(
+              "th",
+              { scope: "col", class: "number" },
+              sign(index),
+              " ",
+              h("a", { href: link(["jobs", job.id]) }, job.name),
+              h("div", { class: "quiet" }, `run ${job.id}`),
             ),
           ),
-        ),
-        h(
-          "tbody",
-          {},
+        ],
+        [
           plain("state", ({ job }) => badge(job)),
           rows,
           plain("designs", ({ front }) => grouped(front.count)),
           plain("evaluated", ({ front }) => grouped(front.evaluations)),
           plain("time", ({ front }) => withUnit(front.seconds, "s", 3)),
           plain("seed", ({ front }) => String(front.seed)),
-        ),
+        ],
       ),
     );
   }
@@ -231,30 +222,15 @@ export async function show(place, { query, signal }) {
         );
       fill(
         differences,
-        h(
-          "table",
-          {},
-          h("caption", { class: "hidden" }, "What differs between the jobs"),
-          h(
-            "thead",
-            {},
+        tableOf(
+          "What differs between the jobs",
+          headsOf(["Place in the job", ...runs.map(({ job }) => `run ${job.id}`)], () => false),
+          found.differences.map(({ place, values }) =>
             h(
               "tr",
               {},
-              h("th", { scope: "col" }, "Place in the job"),
-              runs.map(({ job }) => h("th", { scope: "col" }, `run ${job.id}`)),
-            ),
-          ),
-          h(
-            "tbody",
-            {},
-            found.differences.map(({ place, values }) =>
-              h(
-                "tr",
-                {},
-                h("th", { scope: "row" }, place),
-                values.map((value) => h("td", {}, value ?? "–")),
-              ),
+              h("th", { scope: "row" }, place),
+              values.map((value) => h("td", {}, value ?? "–")),
             ),
           ),
         ),

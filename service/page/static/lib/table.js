@@ -1,0 +1,38 @@
+/** Tables: a caption for who does not see what stands above, a row of heads, and rows. */
+
+import { h } from "./dom.js";
+
+/** Return a table. heads: cells, none without. @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows */
+export function table(caption, heads, rows) {
+  return h(
+    "table",
+    {},
+    h("caption", { class: "hidden" }, caption),
+    heads && h("thead", {}, h("tr", {}, heads)),
+    h("tbody", {}, rows),
+  );
+}
+
+/**
+ * Return the heads of columns; a column without a title has an empty cell.
+ * @param {readonly Dom.Child[]} titles @param {(n: number) => unknown} isNumber whether column n has numbers
+ */
+export function headsOf(titles, isNumber) {
+  return titles.map((title, n) =>
+    h(
+      title ? "th" : "td",
+      { scope: title ? "col" : null, class: isNumber(n) ? "number" : null },
+      title,
+    ),
+  );
+}
+
+/** Return a node within a region that scrolls sideways, by keyboard, too. @param {string} label @param {Element} node */
+export function scrolled(label, node) {
+  return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
+}
+
+/** Return such a region with a table of the same name. @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows */
+export function scrolledTable(caption, heads, rows) {
+  return scrolled(caption, table(caption, heads, rows));
+}
