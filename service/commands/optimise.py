@@ -7,7 +7,7 @@ import shlex
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,7 +20,7 @@ from ...objectives.kinds import System
 from ..designs.shown_units import result_in
 from ..designs.violations import front_violations_in_words
 from ..jobs.stores import FILE, Address, open_store
-from ..runs.result import Result, json_text, result_of
+from ..runs.result import Result, json_text
 from ..runs.run_folder import RunFolder, disk, runs_place
 from ..text.options import Json, Runs, Units
 from ..text.screen import console, give, progress_bar, say, waiting
@@ -29,11 +29,9 @@ from ..workers.engines import EngineOptions, engine_of
 from .ending import EXIT_CODES, INTERRUPTED, Interruption
 
 if TYPE_CHECKING:
-    from ...optimise.engine.engine import Engine
     from ...optimise.front.front import ParetoFront
-    from ...optimise.front.progress import Progress
     from ...optimise.problem.problem import Problem
-    from ..store import Claim, Store
+    from ..store import Artefact, Store
 
 _FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
 _SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
@@ -96,10 +94,8 @@ def optimise(
     from ...model.kernel.disk import compile_ahead
 
     compile_ahead(*_SEARCH)
-    from ..jobs.own_run import told
     from ..store.address import without_secrets
-    from ..workers.heartbeat import Heartbeat
-    from ..workers.worker import versions_file
+    from ..workers.own_search import keep_front, kept_alive, new_run, resumed_run, search
 
     if (job is None) == (resume is None):
         raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
@@ -111,30 +107,22 @@ def optimise(
     with contextlib.ExitStack() as opened:
         listed = True
         if job is not None:
-            problem, tables = _problem(job, settings)
+            problem, tables, files = _problem(job, settings)
             jobs, listed = opened.enter_context(_store_or_own(places))
-            begin = _new(job, jobs, problem, tables, place)
+            begin = new_run(jobs, place, problem, tables, files)
         else:
             jobs = opened.enter_context(open_store(places.store, places.runs))
-            begin = _again(resume or "", jobs, place)
+            begin = resumed_run(jobs, place, resume or "", _problem_again)
         interruption = opened.enter_context(Interruption())
-        run, problem, claim = opened.enter_context(begin)
+        run, problem, claim = found = opened.enter_context(begin)
         again = places.command_again(claim.job.run) if listed else ""
-        opened.enter_context(told(claim, again=again))
-        opened.enter_context(Heartbeat(claim))
+        opened.enter_context(kept_alive(claim, again=again))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
-        front = _solve(problem, run, interruption, claim, opened.enter_context(engine_of(options)))
+        with progress_bar() as show:
+            front = search(found, opened.enter_context(engine_of(options)), cancelled=interruption.asked, show=show)
         with waiting("writing the designs"):
-            result = result_of(front, path_text(run.path))
-            versions = dict(front.versions)
-            if is_installed("matplotlib"):
-                from importlib.metadata import version
-
-                versions["matplotlib"] = version("matplotlib")
-            run.keep_result(result, versions)
-            claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
-        run.log(f"{result.status}: {result.message}")
+            result = keep_front(found, front)
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
         shown, lost = result_in(result, units, problem), None
         try:
@@ -176,37 +164,6 @@ def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
         yield store, listed
 
 
-@contextlib.contextmanager
-def _new(
-    job: Path, store: Store, problem: Problem, tables: Mapping[str, Any], place: Path
-) -> Iterator[tuple[RunFolder, Problem, Claim]]:
-    """Enter the run of a new job."""
-    from ...optimise.job import files_beside
-    from ..jobs.own_run import begin, files_of
-
-    with disk(job.parent):
-        files = files_of(job, files_beside(job))
-    with RunFolder(place, problem.name) as folder:
-        yield folder, problem, begin(store, folder, tables, problem.name, files)
-
-
-@contextlib.contextmanager
-def _again(text: str, store: Store, place: Path) -> Iterator[tuple[RunFolder, Problem, Claim]]:
-    """Enter a run that was stopped."""
-    from ...optimise.job import parse_job
-    from ...optimise.solve import require_own_records
-    from ..jobs.own_run import folder_of, stopped_job, take_up, told
-
-    job = stopped_job(store, text, place)
-    with folder_of(store, job, place) as folder:
-        problem = parse_job(store.tables(job.id), folder=folder.path)
-        require_own_records(problem, store.records(job.id))
-        claim = take_up(store, job)
-        with told(claim):
-            folder.go_on()
-        yield folder, problem, claim
-
-
 def show_result(result: Result) -> None:
     """Write what a run found: the front as a table, and what the knee costs."""
     screen = console()
@@ -236,44 +193,25 @@ def show_files(run: Path) -> None:
         screen.print(f"  {', '.join(listed)}", soft_wrap=True)
 
 
-def _problem(job: Path, given: SettingOptions) -> tuple[Problem, dict[str, Any]]:
-    """Return the problem of a job file and its tables, both with the options that were given."""
-    from ...optimise.job import load_job, read_job
+def _problem(job: Path, given: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
+    """Return the problem of a job file and its tables, both with the options that were given, and its files."""
+    from ...optimise.job import files_beside, load_job, read_job
     from ...optimise.job.notes import notes_of
+    from ..jobs.own_run import files_of
+    from ..workers.own_search import with_settings
 
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):
         say(f"note: {note}")
-    settings = replace(problem.settings, **given.given)
-    used = {"designs": settings.designs, "seed": settings.seed}
-    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **used}}
+    with disk(job.parent):
+        files = files_of(job, files_beside(job))
+    return *with_settings(problem, tables, given.given), files
 
 
-def _solve(problem: Problem, run: RunFolder, interruption: Interruption, claim: Claim, engine: Engine) -> ParetoFront:
-    from ...optimise.solve import solve
+def _problem_again(tables: Mapping[str, Any], folder: Path) -> Problem:
+    from ...optimise.job import parse_job
 
-    with progress_bar() as show:
-
-        def tell(at: Progress) -> None:
-            claim.tell(at)
-            show(at)
-
-        def tell_and_log(at: Progress) -> None:
-            tell(at)
-            run.log(
-                f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
-                f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
-            )
-
-        return solve(
-            problem,
-            progress=tell_and_log,
-            stages=tell,
-            cancelled=lambda: interruption.asked() or claim.cancel_asked,
-            resume=tuple(claim.records()),
-            keep=claim.keep,
-            engine=engine,
-        )
+    return parse_job(tables, folder=folder)
 
 
 def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:

@@ -1,0 +1,113 @@
+"""A search by the process at hand: its job is claimed in the store, and its run folder written meanwhile."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...model.extras import is_installed
+from ...model.file_names import path_text
+from ..jobs.own_run import begin, folder_of, stopped_job, take_up, told
+from ..runs.result import Result, result_of
+from ..runs.run_folder import RunFolder
+from .heartbeat import Heartbeat
+from .worker import versions_file
+
+if TYPE_CHECKING:
+    from ...optimise.engine.engine import Engine
+    from ...optimise.front.front import ParetoFront
+    from ...optimise.front.progress import Progress
+    from ...optimise.problem.problem import Problem
+    from ..store import Artefact, Claim, Store
+
+Opened = tuple[RunFolder, "Problem", "Claim"]
+
+
+def with_settings(
+    problem: Problem, tables: Mapping[str, Any], given: Mapping[str, Any]
+) -> tuple[Problem, dict[str, Any]]:
+    """Return a problem and the tables that state it with other settings: designs, seed."""
+    settings = replace(problem.settings, **given)
+    used = {"designs": settings.designs, "seed": settings.seed}
+    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **used}}
+
+
+@contextlib.contextmanager
+def new_run(
+    store: Store, place: Path, problem: Problem, tables: Mapping[str, Any], files: Sequence[Artefact]
+) -> Iterator[Opened]:
+    """Enter the run of a new job. files: the job and what it names, as the run folder keeps them."""
+    with RunFolder(place, problem.name) as folder:
+        yield folder, problem, begin(store, folder, tables, problem.name, files)
+
+
+@contextlib.contextmanager
+def resumed_run(
+    store: Store, place: Path, text: str, read: Callable[[Mapping[str, Any], Path], Problem]
+) -> Iterator[Opened]:
+    """Enter a run that was stopped. text: its name or number. read: gives the problem of a job and its run folder."""
+    from ...optimise.solve import require_own_records
+
+    job = stopped_job(store, text, place)
+    with folder_of(store, job, place) as folder:
+        problem = read(store.tables(job.id), folder.path)
+        require_own_records(problem, store.records(job.id))
+        claim = take_up(store, job)
+        with told(claim):
+            folder.go_on()
+        yield folder, problem, claim
+
+
+@contextlib.contextmanager
+def kept_alive(claim: Claim, *, again: str) -> Iterator[None]:
+    """While entered, the claim is renewed, and an error ends its job; see `told`. again: how the run goes on."""
+    with told(claim, again=again), Heartbeat(claim):
+        yield
+
+
+def search(
+    opened: Opened, engine: Engine, *, cancelled: Callable[[], bool], show: Callable[[Progress], None]
+) -> ParetoFront:
+    """Return the front of an open run. show: hears of the progress, which store and log hear of too."""
+    from ...optimise.solve import solve
+
+    run, problem, claim = opened
+
+    def tell(at: Progress) -> None:
+        claim.tell(at)
+        show(at)
+
+    def tell_and_log(at: Progress) -> None:
+        tell(at)
+        run.log(
+            f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
+            f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
+        )
+
+    return solve(
+        problem,
+        progress=tell_and_log,
+        stages=tell,
+        cancelled=lambda: cancelled() or claim.cancel_asked,
+        resume=tuple(claim.records()),
+        keep=claim.keep,
+        engine=engine,
+    )
+
+
+def keep_front(opened: Opened, front: ParetoFront) -> Result:
+    """Write the result of a search into its run folder and the store, and return it."""
+    run, _, claim = opened
+    result = result_of(front, path_text(run.path))
+    versions = dict(front.versions)
+    if is_installed("matplotlib"):
+        from importlib.metadata import version
+
+        versions["matplotlib"] = version("matplotlib")
+    run.keep_result(result, versions)
+    claim.finish(replace(result, run=claim.job.run), [versions_file(versions)])
+    run.log(f"{result.status}: {result.message}")
+    return result
