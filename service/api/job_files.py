@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import as_file, files
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Response
@@ -15,8 +14,8 @@ from pydantic import BaseModel, Field
 
 from ...model.linkage.linkage import Linkage
 from ...optimise.problem.problem import Problem
-from .. import presets
 from ..presets.designs import DESIGNS, Design
+from ..presets.jobs import shipped_jobs
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
 from .job_requests import EXAMPLE, TOML, Asked, asked_for, given_problem
@@ -121,12 +120,6 @@ def list_presets() -> PresetList:
 
 @cache
 def _presets() -> PresetList:
-    """Return the files of runs/, which every installation carries."""
-    from ...optimise.job import read_job
-
-    with as_file(files(presets)) as folder:
-        # With the catalogues that lie beside them: who starts from one has no such file.
-        jobs = {file.stem: read_job(file) for file in folder.glob("*.toml")}
     return PresetList(
         presets=[
             PresetModel(
@@ -136,7 +129,7 @@ def _presets() -> PresetList:
                 job=job,
                 design=_drawn(job, DESIGNS[name]),
             )
-            for name, job in sorted(jobs.items())
+            for name, job in shipped_jobs().items()
         ]
     )
 
@@ -196,7 +189,6 @@ def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
     """Return a problem in words, as it was understood from the tables that state it."""
-    from ...optimise.job.notes import notes_of, sources_of
-    from ..text.summary import summarise
+    from ..text.summary import job_in_words
 
-    return Understood(**summarise(problem), files=sources_of(tables), notes=notes_of(tables))
+    return Understood(**job_in_words(problem, tables))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...objectives.formula.expression import ARGUMENTS
-from ...objectives.kinds import KINDS, LENGTH, SHOWN, shown_in
-from ...objectives.quantity import MECHANICS, Group, Quantity
+from ...objectives.kinds import KINDS, SHOWN, shown_in
+from ..designs.quantity_facts import facts_of_all
 from ..topics.discovery import TOPICS
 from ..topics.topic import Topic
 
@@ -153,10 +151,8 @@ def list_units() -> UnitTable:
 @router.get("/quantities")
 def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and where it comes from."""
-    from ...objectives.registry import FACTS
-
     return QuantityList(
-        quantities=[*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())],
+        quantities=[QuantityModel(**facts) for facts in facts_of_all()],
         functions=[FunctionModel(name=name, least=least, most=most) for name, (least, most) in ARGUMENTS.items()],
     )
 
@@ -171,60 +167,3 @@ def _topic(of: Topic) -> TopicModel:
     inputs = [InputModel(key=one.key, title=one.title, unit=one.unit.symbol, usual=one.usual) for one in of.inputs]
     title = of.name.replace("_", " ").capitalize()
     return TopicModel(name=of.name, title=title, shows=of.shows, inputs=inputs)
-
-
-_STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")
-"""Facts of a quantity that are sent as they are."""
-
-
-def _quantity(of: Quantity) -> QuantityModel:
-    return QuantityModel(
-        **{fact: getattr(of, fact) for fact in _STATED},
-        offered=list(of.offered),
-        column=of.field,
-        unit=of.unit.symbol,
-        kind=of.kind.plain,
-        group=of.group.value,
-        motion="swing" if of.table == "motion" else "turn" if of.turning else "",
-    )
-
-
-_LENGTH: dict[str, Any] = {
-    **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
-    **{"better": "", "allowed_by": "", "offered": [], "motion": ""},
-}
-"""Facts that the dimensions have in common."""
-
-
-def _dimension(name: str) -> QuantityModel:
-    told: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
-    return QuantityModel(name=name, picture=name, column=name + LENGTH.metric.suffix, **told, **_LENGTH)
-
-
-_TOLD = ("title", "section", "sentence", "advice", "formula")
-_DIMENSIONS = {
-    "crank": (
-        "crank",
-        "2. Closed forms",
-        "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
-        "It sets the stroke, which is twice the crank without offset and a little more with one.",
-        "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
-    ),
-    "rod": (
-        "connecting rod",
-        "2. Closed forms",
-        "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
-        "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
-        "l; the crank turns fully if l > r + |e|",
-    ),
-    "offset": (
-        "offset",
-        "1. Notation and signs",
-        "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-        "direction, on the crossed branch to its right; it makes the crank turn further in one stroke than in the "
-        "other.",
-        "The greater the offset, the higher the time ratio at constant speed and the smaller the transmission angle.",
-        "e; the slider line is y = e",
-    ),
-}
-"""What is told of each dimension: `_TOLD`."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +12,6 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import System
 from ..designs.requirements import judged
-from ..designs.shown_units import record_in, row_in
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -29,9 +28,8 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, give, say, waiting
-from ..text.tables import show_design, show_rules, show_undefined, show_violated
 from ..topics.design_analysis import analysis_of, numbers_of
-from ..topics.discovery import ALL, INPUTS, TOLD_THERE, TOPIC_OF, TOPICS, chosen_topics
+from ..topics.discovery import ALL, INPUTS, TOPIC_OF, TOPICS, chosen_topics
 from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
 from .input_options import option_of
@@ -121,21 +119,13 @@ def analyse(
         _write_cycle(mechanism, linkage, files.cycle, units, machine=problem is not None)
     rules = [] if problem is None else judged(problem, row, units)
     if json:
-        give(json_text(found.record(units) | ({} if problem is None else {"rules": [asdict(rule) for rule in rules]})))
+        give(json_text(found.record(units, None if problem is None else rules)))
     else:
-        from ..render.terminal import print_blocks
+        from ..topics.analysis_text import show_analysis
 
         screen = console()
-        show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
-        reasons = (found.undefined or {}).items()
-        show_undefined(screen, {key: why for key, why in reasons if key not in TOLD_THERE}, own)
-        show_violated(screen, record_in(found.violated, units), row_in(row, units))
-        show_rules(screen, rules)
-        if problem is not None and not topics:
-            screen.print(f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}.", style="dim")
-        for topic in found.topics:
-            screen.print()
-            print_blocks(screen, topic.blocks(found.found[topic.name]), units)
+        more = f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}."
+        show_analysis(screen, found, rules, units, own=own, more="" if problem is None or topics else more)
     for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
     if files.figures is not None and not interruption.asked():

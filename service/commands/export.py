@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ...model.errors import InputError
 from ...objectives.counted import counted
-from ...objectives.kinds import ANGLE, System
+from ...objectives.kinds import ANGLE
 from ..designs.selection import none_meets, numbered, part_of
+from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
@@ -20,16 +21,7 @@ from ..text.screen import give, say, waiting
 from .ending import end_without_design
 from .run_choice import Choice, Selection, Where, run_of, shown_result
 
-if TYPE_CHECKING:
-    from ..designs.stored_designs import StoredDesign
-
-_FILES = {
-    "--dxf": (".dxf",),
-    "--svg": (".svg",),
-    "--motion": (".html", ".htm"),
-    "--gif": (".gif",),
-    "--cycle": (".csv",),
-}
+_FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
 """Options that write one design, and how their files may end."""
 
 
@@ -114,7 +106,7 @@ def export(
         found = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}
         with waiting("drawing"):
-            made = {file: _content(option, found, angle, units, **named) for option, file in files.items()}
+            made = {file: design_file(option[2:], found, angle, units, **named) for option, file in files.items()}
     chosen = selection.rows(result) if result.designs else []
     if where and not chosen:
         end_without_design(none_meets(result, where))
@@ -132,29 +124,3 @@ def export(
     for file, content in made.items():
         write_file(file, content)
         say(f"{file}: design {number}")
-
-
-def _content(option: str, found: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
-    """Return the file of one design that an option asks for. angle: of the crank in drawings, rad."""
-    if option == "--cycle":
-        from ..designs.design_curves import design_csv
-
-        return design_csv(found, units).encode()
-    if option == "--motion":
-        from ..motion.player_page import player_page
-
-        return player_page(found.mechanism, found.linkage, swing=found.part.motion, **named)
-    if option == "--gif":
-        from ..motion.animated_gif import animated_gif
-
-        return animated_gif(found.mechanism, found.linkage, swing=found.part.motion, **named)
-    from ..drawings.design_drawing import design_drawing
-
-    drawing = design_drawing(found, crank_angle=angle, **named)
-    if option == "--svg":
-        from ..drawings.svg import svg_file
-
-        return svg_file(drawing)
-    from ..drawings.dxf import dxf_file
-
-    return dxf_file(drawing)

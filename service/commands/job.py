@@ -18,8 +18,7 @@ def check(
     """Check a job file and say what was understood of it."""
     from ...objectives.own.quantity import OwnQuantity
     from ...optimise.job import load_job, read_job
-    from ...optimise.job.notes import notes_of, sources_of
-    from ..text.summary import freedom_in_words, summarise
+    from ..text.summary import freedom_in_words, job_in_words
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)  # among the answer
@@ -27,8 +26,7 @@ def check(
     for own in problem.own:
         if isinstance(own, OwnQuantity):
             own.require_function()
-    tables = read_job(job)
-    summary = summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
+    summary = job_in_words(problem, read_job(job))
     if json:
         give(json_text(summary))
         return

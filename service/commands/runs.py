@@ -51,9 +51,7 @@ def front(
         shown = find_columns(",".join(key_in(column.key, units)[0] for column in wanted), list(result.designs[0]))
         names = [column.key for column in shown]
     if json:
-        record = part_of(result, chosen).record()
-        if names is not None:
-            record["designs"] = [{name: row[name] for name in names} for row in record["designs"]]
+        record = part_of(result, chosen).record(names)
         give(json_text(record if one is None else {**record, "number": one + 1}))
     elif one is not None:
         screen = console()

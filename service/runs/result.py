@@ -109,10 +109,15 @@ class Result:
         """Whether a design has a stroke that is loaded more than the other: then the slow one matters."""
         return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
-    def record(self) -> dict[str, Any]:
-        """Return the result for JSON: null for undefined values, "inf" and "-inf" for infinite ones."""
+    def record(self, columns: Sequence[str] | None = None) -> dict[str, Any]:
+        """Return the result for JSON: null for undefined values, "inf" and "-inf" for infinite ones.
+
+        columns: of the designs, all of them if None.
+        """
         left_out = ("exact",) if self.discrete else ("exact", "discrete")
         fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
+        if columns is not None:
+            fields["designs"] = [{name: row[name] for name in columns} for row in fields["designs"]]
         wanted = [wanted_record(wanted) for wanted in self.objectives]
         return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
 

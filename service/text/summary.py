@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from ...model.cycle.pace import turn_time
@@ -73,6 +74,13 @@ def summarise(problem: Problem) -> dict[str, Any]:
         ],
         "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
     }
+
+
+def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `summarise` of a problem, with what was read from files, and notes on the tables that state it."""
+    from ...optimise.job.notes import notes_of, sources_of
+
+    return summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
 
 
 def freedom_in_words(problem: Problem) -> str:

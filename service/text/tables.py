@@ -40,7 +40,7 @@ def show_front(
 
     columns: dimensions, stroke and objectives if None; what is the same in all designs is then said once above.
     """
-    chosen = _spread(result, rows, most)
+    chosen = spread_rows(result, rows, most)
     if columns is None:
         columns, constant = _usual_columns(result)
         if constant:
@@ -93,20 +93,25 @@ def plain(value: Any) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
-    """Return dimensions, what else varied, stroke and objectives that differ between designs; in words the others."""
+def usual_keys(result: Result) -> list[str]:
+    """Return the columns of dimensions, what else varied, stroke and objectives."""
     from ...objectives.proportions import STROKE
-    from ...optimise.front.constant import is_constant
 
     names = list(result.designs[0])
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
     keys = [*dimensions, *chosen_columns(names), *(key for key in names if metric_key(key) == STROKE.field)]
     keys += ["slow_stroke"] if result.strokes_differ else []
-    keys += [wanted.column for wanted in result.objectives if wanted.column not in keys]
+    return keys + [wanted.column for wanted in result.objectives if wanted.column not in keys]
+
+
+def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
+    """Return the columns of `usual_keys` that differ between designs; in words the others."""
+    from ...optimise.front.constant import is_constant
+
     objectives = {wanted.column for wanted in result.objectives}
     wishes = {wanted.column: wanted for wanted in result.objectives}
     columns, constant = [], []
-    for key in keys:
+    for key in usual_keys(result):
         column = find_column(key, result.designs[0])
         wish = wishes.get(key)
         if wish is not None and (wish.unit != column.unit or not wish.quantity.isidentifier()):
@@ -164,8 +169,8 @@ def _aligned(values: Sequence[Cell]) -> list[str]:
     return [text(value) for value in values]
 
 
-def _spread(result: Result, rows: Sequence[int], most: int) -> list[int]:
-    """Return up to `most` of the positions, in their order: the marked ones and others spread evenly."""
+def spread_rows(result: Result, rows: Sequence[int], most: int) -> list[int]:
+    """Return up to `most` of the positions, in their order: the marked ones and others spread evenly; all for 0."""
     if most <= 0 or len(rows) <= most:
         return list(rows)
     marked = {*result.extremes.values(), result.knee} & set(rows)

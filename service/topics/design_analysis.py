@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ...model.swing.swing import Swing
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
+    from ..designs.requirements import JudgedRule
     from ..designs.stored_designs import StoredDesign
 
 
@@ -40,11 +41,15 @@ class Analysis:
     undefined: dict[str, str] | None = None
     violated: dict[str, float] = field(default_factory=dict)
 
-    def record(self, units: System = "metric") -> dict[str, Any]:
-        """Return all numbers of the design and of its topics, for JSON, with what is undefined and what is violated."""
+    def record(self, units: System = "metric", rules: Sequence[JudgedRule] | None = None) -> dict[str, Any]:
+        """Return all numbers of the design and of its topics, for JSON, with what is undefined and what is violated.
+
+        rules: of its job at the design; None without one.
+        """
         topics = {topic.name: topic.numbers_in(self.found[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
-        return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)}
+        judged = {} if rules is None else {"rules": [asdict(rule) for rule in rules]}
+        return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)} | judged
 
 
 def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> tuple[Row, dict[str, str]]:

@@ -1,0 +1,71 @@
+"""Facts of the dimensions and of quantities, for forms and agents: meaning, formula, unit, source."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...objectives.kinds import LENGTH
+from ...objectives.quantity import MECHANICS, Group, Quantity
+
+_STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")
+"""Facts of a quantity that are given as they are."""
+
+
+def facts_of_all() -> list[dict[str, Any]]:
+    """Return the facts of the dimensions and of every quantity, in the order in which they are shown."""
+    from ...objectives.registry import FACTS
+
+    return [*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())]
+
+
+def _quantity(of: Quantity) -> dict[str, Any]:
+    return {
+        **{fact: getattr(of, fact) for fact in _STATED},
+        "offered": list(of.offered),
+        "column": of.field,
+        "unit": of.unit.symbol,
+        "kind": of.kind.plain,
+        "group": of.group.value,
+        "motion": "swing" if of.table == "motion" else "turn" if of.turning else "",
+    }
+
+
+_LENGTH: dict[str, Any] = {
+    **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
+    **{"better": "", "allowed_by": "", "offered": [], "motion": ""},
+}
+"""Facts that the dimensions have in common."""
+
+
+def _dimension(name: str) -> dict[str, Any]:
+    told: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
+    return {"name": name, "picture": name, "column": name + LENGTH.metric.suffix, **told, **_LENGTH}
+
+
+_TOLD = ("title", "section", "sentence", "advice", "formula")
+_DIMENSIONS = {
+    "crank": (
+        "crank",
+        "2. Closed forms",
+        "The crank is the link that the motor turns; its length r runs from the crank pivot to the crank pin.",
+        "It sets the stroke, which is twice the crank without offset and a little more with one.",
+        "r; from a stroke S: r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2)",
+    ),
+    "rod": (
+        "connecting rod",
+        "2. Closed forms",
+        "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
+        "A long rod transmits force well and moves evenly; a short one is lighter and more compact.",
+        "l; the crank turns fully if l > r + |e|",
+    ),
+    "offset": (
+        "offset",
+        "1. Notation and signs",
+        "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
+        "direction, on the crossed branch to its right; it makes the crank turn further in one stroke than in the "
+        "other.",
+        "The greater the offset, the higher the time ratio at constant speed and the smaller the transmission angle.",
+        "e; the slider line is y = e",
+    ),
+}
+"""What is told of each dimension: `_TOLD`."""

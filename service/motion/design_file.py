@@ -1,0 +1,41 @@
+"""Files of one design: its drawing for CAD, its motion, its cycle as a table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...objectives.kinds import System
+    from ..designs.stored_designs import StoredDesign
+
+ENDINGS = {"dxf": (".dxf",), "svg": (".svg",), "motion": (".html", ".htm"), "gif": (".gif",), "cycle": (".csv",)}
+"""How the names of the files may end, by what is written."""
+
+
+def design_file(what: str, found: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
+    """Return a file of one design, one of `ENDINGS`.
+
+    angle: of the crank in drawings, rad; None for the usual one. named: job and design, for titles.
+    """
+    if what == "cycle":
+        from ..designs.design_curves import design_csv
+
+        return design_csv(found, units).encode()
+    if what == "motion":
+        from .player_page import player_page
+
+        return player_page(found.mechanism, found.linkage, swing=found.part.motion, **named)
+    if what == "gif":
+        from .animated_gif import animated_gif
+
+        return animated_gif(found.mechanism, found.linkage, swing=found.part.motion, **named)
+    from ..drawings.design_drawing import design_drawing
+
+    drawing = design_drawing(found, crank_angle=angle, **named)
+    if what == "svg":
+        from ..drawings.svg import svg_file
+
+        return svg_file(drawing)
+    from ..drawings.dxf import dxf_file
+
+    return dxf_file(drawing)

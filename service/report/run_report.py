@@ -1,0 +1,52 @@
+"""Report of a design of a run that is on the disk."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ...model.errors import RunError
+from ...objectives.kinds import System
+from ..designs.measured_file import read_measured
+from ..designs.turning import require_turning
+from ..runs.result import Result
+from ..runs.stored_runs import problem_of
+from .design_report import design_report
+from .subject import Subject
+
+
+def run_report(
+    folder: Path, result: Result, number: int, *, pdf: bool, units: System, measured: str | None = None
+) -> bytes:
+    """Return the report of a design of a run, by its number, counted from 1: HTML, or PDF.
+
+    measured: CSV of measured curves to compare.
+    """
+    versions, certificate = _kept(folder / "versions.json") or {}, _kept(folder / "certificate.json")
+    kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
+    subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
+    if measured is not None:
+        design = subject.design
+        require_turning(design.part.motion, "what --measured compares")
+        subject = replace(subject, measured=read_measured(measured, design.mechanism, design.linkage))
+    made = design_report(subject)
+    if pdf:
+        from .pdf import pdf_file
+
+        return pdf_file(made)
+    from .html import html_file
+
+    return html_file(made)
+
+
+def _kept(file: Path) -> dict[str, Any] | None:
+    """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged one."""
+    if not file.is_file():
+        return None
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RunError(f"{file} is damaged: {error}; run the command that wrote it again") from error
+    return found if isinstance(found, dict) else None
