@@ -43,7 +43,7 @@ _COMMANDS = (
     *("optimise", "analyse", "inverse", "swing", "sweep", "allocate", "balance", "sections"),
     *("certify", "compare", "like", "round", "wish"),
     *("check", "schema", "front", "export", "report", "cases"),
-    *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "doctor"),
+    *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
 _MODULES |= dict.fromkeys(("inverse", "swing"), "question")

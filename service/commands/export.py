@@ -16,10 +16,11 @@ from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
+from ..text.design_options import Selection
 from ..text.options import Angle, File, Output, Run, Runs, Units, given_value, require_ending
 from ..text.screen import give, say, waiting
 from .ending import end_without_design
-from .run_choice import Choice, Selection, Where, run_of, shown_result
+from .run_choice import Choice, Where, run_of, shown_result
 
 _FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
 """Options that write one design, and how their files may end."""

@@ -18,13 +18,13 @@ from ...model.extras import is_installed, required
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.shown_units import result_in
-from ..designs.violations import front_violations_in_words
 from ..jobs.stores import FILE, Address, open_store
-from ..runs.result import Result, json_text
+from ..runs.result import json_text
 from ..runs.run_folder import RunFolder, disk, runs_place
+from ..text.design_options import SettingOptions
 from ..text.options import Json, Runs, Units
 from ..text.screen import console, give, progress_bar, say, waiting
-from ..text.tables import show_design, show_front
+from ..text.tables import show_result
 from ..workers.engines import EngineOptions, engine_of
 from .ending import EXIT_CODES, INTERRUPTED, Interruption
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..store import Artefact, Store
 
 _FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
-_SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
+SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
 """Packages whose kernels a search needs, and modules that import them."""
 _NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
 
@@ -53,19 +53,6 @@ class Places:
         given = ["--runs", str(self.runs)] if self.runs else []
         given += ["--store", without_secrets(self.store)] if self.store else []
         return shlex.join(["slidercrank", "optimise", "--resume", run, *given])
-
-
-@dataclass(frozen=True)
-class SettingOptions:
-    """Settings of the optimiser in place of the job's."""
-
-    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None
-    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None
-
-    @property
-    def given(self) -> dict[str, Any]:
-        """Those that are given."""
-        return {name: value for name, value in vars(self).items() if value is not None}
 
 
 def optimise(
@@ -93,7 +80,7 @@ def optimise(
     """
     from ...model.kernel.disk import compile_ahead
 
-    compile_ahead(*_SEARCH)
+    compile_ahead(*SEARCH)
     from ..store.address import without_secrets
     from ..workers.own_search import keep_front, kept_alive, new_run, resumed_run, search
 
@@ -129,7 +116,8 @@ def optimise(
             if json:
                 give(json_text(shown.record()))
             else:
-                show_result(shown)
+                show_result(console(), shown)
+                sys.stdout.flush()
         except OutputLost as error:
             lost = error
         if drawn:  # while the front is read
@@ -162,24 +150,6 @@ def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
             own = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
             store, listed = opened.enter_context(Store(Path(own) / FILE)), False
         yield store, listed
-
-
-def show_result(result: Result) -> None:
-    """Write what a run found: the front as a table, and what the knee costs."""
-    screen = console()
-    screen.print(f"{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
-    if len(result.designs) == 1:
-        show_design(screen, result.designs[0])
-    elif result.designs:
-        show_front(screen, result, range(len(result.designs)))
-    if result.trade_offs:
-        screen.print("\nAt the knee:")
-        for sentence in result.trade_offs:
-            screen.print(f"  {sentence}", soft_wrap=True)
-    said = [f"Beyond what is allowed: {sentence}" for sentence in front_violations_in_words(result)]
-    for sentence in (*said, *(f"Warning: {sentence}" for sentence in result.warnings)):
-        screen.print(f"\n{sentence}.", style="yellow", soft_wrap=True)
-    sys.stdout.flush()
 
 
 def show_files(run: Path) -> None:

@@ -12,14 +12,14 @@ import typer
 
 from ...model.errors import InputError, SlidercrankError
 from ...objectives.kinds import System
-from ..designs.picking_options import picked_row, require_alone
+from ..designs.picking_options import require_alone
 from ..designs.selection import chosen_rows, none_meets
 from ..designs.shown_units import result_in
 from ..jobs.find_run import find_run
 from ..runs.result import Result
 from ..runs.run_folder import runs_place
 from ..runs.stored_runs import problem_of, read_run
-from ..text.options import DesignOfRun
+from ..text.design_options import Pick
 from .ending import NoDesigns, end_without_design
 
 if TYPE_CHECKING:
@@ -66,57 +66,8 @@ Where = Annotated[
 
 
 @dataclass(frozen=True)
-class Selection:
-    """Options that take a part of a run's designs and sort them."""
-
-    where: Annotated[
-        list[str] | None,
-        typer.Option(metavar="CONDITION"),
-        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
-    ] = None
-    sort: Annotated[
-        str | None,
-        typer.Option(metavar="NAME"),
-        "Sort by a quantity or column: best first for an objective, else smallest first.",
-    ] = None
-    reverse: Annotated[bool, "Turn the order round."] = False
-
-    @property
-    def sorts(self) -> bool:
-        """Whether the order is other than the run's."""
-        return self.sort is not None or self.reverse
-
-    def rows(self, result: Result) -> list[int]:
-        """Return the rows of the designs, in their order."""
-        return chosen_rows(result, self.where or [], sort=self.sort, reverse=self.reverse)
-
-
-@dataclass(frozen=True)
-class Choice:
+class Choice(Pick):
     """Options that name one design of a run."""
-
-    design: DesignOfRun = None
-    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False
-    topsis: Annotated[
-        str | None,
-        typer.Option(metavar="WEIGHTS"),
-        'Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
-    ] = None
-    lexicographic: Annotated[
-        str | None,
-        typer.Option(metavar="RANKING"),
-        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
-        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
-    ] = None
-
-    @property
-    def picking(self) -> bool:
-        """Whether a design is chosen by its values."""
-        return self.knee or self.topsis is not None or self.lexicographic is not None
-
-    def row(self, result: Result, rows: Sequence[int]) -> int | None:
-        """Return which of the rows is chosen by its values, None without such an option, and of no rows."""
-        return picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
 
     def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
         """Return the number of the design that the options name, counted from 1.

@@ -11,12 +11,13 @@ from ...objectives.keys import key_in
 from ..designs.columns import find_columns
 from ..designs.selection import none_meets, part_of
 from ..runs.result import json_text
-from ..text.options import Json, Run, Runs, Units
+from ..text.design_options import Selection
+from ..text.options import Json, Rows, Run, Runs, Units
 from ..text.screen import console, give
-from ..text.tables import ROWS, show_design, show_front, show_violated
+from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
 from .ending import NoDesigns, end_without_design
-from .optimise import show_files, show_result
-from .run_choice import Choice, Selection, run_of, shown_result
+from .optimise import show_files
+from .run_choice import Choice, run_of, shown_result
 
 
 def front(
@@ -26,7 +27,7 @@ def front(
     columns: Annotated[
         str | None, typer.Option(metavar="NAMES"), "Quantities or columns to show, separated by commas."
     ] = None,
-    rows: Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."] = ROWS,
+    rows: Rows = ROWS,
     choice: Choice,
     runs: Runs = None,
     units: Units = "metric",
@@ -60,7 +61,7 @@ def front(
         of_one = {key: by[one] for key, by in result.violated.items() if by[one] > 0.0}
         show_violated(screen, of_one, result.designs[one])
     elif not (where or selection.sorts or columns or rows != ROWS):
-        show_result(result)
+        show_result(console(), result)
         show_files(folder)
     elif chosen:
         screen = console()

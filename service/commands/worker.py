@@ -11,6 +11,7 @@ import typer
 from ...model.extras import required
 from ..jobs.stores import Address, open_store, store_address
 from ..resources.memory import size_of
+from ..text.options import AllowQuantity
 from ..workers.engines import EngineOptions
 from ..workers.logs import Format, set_up_logs
 from .ending import Interruption
@@ -29,11 +30,7 @@ class WorkOptions:
     grace: Annotated[
         float, typer.Option(min=0.0, max=600.0), "Seconds that a round has to end once the worker is to stop."
     ] = 10.0
-    allow_quantity: Annotated[
-        list[str] | None,
-        typer.Option(metavar="MODULE:FUNCTION"),
-        "Function that jobs may name as a quantity of their own. Repeatable.",
-    ] = None
+    allow_quantity: AllowQuantity = None
     most_running: Annotated[
         int | None, typer.Option(min=1), "Let at most so many jobs of the store be solved at a time."
     ] = None

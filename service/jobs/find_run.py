@@ -56,7 +56,7 @@ def _asked(store: Store, text: str, place: Path) -> Job | None:
             return None
     if text == "latest":
         latest = store.jobs(states=_FOUND, limit=1)
-        names = [folder.name for folder in _runs(place)]
+        names = [folder.name for folder in run_folders(place)]
         return latest[0] if latest and latest[0].run > max(names, default="") else None
     return store.find(text)
 
@@ -66,7 +66,9 @@ def find_folder(text: str, place: Path) -> Path:
 
     Raises `InputError` when nothing, or more than one run, answers to it.
     """
-    names = sorted((run.name for run in _runs(place)), key=lambda name: (name[:15], (place / name).stat().st_mtime_ns))
+    names = sorted(
+        (run.name for run in run_folders(place)), key=lambda name: (name[:15], (place / name).stat().st_mtime_ns)
+    )
     if text == "latest":
         if not names:
             raise InputError(f"there is no run in {place} yet; run `slidercrank optimise JOB` first")
@@ -88,7 +90,8 @@ def find_folder(text: str, place: Path) -> Path:
     raise InputError(f"there is no run {path_text(text)!r}, neither as a folder nor in {place}{last}")
 
 
-def _runs(place: Path) -> list[Path]:
+def run_folders(place: Path) -> list[Path]:
+    """Return the folders of runs in a place, in no order."""
     if not place.is_dir():
         return []
     return [

@@ -41,10 +41,15 @@ def parse_allowed(
     from ...optimise.job.file import require_plain
 
     require_plain(tables)
+    require_allowed(tables, allowed)
+    return parse_job(tables, values, require_feasible=require_feasible)
+
+
+def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None:
+    """Raise `JobError` for a job that names a function other than those allowed."""
     for name, function in functions_of(tables).items():
         if function not in allowed:
             raise _refused(name, function, allowed)
-    return parse_job(tables, values, require_feasible=require_feasible)
 
 
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
@@ -75,7 +80,7 @@ def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
     here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(
         f"quantity.{name[:60]}: only functions that the operator allows are run here; got {shown(function)}; {here} "
-        f"(serve or worker with --allow-quantity {function[:200]}), or solve the job with optimise"
+        f"(serve, worker or mcp with --allow-quantity {function[:200]}), or solve the job with `slidercrank optimise`"
     )
 
 

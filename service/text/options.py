@@ -64,6 +64,13 @@ Run = Annotated[
     ),
 ]
 
+Rows = Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."]
+AllowQuantity = Annotated[
+    list[str] | None,
+    typer.Option(metavar="MODULE:FUNCTION"),
+    "Function that jobs may name as a quantity of their own. Repeatable.",
+]
+
 
 def for_typer(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command for typer, whose parameters have their help as a text in `Annotated`.

@@ -12,7 +12,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
 from ...objectives.keys import metric_key
 from ..designs.columns import Column, chosen_columns, find_column
-from ..designs.violations import violations_in_words
+from ..designs.violations import front_violations_in_words, violations_in_words
 from ..render.terminal import print_table, table
 from ..runs.result import Cell, Result, Row
 
@@ -26,6 +26,22 @@ if TYPE_CHECKING:
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
 _DIGITS = 4
+
+
+def show_result(screen: Console, result: Result) -> None:
+    """Write what a run found: the front as a table, and what the knee costs."""
+    screen.print(f"{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
+    if len(result.designs) == 1:
+        show_design(screen, result.designs[0])
+    elif result.designs:
+        show_front(screen, result, range(len(result.designs)))
+    if result.trade_offs:
+        screen.print("\nAt the knee:")
+        for sentence in result.trade_offs:
+            screen.print(f"  {sentence}", soft_wrap=True)
+    said = [f"Beyond what is allowed: {sentence}" for sentence in front_violations_in_words(result)]
+    for sentence in (*said, *(f"Warning: {sentence}" for sentence in result.warnings)):
+        screen.print(f"\n{sentence}.", style="yellow", soft_wrap=True)
 
 
 def show_front(

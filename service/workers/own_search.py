@@ -13,7 +13,7 @@ from ...model.file_names import path_text
 from ..jobs.own_run import begin, folder_of, stopped_job, take_up, told
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
-from .heartbeat import Heartbeat
+from .heartbeat import Budget, Heartbeat
 from .worker import versions_file
 
 if TYPE_CHECKING:
@@ -98,10 +98,11 @@ def search(
     )
 
 
-def keep_front(opened: Opened, front: ParetoFront) -> Result:
-    """Write the result of a search into its run folder and the store, and return it."""
+def keep_front(opened: Opened, front: ParetoFront, budget: Budget | None = None) -> Result:
+    """Write the result of a search into its run folder and the store, and return it. budget: that may have ended it."""
     run, _, claim = opened
     result = result_of(front, path_text(run.path))
+    result = result if budget is None else budget.explained(result)
     versions = dict(front.versions)
     if is_installed("matplotlib"):
         from importlib.metadata import version

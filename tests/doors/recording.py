@@ -25,8 +25,8 @@ from tests.doors.masks import masked
 from tests.doors.scripts import JOBS, Case, all_scripts
 from tests.service.api.serving import client_of
 
-_PROCESSES = (["serve"], ["worker"])
-"""Commands that start processes and are ended by signals: run as programs, the others in this process."""
+_PROCESSES = (["serve"], ["worker"], ["mcp"])
+"""Commands that start processes, or serve until a signal or the end of their input: run as programs."""
 _UNCOUNTED = (".db", ".db-wal", ".db-shm", ".db-journal", ".lock")
 _DROPPED = ("date", "server", "content-length", "etag", "connection", "transfer-encoding")
 _PATIENCE = 300.0  # s

@@ -190,6 +190,7 @@ def test_every_command_that_needs_an_extra_names_it(script: str, place: Path) ->
             ["allocate", "press.toml", *LENGTHS, "--limit", "1 mm", "--figures", "figures"],
             ["balance", "press.toml", *LENGTHS, "--radius", "60 mm", "--figures", "figures"],
         ],
+        "mcp": [["mcp"]],
         "postgres": [["jobs", "--store", "postgresql://127.0.0.1:1/jobs"]],
         "service": [["serve", "--port", "0"], ["worker", "--drain"]],
     }
@@ -246,5 +247,5 @@ def test_every_package_belongs_to_one_extra_and_all_has_those_of_every_command(p
     packages += [Requirement(line).name for line in project["dependencies"]]
     assert len(packages) == len(set(packages))
     (everything,) = extras["all"]
-    ours = {"convex", "dask", "export", "figures", "parquet", "postgres", "service"}
+    ours = {"convex", "dask", "export", "figures", "mcp", "parquet", "postgres", "service"}
     assert ours <= everything.extras <= set(uses)

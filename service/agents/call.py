@@ -1,0 +1,141 @@
+"""A call of a tool: where it may read and write, how it hears of a cancellation, and its answer."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InfeasibleError, InputError, NotFound
+from ..jobs.find_run import find_run
+from ..jobs.stores import open_store
+from ..jobs.submission import LONGEST_ANSWER, LONGEST_CALL, bounded, parse_allowed, require_allowed
+from ..presets.jobs import shipped_jobs
+from ..runs.result import Result
+from ..runs.stored_runs import job_file, problem_of, read_run
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...optimise.front.progress import Progress
+    from ...optimise.problem.problem import Problem
+    from ..store import Store
+
+Job = str | dict[str, Any]
+_LONGEST = 255  # characters of a name; no file has more
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Answer of a tool. record: for programs. text: for people. is_error: whether the caller has to do something."""
+
+    record: dict[str, Any]
+    text: str
+    is_error: bool = False
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call. runs: the folder in which all is read and written. allowed: functions, "module:function", of jobs.
+
+    cancelled: whether the caller has given up. report: hears of the progress.
+    """
+
+    runs: Path
+    allowed: frozenset[str]
+    cancelled: Callable[[], bool]
+    report: Callable[[Progress], None]
+
+    def folder(self, name: str) -> Path:
+        """Return the folder of a run. Raises `InputError` for one elsewhere, and for links that lead elsewhere."""
+        self._require_inside(self.runs / name, name)
+        folder = find_run(name, self.runs)
+        for path in (folder, *folder.rglob("*")):
+            self._require_inside(path, name)
+        return folder
+
+    def run(self, name: str) -> tuple[Path, Result]:
+        """Return the folder, as `folder`, and the result of a run. Raises `RunError` where it has none."""
+        folder = self.folder(name)
+        return folder, read_run(folder)
+
+    def _require_inside(self, path: Path, name: str) -> None:
+        try:
+            inside = len(name) <= _LONGEST and path.resolve().is_relative_to(self.runs.resolve())
+        except (OSError, ValueError, RuntimeError):  # no name of a file, a circle of links
+            inside = False
+        if not inside:
+            raise InputError(
+                f"a run is a folder in {self.runs} without links that lead elsewhere; got {name[:200]!r}; "
+                "name one of the list of runs"
+            )
+
+    def front(self, name: str) -> tuple[Path, Result]:
+        """Return a run with designs, as `run`. Raises `InfeasibleError` for one without."""
+        folder, result = self.run(name)
+        if not result.designs:
+            raise InfeasibleError(result.message)
+        return folder, result
+
+    def problem_of_run(self, folder: Path, result: Result) -> Problem:
+        """Return the problem of a run. Raises `JobError` for functions that are not allowed."""
+        from ...optimise.job import read_job
+
+        file = job_file(folder)
+        if file is not None:
+            require_allowed(read_job(file), self.allowed)
+        return bounded(problem_of(folder, result), LONGEST_ANSWER)
+
+    def problem(self, tables: Mapping[str, Any], *, seconds: float = LONGEST_ANSWER, feasible: bool = True) -> Problem:
+        """Return the problem that a job states. seconds: that a function of it may take. feasible: whether it must be.
+
+        Raises `JobError`.
+        """
+        return bounded(parse_allowed(tables, self.allowed, require_feasible=feasible), seconds)
+
+    def problem_again(self, tables: Mapping[str, Any], folder: Path) -> Problem:
+        """Return the problem of a search that goes on in a folder. Raises `JobError`."""
+        from ...optimise.job import parse_job
+
+        require_allowed(tables, self.allowed)
+        return bounded(parse_job(tables, folder=folder), LONGEST_CALL)
+
+    @contextlib.contextmanager
+    def store(self) -> Iterator[Store]:
+        """Give the store of the runs, closed at the end. Raises `StoreError` where it cannot be written."""
+        with open_store(None, self.runs) as store:
+            store.require_writable()
+            yield store
+
+
+def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
+    """Return the tables of a job: of its TOML text, of a job that ships, or themselves, files in their places.
+
+    Raises `JobError`, also for a file that was not given: none is read.
+    """
+    from ...optimise.job import with_files
+    from ...optimise.job.file import require_plain, toml_tables
+
+    if isinstance(job, str) and "=" not in job:
+        jobs = shipped_jobs()
+        if job.strip() not in jobs:
+            raise NotFound(
+                f"a job is its tables, its TOML text, or the name of one that ships, {', '.join(jobs)}; "
+                f"got {job[:60]!r}; give one of them"
+            )
+        job = jobs[job.strip()]
+    tables = toml_tables(job) if isinstance(job, str) else job
+    require_plain(tables)
+    return with_files(tables, files)
+
+
+def text_of(show: Callable[[Console], None]) -> str:
+    """Return what is shown on a screen, as plain text."""
+    from rich.console import Console
+
+    out = io.StringIO()
+    show(Console(file=out, width=100, highlight=False, markup=False, emoji=False, color_system=None))
+    return out.getvalue().strip()

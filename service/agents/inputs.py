@@ -1,0 +1,167 @@
+"""Inputs of several tools, in groups: what agents read of them follows from what is declared elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from ...model.errors import InputError
+from ...optimise.job.model import Job as JobModel
+from ..presets.jobs import shipped_jobs
+from ..text.options import Rows, Units
+from ..text.tables import ROWS
+from ..topics.discovery import ALL, ASKED, COMMANDS, TOPICS
+from .call import Call, Job, tables_of
+
+if TYPE_CHECKING:
+    from ..designs.stored_designs import StoredDesign
+
+_TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
+_SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
+_SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in COMMANDS.items()]
+_INPUTS: dict[str, dict[str, str]] = {}
+for _topic in ASKED.values():
+    for _one in _topic.inputs:
+        _said = _INPUTS.setdefault(_one.name, {"type": "string", "description": ""})
+        _said["description"] += f"{_topic.name}: {_one.remark}  "
+
+JobInput = Annotated[
+    Job,
+    Field(
+        description=f"A job: its tables, the text of a job file in TOML, or the name of one that ships: "
+        f"{', '.join(shipped_jobs())}. Tables: {_TABLES}. `describe` explains every key."
+    ),
+]
+OptionalJob = Annotated[Job | None, Field(description="A job, as for `check`.")]
+Files = Annotated[
+    dict[str, str],
+    Field(description="Contents of the files that the job names, by their names: tables of loads, options, motions."),
+]
+Number = Annotated[int | None, Field(description="A design of the run by its number.", ge=1)]
+Topics = Annotated[
+    list[str], Field(description=f"Analyses of the design, {ALL} for all of a full turn: {'; '.join(_SHOWN)}.")
+]
+TopicInputs = Annotated[
+    dict[str, str],
+    Field(
+        description="What the topics are asked with, each a text with its unit.",
+        json_schema_extra={"properties": dict(_INPUTS), "additionalProperties": False},
+    ),
+]
+Dimension = Annotated[str | None, Field(description='Length of a design, such as "40 mm", unless the job fixes it.')]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Part of a front that an answer has."""
+
+    rows: Rows = ROWS
+    columns: Annotated[
+        list[str] | None,
+        Field(
+            description="Quantities or columns of each design; dimensions, stroke and objectives if left out, every "
+            f'one for ["{ALL}"].'
+        ),
+    ] = None
+    units: Units = "metric"
+
+    def keys(self, known: list[str], usual: list[str]) -> list[str] | None:
+        """Return the columns that are asked for, None for all. Raises `InputError` for others."""
+        from ..designs.columns import find_column
+
+        if self.columns == [ALL]:
+            return None
+        return usual if self.columns is None else [find_column(name, known).key for name in self.columns]
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design of a run, or one with lengths of its own for a job."""
+
+    run: Annotated[str | None, Field(description='A run by its name, or "latest"; instead of job and lengths.')] = None
+    design: Number = None
+    job: OptionalJob = None
+    files: Files = field(default_factory=dict)
+    crank: Dimension = None
+    rod: Dimension = None
+    offset: Dimension = None
+
+    def found(self, call: Call) -> StoredDesign:
+        """Return the design. Raises `InputError` for none, and for two."""
+        if (self.run is None) == (self.job is None):
+            got = "both" if self.run else "neither"
+            raise InputError(f"a design is of a run or of a job; got {got}; give one of them")
+        lengths = {"crank": self.crank, "rod": self.rod, "offset": self.offset}
+        return self._of_job(call, lengths) if self.run is None else self._of_run(call, self.run, lengths)
+
+    def _of_run(self, call: Call, run: str, lengths: Mapping[str, str | None]) -> StoredDesign:
+        from ..designs.picking_options import require_alone
+        from ..designs.stored_designs import stored_design
+
+        besides = [name for name, value in lengths.items() if value is not None]
+        if besides:
+            raise InputError(
+                f"a design of a run has its dimensions; got run and {besides[0]}; leave out one of the two"
+            )
+        folder, result = call.front(run)
+        number = 1 + (result.knee or 0) if self.design is None else self.design
+        require_alone(number, result, run, others=False)
+        return stored_design(call.problem_of_run(folder, result), result, number)
+
+    def _of_job(self, call: Call, lengths: Mapping[str, str | None]) -> StoredDesign:
+        from ..designs.stored_designs import StoredDesign
+        from ..text.options import Dimensions
+
+        problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
+        return StoredDesign(problem, tuple(Dimensions(**lengths).lengths(problem)))
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a design is asked."""
+
+    topics: Topics = field(default_factory=list)
+    inputs: TopicInputs = field(default_factory=dict)
+    units: Units = "metric"
+
+    def __post_init__(self) -> None:
+        """Raise `InputError` for topics that there are not, or that do not go together, and for inputs of others."""
+        from ..topics.discovery import chosen_topics
+
+        if self.alone is None:
+            chosen_topics(self.topics, job=True)
+        elif len(self.topics) > 1:
+            raise InputError(f"{self.alone} is asked alone; got {', '.join(self.topics)}; ask the others without it")
+        taken = [one.name for name in self.names for one in ASKED[name].inputs]
+        for name in self.inputs:
+            if name not in taken and name in _INPUTS:
+                (topic, *_) = (topic for topic in ASKED.values() if any(one.name == name for one in topic.inputs))
+                raise InputError(f"{name} is an input of {topic.name}; got it without; add that topic")
+            if name not in taken:
+                raise InputError(f"inputs are {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
+
+    @property
+    def alone(self) -> str | None:
+        """The topic that is a command of its own, None without one."""
+        return next((name for name in self.topics if name in COMMANDS), None)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the topics."""
+        from ..topics.discovery import chosen_topics
+
+        return chosen_topics(self.topics, job=True) if self.alone is None else (self.alone,)
+
+    def options(self) -> dict[str, dict[str, Any]]:
+        """Return the inputs of each topic, in SI. Raises `InputError`."""
+        from ..topics.inputs import read_inputs
+
+        found = {}
+        for name in self.names:
+            inputs = ASKED[name].inputs
+            given = {one.name: self.inputs[one.name] for one in inputs if one.name in self.inputs}
+            found[name] = read_inputs(inputs, given, f"the topic {name}")
+        return found

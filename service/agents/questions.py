@@ -1,0 +1,235 @@
+"""Tools that search nothing: what there is, what a name means, what a design does, whether a job can be met."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from ...model.errors import InputError, NotFound, RunError
+from ...objectives.units import closest
+from ..designs.quantity_facts import facts_of_all
+from ..designs.turning import require_turning
+from ..presets.jobs import shipped_jobs
+from ..topics.discovery import ALL, ASKED
+from ..topics.topic import Topic
+from .call import Answer, Call, tables_of, text_of
+from .inputs import Design, Files, JobInput, Question
+
+if TYPE_CHECKING:
+    from ..designs.stored_designs import StoredDesign
+
+_MOST_RUNS = 20
+_OF_TOPIC = ("name", "title", "help", "usual", "example", "required")
+_OF_KEY = ("description", "examples", "default", "enum")
+
+
+def list_known(call: Call) -> Answer:
+    """List what there is: jobs that ship, quantities, topics of designs with their inputs, and the latest runs.
+
+    `describe` explains each. Start from a job that ships and is near to the task.
+    """
+    jobs = [
+        {"name": name, "title": job["name"], "sentence": job.get("description", "")}
+        for name, job in shipped_jobs().items()
+    ]
+    quantities = [
+        {key: facts[key] for key in ("name", "title", "column", "unit", "better")} for facts in facts_of_all()
+    ]
+    topics, runs = list(map(_topic, ASKED.values())), list(_runs(call))
+    lines = [
+        *("Jobs that ship:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
+        *("Topics of a design:", *(f"  {topic['name']}: {topic['shows'].partition(chr(10))[0]}" for topic in topics)),
+        *("Quantities:", f"  {', '.join(facts['name'] for facts in quantities)}"),
+        *("Runs, the latest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
+    ]
+    record = {"jobs": jobs, "quantities": quantities, "topics": topics, "runs": runs}
+    return Answer(record, "\n".join(lines))
+
+
+def describe(
+    call: Call,
+    *,
+    name: Annotated[
+        str,
+        Field(
+            description="A quantity, a topic, a job that ships, or a key of a job such as load or mechanism.slider; "
+            "job for its tables.",
+            max_length=200,
+        ),
+    ],
+) -> Answer:
+    """Describe a quantity (meaning, formula, unit), a topic, a job that ships (its tables and TOML), a key of a job."""
+    from ..jobs.job_toml import job_toml
+
+    word = name.strip()
+    facts = {one["name"]: one for one in facts_of_all()}
+    record: dict[str, Any] = {}
+    lines = []
+    if word in facts:
+        record["quantity"] = of = facts[word]
+        lines.append(f"{of['title']} ({of['column']}): {of['sentence']} {of['advice']}\n{of['formula']}")
+    if word in ASKED:
+        record["topic"] = topic = _topic(ASKED[word])
+        asked = "".join(f"\n  {one.name}: {one.remark}" for one in ASKED[word].inputs)
+        lines.append(f"topic {word}: {topic['shows']}{asked}")
+    if word in shipped_jobs():
+        text = job_toml(shipped_jobs()[word])
+        record["job"] = {"tables": shipped_jobs()[word], "toml": text}
+        lines.append(text)
+    with suppress(NotFound):
+        record["key"] = key = _key(word)
+        lines += [f"key {word}: {key['description']}", *_keys_in_words(key)]
+    if not record:
+        near = closest(word, [*facts, *ASKED, *shipped_jobs()])
+        remedy = f"did you mean {near}?" if near else "list what there is"
+        raise NotFound(f"a name is that of a quantity, a topic, a job or a key of one; got {word!r}; {remedy}")
+    return Answer(record, "\n".join(lines))
+
+
+def ask(call: Call, *, subject: Design, question: Question) -> Answer:
+    """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
+
+    The design is one of a run, its knee if none is named, or has lengths of your own for a job.
+    """
+    from ..jobs.submission import ending_own
+
+    options = question.options()
+    of = subject.found(call)
+    with ending_own(of.part):
+        alone = question.alone or ("swing" if of.part.motion is not None and not question.topics else None)
+        if alone is not None:
+            return _alone(alone, of, question)
+        require_turning(of.part.motion, f"the topic {next(iter(options), '')}")
+        return _turn(call, of, options, question)
+
+
+def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B006
+    """Check a job before it is searched: what was understood, or what is wrong or contradictory, with the remedy."""
+    from ...objectives.own.quantity import OwnQuantity
+    from ..preview.preview import look_at
+    from ..text.summary import freedom_in_words, job_in_words
+
+    tables = tables_of(job, files)
+    look = look_at(tables, call.problem)
+    record: dict[str, Any] = {
+        "valid": look.problem is not None,
+        "wrong": [asdict(one) for one in look.wrong],
+        "said": look.said,
+        "unchecked": look.unchecked,
+    }
+    if look.problem is None:
+        lines = [": ".join(filter(None, (one.path, one.sentence))) for one in look.wrong]
+        return Answer(record, "\n".join(("the job cannot be searched:", *dict.fromkeys((*lines, *look.said)))))
+    for own in look.problem.own:
+        if isinstance(own, OwnQuantity):
+            own.require_function()
+    record |= job_in_words(look.problem, tables)
+    told = [f"{name}: {'; '.join(record[name])}" for name in ("given", "variables", "rules", "objectives", "warnings")]
+    heading = f"a valid job: {look.problem.name}"
+    return Answer(record, "\n".join((heading, *told, freedom_in_words(look.problem), *look.said, *record["notes"])))
+
+
+def _turn(call: Call, of: StoredDesign, options: Mapping[str, dict[str, Any]], question: Question) -> Answer:
+    """Analyse a design that turns fully. options: of each topic."""
+    from ..designs.requirements import judged
+    from ..topics.analysis_text import show_analysis
+    from ..topics.design_analysis import analysis_of, numbers_of
+
+    row, undefined = numbers_of(of.mechanism, of.linkage, of.part.own)
+    found = analysis_of(
+        row,
+        of.mechanism,
+        of.linkage,
+        tuple(options),
+        options=options,
+        cancelled=call.cancelled,
+        lenient=ALL in question.topics,
+        undefined=undefined,
+    )
+    rules = judged(of.part, row, question.units)
+    text = text_of(lambda screen: show_analysis(screen, found, rules, question.units, own=of.part.own))
+    return Answer(found.record(question.units, rules), "\n".join((text, *found.notes, *found.refused)))
+
+
+def _alone(name: str, of: StoredDesign, question: Question) -> Answer:
+    """Ask a design what is a command of its own."""
+    from ..designs.shown_units import record_in
+    from ..render.terminal import print_blocks
+
+    asked = ASKED[name].asked(of.mechanism, of.linkage, of.part.motion, question.inputs)
+    record = asked.numbers(lambda: False)
+    text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
+    notes = filter(None, record.get("notes", [record.get("note")]))
+    return Answer(record_in(record, question.units), "\n".join((text, *notes)))
+
+
+def _topic(of: Topic) -> dict[str, Any]:
+    inputs = [{key: getattr(one, key) for key in _OF_TOPIC} for one in of.inputs]
+    shows = of.shows if of.command is None else inspect.cleandoc(of.command.help)
+    return {"name": of.name, "shows": shows, "inputs": inputs}
+
+
+def _runs(call: Call) -> Iterator[dict[str, Any]]:
+    """Yield the latest runs: what became of each."""
+    from ..jobs.find_run import run_folders
+
+    for folder in sorted(run_folders(call.runs), key=lambda folder: folder.name, reverse=True)[:_MOST_RUNS]:
+        try:
+            _, result = call.run(folder.name)
+        except (RunError, InputError) as error:
+            yield {"run": folder.name, "name": "", "status": "unfinished", "designs": 0, "message": str(error)}
+            continue
+        told = {"name": result.name, "status": result.status, "designs": len(result.designs), "message": result.message}
+        yield {"run": folder.name, **told}
+
+
+def _key(name: str) -> dict[str, Any]:
+    """Return the description of a key of job files, and of the keys in it. Raises `NotFound`."""
+    from ...optimise.job.messages import nodes_at
+    from ...optimise.job.model import Job
+    from ...optimise.job.schema import schema_of
+
+    schema, path = schema_of(Job), list[str | int]()
+    for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):
+        path.append(part)
+        if any("items" in node for node in nodes_at(schema, path)):
+            path.append(0)
+    nodes = nodes_at(schema, path[:-1] if path and path[-1] == 0 else path)
+    if not nodes:
+        raise NotFound(f"there is no key {name!r}")
+    forms = [node for node in nodes_at(schema, path) if "properties" in node]
+    return {
+        "description": next((node["description"] for node in nodes if "description" in node), ""),
+        **{key: node[key] for node in reversed(nodes) for key in _OF_KEY[1:] if key in node},
+        "tables": [
+            {
+                "description": form.get("description", ""),
+                "required": form.get("required", []),
+                "keys": {key: _facts(inner) for key, inner in form["properties"].items()},
+            }
+            for form in forms
+        ],
+    }
+
+
+def _facts(node: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: node[key] for key in _OF_KEY if key in node}
+
+
+def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:
+    from ...optimise.job.messages import toml
+
+    for table in key["tables"]:
+        if table["description"]:
+            yield f"- {table['description']} Needs: {', '.join(table['required']) or 'nothing'}"
+        for name, facts in table["keys"].items():
+            words = f", one of {', '.join(map(str, facts['enum']))}" if "enum" in facts else ""
+            example = f"; such as {name} = {toml(facts['examples'][0])}" if "examples" in facts else ""
+            yield f"  {name}: {facts.get('description', '')}{words}{example}"
+    if not key["tables"] and key.get("examples"):
+        yield f"  such as {toml(key['examples'][0])}"

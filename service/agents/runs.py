@@ -1,0 +1,210 @@
+"""Tools that make runs and read them: a search, its front, files of its designs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field
+
+from ...model.errors import InfeasibleError, InputError
+from ...model.file_names import path_text
+from ...objectives.kinds import System
+from ..designs.picking_options import require_alone
+from ..designs.selection import none_meets, numbered, part_of
+from ..designs.shown_units import result_in
+from ..jobs.submission import LONGEST_CALL, ending_own, job_json
+from ..motion.design_file import ENDINGS, design_file
+from ..runs.result import Result, csv_text, json_text, unsearched_result
+from ..runs.run_folder import write_file
+from ..text.design_options import Pick, Selection, SettingOptions
+from ..text.options import Run, Units
+from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
+from ..topics.discovery import ALL
+from .call import Answer, Call, tables_of, text_of
+from .inputs import Files, Number, OptionalJob, Shown
+
+if TYPE_CHECKING:
+    from ...optimise.problem.problem import Problem
+    from ..store import Store
+    from ..workers.own_search import Opened
+
+Written = Literal["csv", "json", "figures", "report", "pdf", "dxf", "svg", "motion", "gif", "cycle"]
+_NAMES = {
+    "csv": "designs.csv",
+    "json": "designs.json",
+    "report": "design-{}-report.html",
+    "pdf": "design-{}-report.pdf",
+}
+_NAMES |= {
+    what: f"design-{{}}{ending}" if ending == f".{what}" else f"design-{{}}-{what}{ending}"
+    for what, (ending, *_) in ENDINGS.items()
+}
+"""Names of the files that are written, with the number of the design."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """A new search, or one that was stopped."""
+
+    job: OptionalJob = None
+    files: Files = field(default_factory=dict)
+    resume: Annotated[
+        str | None, Field(description="Instead of a job: a run that was cancelled or interrupted, to go on with.")
+    ] = None
+    seconds: Annotated[
+        float | None, Field(description="Stop after so many seconds with what is found so far.", gt=0.0)
+    ] = None
+
+    def begun(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
+        """Return the context of its run. Raises `InputError` for neither or both of job and run."""
+        from ..workers.own_search import new_run, resumed_run, with_settings
+
+        if (self.job is None) == (self.resume is None):
+            got = "both" if self.job else "neither"
+            raise InputError(f"a search is of a job, or goes on with a run; got {got}; give one")
+        if self.resume is not None:
+            if settings.given:
+                raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+            return resumed_run(store, call.runs, call.folder(self.resume).name, call.problem_again)
+        tables = tables_of(self.job or {}, self.files)
+        problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.given)
+        return new_run(store, call.runs, problem, stated, [job_json(stated)])
+
+
+def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Shown) -> Answer:
+    """Search the Pareto front of a job, and keep it as a run.
+
+    Takes from a second to minutes; reports progress. Cancelled, it keeps what it found, and `resume` goes on with it
+    and ends as if it had never stopped. The answer has some designs of the front; `front` chooses others. numbers are
+    those of the designs, knee and extremes their places in the answer.
+    """
+    from ..store import Limits
+    from ..workers.engines import EngineOptions, engine_of
+    from ..workers.heartbeat import Budget
+    from ..workers.own_search import keep_front, kept_alive
+    from ..workers.own_search import search as front_of_run
+
+    with ExitStack() as entered:
+        try:
+            opened = entered.enter_context(search.begun(call, entered.enter_context(call.store()), settings))
+        except InfeasibleError as error:
+            return Answer(unsearched_result(error).record(), str(error), is_error=True)
+        run, problem, claim = opened
+        entered.enter_context(kept_alive(claim, again=f"optimise with resume = {claim.job.run}"))
+        budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
+        engine = entered.enter_context(engine_of(EngineOptions()))
+        entered.enter_context(ending_own(problem, engine))
+        front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
+        result = keep_front(opened, front, budget)
+    shown = result_in(result, part.units, problem)
+    more = {"done": "", "infeasible": ""}.get(result.status, f"; go on with optimise, resume = {run.path.name}")
+    text = text_of(lambda screen: show_result(screen, shown))
+    record = _record(shown, spread_rows(shown, range(len(shown.designs)), part.rows), part)
+    return Answer(record, f"{text}\nRun: {run.path.name}{more}", is_error=result.status != "done")
+
+
+def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Shown) -> Answer:
+    """Show the front of a run, a part of it, or one design chosen from it with all its quantities and trade-offs.
+
+    numbers are those of the designs; knee and extremes are their places in the answer.
+    """
+    folder, result = call.front(run)
+    chosen = selection.rows(result)
+    picked = _picked(result, run, chosen, pick)
+    if not chosen:
+        raise InfeasibleError(none_meets(result, selection.where or []))
+    shown = result_in(result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result))
+    if picked is None:
+        rows = spread_rows(shown, chosen, part.rows)
+        return Answer(_record(shown, rows, part), text_of(lambda screen: show_front(screen, shown, rows, most=0)))
+    record = _record(shown, [picked], replace(part, columns=part.columns or [ALL]))
+    record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
+    text = text_of(lambda screen: show_design(screen, shown.designs[picked]))
+    return Answer(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
+
+
+def files(
+    call: Call,
+    *,
+    run: Run,
+    write: Annotated[
+        list[Written],
+        Field(description="Of the run csv, json, figures; of a design the others.", min_length=1),
+    ],
+    design: Number = None,
+    units: Units = "metric",
+) -> Answer:
+    """Write files of a run into its folder, and say where they are.
+
+    Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
+    as HTML or PDF, a drawing at true scale as DXF or SVG, its motion as HTML or GIF, its cycle as CSV.
+    """
+    from ..designs.stored_designs import stored_design
+
+    folder, result = call.front(run)
+    picked = _picked(result, run, [], Pick(design=design))
+    number = 1 + ((result.knee or 0) if picked is None else picked)
+    problem = call.problem_of_run(folder, result)
+    found, shown = stored_design(problem, result, number), result_in(result, units, problem)
+    named = {"name": result.name, "design": f"design {number}"}
+    written: dict[str, list[str]] = {}
+    for what in dict.fromkeys(write):
+        if call.cancelled():
+            break
+        if what == "figures":
+            written[what] = _figures(problem, result, folder, units)
+            continue
+        content: str | bytes
+        if what == "csv":
+            content = csv_text(numbered(shown.designs))
+        elif what == "json":
+            content = json_text(shown.record())
+        elif what in ENDINGS:
+            content = design_file(what, found, None, units, **named)
+        else:
+            from ..report.run_report import run_report
+
+            content = run_report(folder, result, number, pdf=what == "pdf", units=units)
+        file = folder / _NAMES[what].format(number)
+        file = file if units == "metric" else file.with_stem(f"{file.stem}-{units}")
+        write_file(file, content)
+        written[what] = [path_text(file)]
+    record = {"run": path_text(folder), "number": number, "files": written}
+    return Answer(record, "\n".join(f"{what}: {', '.join(paths)}" for what, paths in written.items()))
+
+
+def _record(shown: Result, rows: Sequence[int], part: Shown) -> dict[str, Any]:
+    """Return some designs of a result, with their numbers, for JSON."""
+    names = part.keys(list(shown.designs[0]), usual_keys(shown)) if shown.designs else None
+    return part_of(shown, rows).record(names) | {"numbers": [row + 1 for row in rows]}
+
+
+def _picked(result: Result, run: str, chosen: Sequence[int], pick: Pick) -> int | None:
+    """Return which design is named or chosen by its values, None without either."""
+    if pick.design is None:
+        return pick.row(result, chosen)
+    require_alone(pick.design, result, run, others=pick.picking)
+    return pick.design - 1
+
+
+def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
+    """Return what one objective costs in the others at a design, in words; nothing where there are no such rates."""
+    from ..designs.stored_designs import front_of, stored_design
+    from ..designs.trade_offs import trade_offs_of
+
+    try:
+        problem = call.problem_of_run(folder, result)
+        return trade_offs_of(front_of(problem, result), row, stored_design(problem, result, row + 1), units)
+    except InputError:
+        return []
+
+
+def _figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
+    from ..designs.stored_designs import front_of
+    from ..figures.front import draw_front
+
+    return [path_text(file) for file in draw_front(front_of(problem, result), folder / "figures", units)]

@@ -1,0 +1,160 @@
+"""Server for agents: the Model Context Protocol over standard input and output."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import threading
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import SlidercrankError
+from ...model.extras import NamingExtra
+from ...optimise.front.progress import Progress, standing
+from ..resources.disk import full_places, is_full
+from ..runs.result import json_ready
+from . import questions, runs
+from .call import Answer, Call
+from .tool import Tool
+
+with NamingExtra("serving agents needs"):
+    import anyio
+    from mcp.server import Server, ServerRequestContext
+    from mcp.server.stdio import stdio_server
+    from mcp_types import CallToolRequestParams, CallToolResult, ListToolsResult, TextContent, ToolAnnotations
+    from mcp_types import PaginatedRequestParams as Page
+    from mcp_types import Tool as Declared
+
+if TYPE_CHECKING:
+    from anyio.streams.memory import MemoryObjectReceiveStream
+    from mcp.server.session import ServerSession
+
+_log = logging.getLogger(__name__)
+TOOLS = (
+    Tool("list", questions.list_known),
+    Tool("describe", questions.describe),
+    Tool("check", questions.check),
+    Tool("optimise", runs.optimise, writes=True),
+    Tool("front", runs.front),
+    Tool("ask", questions.ask),
+    Tool("files", runs.files, writes=True),
+)
+_BY_NAME = {tool.name: tool for tool in TOOLS}
+INSTRUCTIONS = """Sizes offset slider-crank mechanisms: feeders, presses, pumps, compressors, sieves, tilting supports.
+State what a machine must do as a job, and get the Pareto front of designs with all their quantities.
+
+1. list: jobs that ship, quantities, topics. describe one that is near, such as feeder, and its keys; write your job.
+2. check the job: it says what was understood, and what contradicts what.
+3. optimise it. The run that it makes has designs with numbers.
+4. front chooses designs of a run; ask analyses one; files writes report, drawing, tables.
+
+Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers end with their unit: crank_mm."""
+
+
+def serve(place: Path, allowed: frozenset[str]) -> None:
+    """Serve agents until standard input ends. place: of all that is read and written. allowed: functions of jobs.
+
+    Raises `MissingExtra` at import without the package `mcp`.
+    """
+    anyio.run(_serve, place, allowed)
+
+
+async def _serve(place: Path, allowed: frozenset[str]) -> None:
+    searches, others = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1)
+
+    async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
+        return ListToolsResult(tools=[_declared(tool) for tool in TOOLS])
+
+    async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
+        limiter = searches if params.name == "optimise" else others
+        answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter)
+        content = [TextContent(type="text", text=answer.text)]
+        record = json_ready(answer.record) or None
+        return CallToolResult(content=[*content], structured_content=record, is_error=answer.is_error)
+
+    server: Server[Any] = Server(
+        "slidercrank",
+        version=_version(),
+        instructions=INSTRUCTIONS,
+        on_list_tools=on_list_tools,
+        on_call_tool=on_call_tool,
+    )
+    async with stdio_server() as (read, write):
+        await server.run(read, write, server.create_initialization_options())
+
+
+async def _answer(
+    session: ServerSession,
+    make: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
+    params: CallToolRequestParams,
+    limiter: anyio.CapacityLimiter,
+) -> Answer:
+    """Answer a call in a thread, which hears of a cancellation and reports its progress meanwhile."""
+    cancelled, loop = threading.Event(), asyncio.get_running_loop()
+    send, receive = anyio.create_memory_object_stream[Progress](math.inf)
+    with send, receive:
+        async with anyio.create_task_group() as group:
+            group.start_soon(_relay, receive, session)
+            group.start_soon(_set_when_cancelled, cancelled)
+
+            def report(at: Progress) -> None:
+                loop.call_soon_threadsafe(partial(send.send_nowait, at))
+
+            call = make(cancelled.is_set, report)
+            run = partial(_run, params.name, params.arguments or {}, call)
+            answer = await anyio.to_thread.run_sync(run, limiter=limiter)
+            group.cancel_scope.cancel()
+    return answer
+
+
+async def _relay(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
+    async for at in progress:
+        message = f"{standing(vars(at))}: {at.evaluations:,} evaluated, {at.feasible:,} feasible"
+        await session.report_progress(at.seconds, None, message)
+
+
+async def _set_when_cancelled(cancelled: threading.Event) -> None:
+    try:
+        await anyio.sleep_forever()
+    finally:
+        cancelled.set()
+
+
+def _run(name: str, arguments: Mapping[str, Any], call: Call) -> Answer:
+    """Return the answer of a tool, or one sentence on why there is none."""
+    try:
+        if name not in _BY_NAME:
+            return _refused(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
+        return _BY_NAME[name].answer(call, arguments)
+    except SlidercrankError as error:
+        return _refused(str(error))
+    except MemoryError:
+        return _refused("there must be memory enough for this; got less; end other programs, or ask for less")
+    except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
+        if isinstance(error, OSError) and is_full(error):
+            return _refused(f"what is computed is written to disks; {full_places(error)}; make room")
+        _log.exception("the tool %s failed", name)
+        return _refused(
+            f"unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the input; "
+            "its standard error has more"
+        )
+
+
+def _refused(sentence: str) -> Answer:
+    return Answer({}, sentence, is_error=True)
+
+
+def _declared(tool: Tool) -> Declared:
+    hints = ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
+    return Declared(name=tool.name, description=tool.description, input_schema=tool.schema, annotations=hints)
+
+
+def _version() -> str:
+    try:
+        return version("slidercrank")
+    except PackageNotFoundError:
+        return ""

@@ -1,0 +1,105 @@
+"""A tool: a function whose parameters are its inputs, from which schema and validation follow."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from functools import cached_property
+from typing import Any, get_args, get_type_hints
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+from pydantic.fields import FieldInfo
+
+from ...model.errors import InputError
+from ...objectives.units import closest, shown
+from .call import Answer, Call
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool. run: takes a call, and inputs by name; its docstring is the description.
+
+    A parameter is annotated as an option of the command line is, its help included, or with a pydantic `Field`; one of
+    a dataclass stands for its fields.
+    writes: whether it writes files.
+    """
+
+    name: str
+    run: Callable[..., Answer]
+    writes: bool = False
+
+    @property
+    def description(self) -> str:
+        """Description for agents."""
+        return inspect.cleandoc(self.run.__doc__ or "")
+
+    @cached_property
+    def groups(self) -> dict[str, Any]:
+        """Dataclasses of inputs, by the parameters that take them."""
+        hints = get_type_hints(self.run, include_extras=True)
+        return {name: hint for name, hint in hints.items() if is_dataclass(hint) and name not in ("call", "return")}
+
+    @cached_property
+    def inputs(self) -> type[BaseModel]:
+        """Model of the inputs."""
+        hints, found = get_type_hints(self.run, include_extras=True), dict[str, Any]()
+        for name, parameter in inspect.signature(self.run).parameters.items():
+            if name in self.groups:
+                types = get_type_hints(self.groups[name], include_extras=True)
+                found |= {one.name: _field(types[one.name], _default_of(one)) for one in fields(self.groups[name])}
+            elif parameter.kind is parameter.KEYWORD_ONLY:
+                found[name] = _field(hints[name], parameter.default)
+        return create_model(self.name, __config__=ConfigDict(extra="forbid", strict=True), **found)
+
+    @cached_property
+    def schema(self) -> dict[str, Any]:
+        """JSON Schema of the inputs."""
+        from ...optimise.job.schema import schema_of
+
+        return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
+
+    def answer(self, call: Call, given: Mapping[str, Any]) -> Answer:
+        """Run the tool. Raises `InputError` for inputs that it does not have."""
+        try:
+            inputs = self.inputs.model_validate(dict(given))
+        except ValidationError as error:
+            raise InputError("; ".join(map(self._sentence, error.errors(include_url=False)[:5]))) from None
+        values = {name: getattr(inputs, name) for name in self.inputs.model_fields}
+        for name, group in self.groups.items():
+            values[name] = group(**{one.name: values.pop(one.name) for one in fields(group)})
+        return self.run(call, **values)
+
+    def _sentence(self, details: Any) -> str:
+        """Return what is wrong with an input: rule, value, remedy."""
+        from ...optimise.job.messages import rule_of
+
+        name, known = str(details["loc"][0]), list(self.inputs.model_fields)
+        if details["type"] == "extra_forbidden":
+            near = closest(name, known)
+            remedy = f"did you mean {near}?" if near else "leave it out"
+            return f"{self.name} takes {', '.join(known) or 'nothing'}; got {shown(name)}; {remedy}"
+        if details["type"] == "missing":
+            return f"{self.name} needs {name}; it is missing; add it"
+        path = ".".join(str(part) for part in details["loc"] if not str(part).startswith(("dict[", "str", "list[")))
+        return f"{path} {rule_of(details)}; got {shown(details['input'])}; correct it"
+
+
+def _default_of(one: Any) -> Any:
+    """Return the default of a field of a dataclass, as a parameter has it."""
+    if one.default_factory is not MISSING:
+        return one.default_factory()
+    return inspect.Parameter.empty if one.default is MISSING else one.default
+
+
+def _field(hint: Any, default: Any) -> tuple[Any, FieldInfo]:
+    """Return type and field of a parameter."""
+    kind, *said = get_args(hint)
+    field = next((one for one in said if isinstance(one, FieldInfo)), None)
+    if field is None:
+        option: Any = next((one for one in said if not isinstance(one, str)), None)
+        text = next((one for one in said if isinstance(one, str)), None) or option.help.partition("  [")[0]
+        field = Field(description=text, ge=getattr(option, "min", None), le=getattr(option, "max", None))
+    if default is not inspect.Parameter.empty:
+        field = FieldInfo.merge_field_infos(field, default=default)
+    return kind, field

@@ -1,0 +1,26 @@
+"""`slidercrank mcp`: a server for agents."""
+
+from __future__ import annotations
+
+import os
+
+from ...model.extras import required
+from ..jobs.stores import STORE_VARIABLE
+from ..runs.run_folder import runs_place
+from ..text.options import AllowQuantity, Runs
+from .optimise import SEARCH
+
+
+def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
+    """Serve agents by the Model Context Protocol, on standard input and output, until the input ends.
+
+    An agent's client starts it. All is read and written where runs are kept, the store included; what else is to be
+    said goes to standard error.
+    """
+    required("mcp", "serving agents needs")
+    from ...model.kernel.disk import compile_ahead
+    from ..agents.server import serve
+
+    compile_ahead(*SEARCH)
+    os.environ.pop(STORE_VARIABLE, None)
+    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()))

@@ -1,0 +1,81 @@
+"""Options that take a part of a run's designs, or choose one; and settings of the search that finds them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+
+from ..designs.picking_options import picked_row
+from ..designs.selection import chosen_rows
+from ..runs.result import Result
+from .options import DesignOfRun
+
+
+@dataclass(frozen=True)
+class SettingOptions:
+    """Settings of the optimiser in place of the job's."""
+
+    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None
+    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Those that are given."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Options that take a part of a run's designs and sort them."""
+
+    where: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CONDITION"),
+        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
+    ] = None
+    sort: Annotated[
+        str | None,
+        typer.Option(metavar="NAME"),
+        "Sort by a quantity or column: best first for an objective, else smallest first.",
+    ] = None
+    reverse: Annotated[bool, "Turn the order round."] = False
+
+    @property
+    def sorts(self) -> bool:
+        """Whether the order is other than the run's."""
+        return self.sort is not None or self.reverse
+
+    def rows(self, result: Result) -> list[int]:
+        """Return the rows of the designs, in their order."""
+        return chosen_rows(result, self.where or [], sort=self.sort, reverse=self.reverse)
+
+
+@dataclass(frozen=True)
+class Pick:
+    """Options that name one design of a run, or choose it by its values."""
+
+    design: DesignOfRun = None
+    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False
+    topsis: Annotated[
+        str | None,
+        typer.Option(metavar="WEIGHTS"),
+        'Choose one design by weights of the objectives, such as "peak_torque=2, transmission_angle=1".',
+    ] = None
+    lexicographic: Annotated[
+        str | None,
+        typer.Option(metavar="RANKING"),
+        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
+        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
+    ] = None
+
+    @property
+    def picking(self) -> bool:
+        """Whether a design is chosen by its values."""
+        return self.knee or self.topsis is not None or self.lexicographic is not None
+
+    def row(self, result: Result, rows: Sequence[int]) -> int | None:
+        """Return which of the rows is chosen by its values, None without such an option, and of no rows."""
+        return picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
