@@ -142,8 +142,7 @@ def _journal(curves: LooseCurves, radius: float) -> Panel:
         Line("", curves.journal_x, curves.journal_y, THIN),
         Line("", curves.journal_x[touching], curves.journal_y[touching], DOTS),
     )
-    across = words("journal in its bearing, along the slider line, {unit}; upward: across it", unit=Unit(LENGTH))
-    title = "path of the journal's centre; dots: in contact"
+    title, across = "path of the journal's centre (dots: in contact)", "along the slider line (upward: across it)"
     return Panel(title, across, lines, LENGTH, LENGTH, equal=True)
 
 
