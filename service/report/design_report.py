@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
@@ -11,22 +10,19 @@ from ...objectives.keys import metric_key
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
-from ...optimise.search.fingerprint import version_of
 from ..designs.columns import chosen_columns, find_column
 from ..designs.variation import Variation
 from ..render.numerals import measured, rounded
 from ..text.summary import machine_in_words
 from .decision_section import decision_section
-from .design_section import design_section, numbers_section
-from .document import Facts, Paragraph, Report, Section
+from .design_section import design_section, linkage_picture, numbers_section
+from .document import Facts, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
 from .front_section import front_section
 from .job_section import job_section, search_section
 from .measured_section import measured_section
 from .subject import Subject
 from .swing_section import SwingOfSubject
-
-_DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 
 def design_report(subject: Subject, *, made: float | None = None) -> Report:
@@ -43,7 +39,7 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
             _summary(subject),
             *([] if decision is None else [decision]),
             job_section(subject),
-            search_section(subject),
+            search_section(subject, when),
             front_section(subject),
             design_section(subject),
             *([] if swing is None else [swing.section()]),
@@ -51,7 +47,6 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
             numbers_section(subject),
-            _versions(subject, when),
         ),
     )
 
@@ -70,7 +65,8 @@ def _summary(subject: Subject) -> Section:
         "Machine": _machine(subject),
         "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
     }
-    return Section("Summary", (Facts({title: lines for title, lines in rows.items() if lines}),))
+    told = Facts({title: lines for title, lines in rows.items() if lines})
+    return Section("Summary", (told, linkage_picture(subject)))
 
 
 def _chosen(subject: Subject, key: str) -> str:
@@ -114,20 +110,3 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
     if better:
         found.append(f"{counted(better, 'design')} of the front at least as good in every objective")
     return found
-
-
-def _versions(subject: Subject, when: str) -> Section:
-    rows = {
-        "Front computed by": [_listed(subject.versions) or "not recorded"],
-        "Report drawn by": [_listed({name: version_of(name) for name in _DREW})],
-        "Made": [when],
-    }
-    note = (
-        "Crank angles are counter-clockwise from the slider line's direction; signs and formulas are those of "
-        "the theory that comes with slidercrank."
-    )
-    return Section("How this was made", (Facts(rows), Paragraph(note, "note")))
-
-
-def _listed(versions: Mapping[str, str]) -> str:
-    return ", ".join(f"{name} {number}" for name, number in versions.items())

@@ -28,14 +28,10 @@ _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 
 
 def design_section(subject: Subject) -> Section:
-    """Return drawing, requirements, stationarity and trade-offs of the design."""
+    """Return requirements, stationarity, trade-offs and curves of the design."""
     return Section(
         subject.label.capitalize(),
         (
-            Picture(
-                "The linkage, to scale",
-                lambda: drawing_figure(design_drawing(subject.design, name=subject.result.name, design=subject.label)),
-            ),
             *_rules(subject),
             *(Paragraph(f"Beyond what is allowed: {unit_text(line)}.", "bad") for line in subject.violated),
             *_optimality(subject),
@@ -73,6 +69,7 @@ def numbers_section(subject: Subject) -> Section:
                 "with every digit, the fifth its name.",
                 "note",
             ),
+            *([Paragraph(f"Not of this machine: {', '.join(absent)}.", "note")] if absent else []),
             Table(
                 "",
                 ("quantity", "value", "unit", "every digit", "column"),
@@ -82,7 +79,6 @@ def numbers_section(subject: Subject) -> Section:
                 frozenset(place for place, column in enumerate(columns) if column.key in objectives),
                 small=True,
             ),
-            *([Paragraph(f"Not of this machine: {', '.join(absent)}.", "note")] if absent else []),
         ),
     )
 
@@ -188,6 +184,16 @@ def _optimality(subject: Subject) -> list[Block]:
     if sentences:
         blocks.append(Paragraph("Trade-offs here, to first order: " + unit_text("; ".join(sentences)) + "."))
     return blocks
+
+
+def linkage_picture(subject: Subject) -> Picture:
+    """Return the drawing of the design."""
+    name, label = subject.result.name, subject.label
+    return Picture(
+        "The linkage, to scale",
+        lambda: drawing_figure(design_drawing(subject.design, name=name, design=label)),
+        tallest=3.6,
+    )
 
 
 def _sheet(subject: Subject) -> Figure:

@@ -44,11 +44,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure that is drawn when it is needed. raster: as points instead of lines, for thousands of marks."""
+    """A figure that is drawn when it is needed.
+
+    raster: as points instead of lines, for thousands of marks. tallest: on paper, inches.
+    """
 
     title: str
     draw: Callable[[], Figure] = field(repr=False)
     raster: bool = False
+    tallest: float = 6.9
 
 
 Block = Paragraph | Facts | Table | Picture

@@ -28,7 +28,7 @@ def front_section(subject: Subject) -> Section:
     if len(result.designs) > 1:
         if len(result.objectives) > 1:
             title = "Every pair of objectives"
-            blocks.append(Picture(title, partial(scatter_matrix, subject.front, subject.system), raster))
+            blocks.append(Picture(title, partial(scatter_matrix, subject.front, subject.system), raster, tallest=5.2))
         title = "Dimensions and objectives of every design"
         blocks.append(Picture(title, partial(parallel_coordinates, subject.front, subject.system), raster))
     else:

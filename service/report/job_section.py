@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ...objectives.kinds import unit_text
+from ...optimise.search.fingerprint import version_of
 from ..render.numerals import rounded
 from ..text.summary import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Section
 from .subject import Subject
+
+_DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 
 def job_section(subject: Subject) -> Section:
@@ -22,8 +27,8 @@ def job_section(subject: Subject) -> Section:
     return Section("The job", (Facts(rows), *warned))
 
 
-def search_section(subject: Subject) -> Section:
-    """Return how the front was found, and how good it is known to be."""
+def search_section(subject: Subject, made: str) -> Section:
+    """Return how the front was found, how good it is known to be, and what computed it. made: when the report was."""
     result, settings = subject.result, subject.problem.settings
     stationary = sum(row.get("status") == "stationary" for row in result.designs)
     rows = {
@@ -36,9 +41,15 @@ def search_section(subject: Subject) -> Section:
         "Hypervolume": f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",
         "Outcome": f"{result.status}: {result.message}",
         "Stationary designs": f"{stationary} of {len(result.designs)}",
+        "Computed by": _listed(subject.versions) or "not recorded",
+        "Report drawn by": f"{_listed({name: version_of(name) for name in _DREW})}; {made}",
     }
     facts = Facts({title: [line] for title, line in rows.items()})
     return Section("How the front was found", (facts, *_certificate(subject)))
+
+
+def _listed(versions: Mapping[str, str]) -> str:
+    return ", ".join(f"{name} {number}" for name, number in versions.items())
 
 
 def _certificate(subject: Subject) -> tuple[Block, ...]:

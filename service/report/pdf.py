@@ -1,74 +1,85 @@
-"""A report as PDF on A4, by matplotlib: text that can be searched, figures as lines."""
+"""A report as PDF on A4 pages, set by typst: tagged, with text that can be searched and figures as lines."""
 
 from __future__ import annotations
 
-import io
+import json
+import re
+import shutil
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
-from matplotlib.backends.backend_mixed import MixedModeRenderer
-from matplotlib.backends.backend_pdf import Op, PdfFile, RendererPdf
-from matplotlib.figure import Figure
+import matplotlib
 
-from ..figures.style import new_figure, place
-from .document import Report
-from .pages import HEIGHT, WIDTH, Page, pages
+from ...model.extras import required
+from ...objectives.kinds import SHOWN, unit_text
+from ..figures.style import image
+from .document import Block, Facts, Paragraph, Picture, Report, Table
 
-_DOTS = 72  # of a PDF, an inch
+typst = required("typst", "reports as PDF need")
+
+_TEMPLATE = Path(__file__).parent / "page" / "report.typ"
+_FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
+"""Those of the figures. No font of the machine is used, so that pages are the same everywhere."""
+_ACROSS = 6.77  # inches
 _SHARP = 220  # dots an inch of what is drawn as points
+_UNITS = sorted({unit_text(face.symbol) for of in SHOWN for face in (of.metric, of.inch) if face}, key=len)[::-1]
+_UNIT = "|".join(map(re.escape, [*_UNITS, "%"]))
+_OF_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/])|(?<=,) (?:{_UNIT})$|^(?:{_UNIT})$")
+"""A unit behind its number, at the end of a head, or alone."""
+_KEPT = "\u00a0"  # a space at which no line is broken
 
 
 def pdf_file(report: Report) -> bytes:
-    """Return the report as the content of a PDF file."""
-    out = io.BytesIO()
-    # No date of its own: the report says when it was made.
-    metadata = {"Title": report.title, "Subject": report.subtitle, "Creator": "slidercrank", "CreationDate": None}
-    file: Any = PdfFile(out, metadata=metadata)  # type: ignore[no-untyped-call]
-    for page in pages(report):
-        _write(file, page)
-    file.finalize()
-    file.close()
-    return out.getvalue()
+    """Return the report as the content of a PDF file. Raises `MissingExtra` without typst."""
+    with TemporaryDirectory(prefix="slidercrank-") as name:
+        folder = Path(name)
+        shutil.copy(_TEMPLATE, folder)
+        sections = [
+            {"title": section.title, "blocks": _blocks(section.blocks, folder, number)}
+            for number, section in enumerate(report.sections)
+        ]
+        told = {"title": report.title, "subtitle": report.subtitle, "made": report.made}
+        content = told | {"signatures": report.signatures, "sections": sections}
+        (folder / "report.json").write_text(json.dumps(content), encoding="utf-8")
+        found = typst.compile(folder / _TEMPLATE.name, font_paths=[_FONTS], ignore_system_fonts=True)
+    return bytes(found)
 
 
-def _write(file: Any, page: Page) -> None:
-    """Write a page: its texts and lines, then its figures, each scaled to its place."""
-    file.newPage(WIDTH, HEIGHT)
-    _draw(file, page.figure, _SHARP)
-    for inset in page.insets:
-        file.output(Op.gsave)
-        place = (inset.scale, 0, 0, inset.scale, inset.left * _DOTS, inset.bottom * _DOTS)
-        file.output(*place, Op.concat_matrix)
-        _draw(file, _photograph(inset.figure, inset.scale) if inset.raster else inset.figure, _SHARP)
-        file.output(Op.grestore)
-
-
-def _photograph(figure: Figure, scale: float) -> Figure:
-    """Return a figure that shows another one as points: thousands of marks as lines would take half a minute."""
-    width, height = figure.get_size_inches()
-    figure.set_dpi(round(_SHARP * scale))
-    canvas: Any = figure.canvas
-    canvas.draw()
-    found = new_figure(width, height)
-    axes = place(found, 0.0, 0.0, width, height)
-    axes.axis("off")
-    axes.imshow(np.asarray(canvas.buffer_rgba()), aspect="auto", interpolation="none")
+def _blocks(blocks: Sequence[Block], folder: Path, section: int) -> list[dict[str, Any]]:
+    """Return the blocks of a section as the template takes them; pictures are drawn into the folder."""
+    found = []
+    for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
+        if isinstance(block, Picture):
+            content = _drawn(block, folder / f"{section}-{number}")
+        elif isinstance(block, Paragraph):  # what is said of a table stays with it
+            content = {"tone": block.tone, "text": _joined(block.text), "stays": isinstance(after, Table)}
+        elif isinstance(block, Facts):
+            content = {"rows": {name: list(map(_joined, lines)) for name, lines in block.rows.items()}}
+        else:
+            cells = [list(map(_joined, row)) for row in block.rows]
+            places = {"right": sorted(block.right), "bold": sorted(block.bold)}
+            content = asdict(block) | places | {"heads": list(map(_joined, block.heads)), "rows": cells}
+        found.append({"kind": type(block).__name__} | content)
     return found
 
 
-def _draw(file: Any, figure: Figure, dots: int) -> None:
-    """Draw a figure into the page that is open."""
-    width, height = figure.get_size_inches()
-    before, page = figure.dpi, (file.width, file.height)
-    figure.dpi = _DOTS
-    # The backend leaves out what is beyond the size of the file's page, in the coordinates of the figure: it does not
-    # know that a figure wider than the page is scaled to fit.
-    file.width, file.height = width, height
-    try:
-        vectors: Any = RendererPdf(file, dots, height, width)  # type: ignore[no-untyped-call]
-        renderer: Any = MixedModeRenderer(figure, width, height, dots, vectors)  # type: ignore[no-untyped-call]
-        figure.draw(renderer)
-        renderer.finalize()
-    finally:
-        figure.dpi = before
-        file.width, file.height = page
+def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
+    """Draw a picture, and return its title, its file and its size, inches."""
+    figure = picture.draw()
+    width, height = map(float, figure.get_size_inches())
+    scale = min(_ACROSS / width, picture.tallest / height, 1.0)
+    file = file.with_suffix(".png" if picture.raster else ".pdf")
+    if picture.raster:
+        figure.set_dpi(round(_SHARP * scale))
+        file.write_bytes(image(figure, "png"))
+    else:
+        figure.savefig(file, metadata={"CreationDate": None})
+    return {"title": picture.title, "file": file.name, "width": scale * width, "height": scale * height}
+
+
+def _joined(text: str) -> str:
+    """Return a text with no break within a unit, nor before one of a number."""
+    return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _KEPT), text)

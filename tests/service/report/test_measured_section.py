@@ -17,12 +17,13 @@ from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph, Picture, Section, Table
 from slidercrank.service.report.html import html_file
 from slidercrank.service.report.measured_section import measured_section
-from slidercrank.service.report.pages import pages
+from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.topics.measured.analysis import numbers
 from tests.service import fronts
 from tests.service.conftest import Command
+from tests.service.report.paper import paper
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +80,7 @@ def test_all_curves_at_once_are_spread_over_pages(subject: Subject) -> None:
     assert len(measured.values) == 18
     assert len(pictures) == 3
     only = replace(design_report(subject), sections=(section,))
-    assert min(inset.scale for page in pages(only) for inset in page.insets) > 0.4
+    assert min(inset.scale for page in paper(pdf_file(only)) for inset in page.insets) > 0.4
 
 
 def test_the_command_writes_them_and_refuses_a_bad_file(tmp_path: Path, kept: Path, command: Command) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-import pypdfium2
 import pytest
 from matplotlib.collections import PathCollection
 from matplotlib.colors import to_rgb
@@ -16,11 +15,11 @@ from numpy.typing import NDArray
 from slidercrank.service.figures.style import BLUE, INK
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture
-from slidercrank.service.report.pages import HEIGHT, Inset, pages
 from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
+from tests.service.report.paper import A4, Inset, drawn, paper
 
 Image = NDArray[np.uint8]
 Shares = NDArray[np.float64]
@@ -36,18 +35,30 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
     front = fronts.front(designs=20)
     result = result_of(front, "kept")
     report = design_report(Subject(front.problem, result, 3, run="kept", versions={}), made=0.0)
-    paper = pypdfium2.PdfDocument(pdf_file(report))
-    titles = [block.title for section in report.sections for block in section.blocks if isinstance(block, Picture)]
+    content = pdf_file(report)
+    pictures = [block for section in report.sections for block in section.blocks if isinstance(block, Picture)]
+    places = [(page.number, inset) for page in paper(content) for inset in page.insets]
+    sheets = drawn(content, DOTS)
     found: dict[str, tuple[Figure, Inset, Image]] = {}
-    for page, drawn in zip(paper, pages(report), strict=True):
-        whole = page.render(scale=DOTS / 72, rev_byteorder=True).to_numpy()[:, :, :3]
-        for inset in drawn.insets:
-            width, height = inset.scale * inset.figure.get_size_inches()
-            top, left = round((HEIGHT - inset.bottom - height) * DOTS), round(inset.left * DOTS)
-            picture = whole[top : top + round(height * DOTS), left : left + round(width * DOTS)]
-            found[titles[len(found)]] = (inset.figure, inset, picture)
-    assert list(found) == titles
+    for number, inset in places:
+        # Pictures stand where there is room for them: one is told by the title above it.
+        picture = next(each for each in pictures if each.title == _title(content, number, inset, pictures))
+        figure = picture.draw()
+        width, height = (inset.scale * size for size in figure.get_size_inches())
+        left, top = inset.left / 72, A4[1] / 72 - inset.bottom / 72 - height
+        rows, columns = (
+            slice(round(at * DOTS), round((at + size) * DOTS)) for at, size in ((top, height), (left, width))
+        )
+        found[picture.title] = figure, inset, sheets[number][rows, columns]
+    assert set(found) == {picture.title for picture in pictures}
     return found
+
+
+def _title(content: bytes, number: int, inset: Inset, pictures: list[Picture]) -> str:
+    """Return the title that is the nearest above a picture."""
+    titles = {picture.title for picture in pictures}
+    above = [(box[1], text) for text, box in paper(content)[number].texts if text in titles and box[1] > inset.bottom]
+    return min(above)[1]
 
 
 def screen(figure: Figure, scale: float) -> Image:

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
@@ -20,9 +19,10 @@ from slidercrank.service.designs.swing_curves import swing_rows
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture, Report, Table
 from slidercrank.service.report.html import html_file
-from slidercrank.service.report.pages import pages
+from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
+from tests.service.report.paper import paper
 from tests.service.report.test_report import text_of, texts
 
 CRANK = {
@@ -64,11 +64,10 @@ def number(text: str) -> float:
 def test_both_files_say_everything(driver: str) -> None:
     found = report(driver)
     page = text_of(html_file(found).decode())
-    drawn = pages(found)
-    paper = re.sub(r"\s", "", "".join("".join(i.get_text() for i in each.figure.findobj(Text)) for each in drawn))
+    printed = re.sub(r"\s", "", "".join(each.whole for each in paper(pdf_file(found))))
     for text in texts(found):
         assert text in page, text
-        assert re.sub(r"\s", "", text) in paper, text
+        assert re.sub(r"\s", "", text) in printed, text
     for title in ("The linkage, to scale", "The design over its swing", "Change of quantities with the dimensions"):
         assert title in page
     assert sum(isinstance(block, Picture) for section in found.sections for block in section.blocks) == 5
