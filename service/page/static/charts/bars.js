@@ -2,6 +2,7 @@
 
 import { fill, h, svg } from "../lib/dom.js";
 import { range, scale } from "./scale.js";
+import { headedRow } from "../lib/table.js";
 
 const [HEIGHT, ROOM] = [200, { left: 12, right: 12, top: 26, bottom: 22 }];
 
@@ -31,10 +32,8 @@ export function tornado(rows, { largest, good, caption, signed = true }) {
         bar.style.left = signed ? `${value && value < 0 ? 50 - 50 * share : 50}%` : "0";
         const way = value && !kink ? good(value) : null;
         if (way !== null) bar.classList.add(way ? "better" : "worse");
-        return h(
-          "tr",
-          {},
-          h("th", { scope: "row" }, title),
+        return headedRow(
+          title,
           h("td", { class: signed ? "bars" : "bars plain", "aria-hidden": "true" }, bar),
           h("td", { class: "number" }, text),
         );

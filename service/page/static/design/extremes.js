@@ -2,7 +2,7 @@
 
 import { fill, h } from "../lib/dom.js";
 import { text, unitOf, valueOf } from "../lib/numbers.js";
-import { headsOf, scrolled, table } from "../lib/table.js";
+import { headedRow, headsOf, numberCell, scrolled, table } from "../lib/table.js";
 
 const ENDS = ["least", "greatest"];
 /** Heads of a table of the extremes of curves. */
@@ -97,10 +97,8 @@ export function extremeRows(every) {
       cell(curve, `${end}_at_crank_angle`, { withUnit: true }),
       cell(curve, `${end}_at_slider_position`, { withUnit: true }),
     ]);
-    return h(
-      "tr",
-      {},
-      h("th", { scope: "row" }, curve.title),
+    return headedRow(
+      curve.title,
       ends,
       h("td", { class: "quiet" }, unitOf(valueOf(curve, "least").unit)),
     );
@@ -111,10 +109,8 @@ export function extremeRows(every) {
 function strokes({ strokes: both }) {
   const known = ROWS.filter(([, key]) => valueOf(both.outward, key).value !== null); // no durations without a speed
   const rows = known.map(([title, key, difference, ratio]) =>
-    h(
-      "tr",
-      {},
-      h("th", { scope: "row" }, title),
+    headedRow(
+      title,
       STROKES.map((stroke) => cell(both[stroke], key, { withUnit: true })),
       cell(both, difference, { withUnit: true }),
       cell(both, ratio),
@@ -132,9 +128,9 @@ function cell(record, name, { withUnit = false } = {}) {
   if (!name) return h("td", {});
   const { value, unit } = valueOf(record, name);
   const shown = withUnit && value !== null && unit ? unitOf(unit) : "";
-  return h(
-    "td",
-    { class: "number", "data-key": name, "data-value": value === null ? "" : String(value) },
+  return numberCell(
+    name,
+    value,
     text(value, unit),
     shown && shown !== "°" ? `\u00a0${shown}` : shown,
   );

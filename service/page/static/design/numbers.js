@@ -4,7 +4,7 @@ import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { text, unitOf, withUnit } from "../lib/numbers.js";
 import { groupsOf } from "./groups.js";
-import { scrolled, scrolledTable } from "../lib/table.js";
+import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
 
@@ -113,10 +113,8 @@ function table(caption, designs, groups, names) {
   );
   /** @param {Api.Column} column */
   const line = (column) =>
-    h(
-      "tr",
-      {},
-      h("th", { scope: "row" }, helpLink(column, names)),
+    headedRow(
+      helpLink(column, names),
       cell(first.row[column.key], column, { name: first.name }),
       others.map(({ row, name }) => [
         cell(row[column.key], column, { name }),

@@ -9,7 +9,7 @@ import { capital } from "../lib/words.js";
 import { rankOf } from "./standing.js";
 import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
-import { headsOf, scrolledTable } from "../lib/table.js";
+import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
 const USUAL = { si: "0.5", inch: "1/64" }; // mm, in: what drawings and stock are made to
 const COUNT = 5;
@@ -177,13 +177,7 @@ export function rounding(
             "Apply",
           ),
         ),
-        numbers.map(({ key, unit }) =>
-          h(
-            "td",
-            { class: "number", "data-key": key, "data-value": String(row[key]) },
-            withUnit(row[key], unit, 7),
-          ),
-        ),
+        numbers.map(({ key, unit }) => numberCell(key, row[key], withUnit(row[key], unit, 7))),
         objectives.map((objective) => cost(row, objective)),
         h("td", {}, judged(row)),
       ),
@@ -206,9 +200,9 @@ export function rounding(
     const [before, after] = [base[objective.column], row[objective.column]];
     const gain = rankOf(before, objective) - rankOf(after, objective);
     const by = difference(after, before);
-    return h(
-      "td",
-      { class: "number", "data-key": objective.column, "data-value": String(after) },
+    return numberCell(
+      objective.column,
+      after,
       withUnit(after, objective.unit),
       h("div", { class: by === "=" || !gain ? "quiet" : gain > 0 ? "good" : "bad" }, by),
     );

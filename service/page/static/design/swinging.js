@@ -6,7 +6,7 @@ import { readySystem, text, unitOf, valueOf } from "../lib/numbers.js";
 import { extremeRows, HEADS, numbersTable } from "./extremes.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
-import { scrolled } from "../lib/table.js";
+import { headedRow, numberCell, scrolled } from "../lib/table.js";
 
 /** @type {Record<string, string>} */
 const TITLES = {
@@ -82,15 +82,9 @@ function numbers(found) {
         ? `${typeof way === "string" ? `${way}, ` : ""}at ${text(at, "deg", 4)}°`
         : "";
     return [
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, TITLES[name] ?? name.replaceAll("_", " ")),
-        h(
-          "td",
-          { class: "number", "data-key": key, "data-value": String(value) },
-          text(value, unit),
-        ),
+      headedRow(
+        TITLES[name] ?? name.replaceAll("_", " "),
+        numberCell(key, value, text(value, unit)),
         h("td", { class: "quiet" }, unitOf(unit)),
         h("td", { class: "quiet" }, where),
       ),

@@ -6,7 +6,7 @@ import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
-import { headsOf, scrolledTable } from "../lib/table.js";
+import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
 /** @typedef {"slider_position_mm" | "slider_velocity_m_s" | "slider_acceleration_m_s2"} Key */
 /** @type {[Key, string, string][]} */
@@ -134,12 +134,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
       "",
     ];
     /** @param {number | null} value @param {string} unit */
-    const cell = (value, unit) =>
-      h(
-        "td",
-        { class: "number", "data-value": value === null ? "" : String(value) },
-        withUnit(value, unit, 6),
-      );
+    const cell = (value, unit) => numberCell(null, value, withUnit(value, unit, 6));
     const rows = solutions.map(
       ({
         crank_angle_deg: at,

@@ -11,7 +11,7 @@ import { lengthsOf } from "./loading.js";
 import { keeping } from "./keeping.js";
 import { rankOf } from "./standing.js";
 import { sentenceOf } from "../lib/refusals.js";
-import { headsOf, table } from "../lib/table.js";
+import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
 
 /** @type {[keyof Page.Lengths, string][]} */
 const LENGTHS = [
@@ -375,16 +375,10 @@ function comparison(objectives, before, after) {
     const gain = rankOf(from, objective) - rankOf(to, objective);
     const same = Math.abs(gain) <= SAME * Math.abs(Number(from) || 1);
     const word = same ? "same" : gain > 0 ? "better" : "worse";
-    return h(
-      "tr",
-      {},
-      h("th", { scope: "row" }, objective.title),
+    return headedRow(
+      objective.title,
       h("td", { class: "number quiet" }, text(from, objective.unit)),
-      h(
-        "td",
-        { class: "number", "data-key": objective.column, "data-value": String(to) },
-        withUnit(to, objective.unit),
-      ),
+      numberCell(objective.column, to, withUnit(to, objective.unit)),
       h(
         "td",
         { class: same ? "quiet" : gain > 0 ? "good" : "bad" },

@@ -2,7 +2,7 @@
 
 import { fill, h } from "../lib/dom.js";
 import { capital } from "../lib/words.js";
-import { headsOf, table } from "../lib/table.js";
+import { headedRow, headsOf, table } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -101,10 +101,8 @@ export function correlations(explorer) {
     await data.need(data.objectives.map(({ column }) => column));
     const columns = data.objectives.map(({ column, title }) => ({ column, title }));
     const rows = columns.slice(1).map((up, n) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, up.title),
+      headedRow(
+        up.title,
         columns.slice(0, -1).map((across, m) => {
           if (m > n) return h("td", {});
           const value = rankCorrelation(

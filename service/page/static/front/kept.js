@@ -8,7 +8,7 @@ import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
 import { searching } from "../design/keeping.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
-import { headsOf, table as tableOf } from "../lib/table.js";
+import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -183,11 +183,7 @@ export function keptPanel(explorer) {
         one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement"),
       ),
       data.objectives.map(({ column, unit }) =>
-        h(
-          "td",
-          { class: "number", "data-key": column, "data-value": String(one.cells[column] ?? "") },
-          withUnit(one.cells[column], unit, 5),
-        ),
+        numberCell(column, one.cells[column], withUnit(one.cells[column], unit, 5)),
       ),
       words("note", "Note on"),
       h(

@@ -12,7 +12,7 @@ import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
-import { headsOf, scrolledTable } from "../lib/table.js";
+import { headedRow, headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Kind, Problem, Wish, Wishes } from "./wishes.js" */
@@ -328,16 +328,10 @@ export function wishingPanel(explorer) {
         value: withUnit(one.wished, one.unit, 4),
         limit: `to ${withUnit(one.wished, one.unit, 4)}`,
       }[one.wish];
-      return h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, one.title),
+      return headedRow(
+        one.title,
         h("td", { class: "number quiet" }, words),
-        h(
-          "td",
-          { class: "number", "data-key": one.quantity, "data-value": String(one.reached) },
-          withUnit(one.reached, one.unit),
-        ),
+        numberCell(one.quantity, one.reached, withUnit(one.reached, one.unit)),
         h(
           "td",
           {},
@@ -374,15 +368,9 @@ export function wishingPanel(explorer) {
       "All numbers of the wished design",
       headsOf(["Quantity", "wished design", `design ${near}`], (n) => n),
       shown.map(({ key, title, unit }) =>
-        h(
-          "tr",
-          {},
-          h("th", { scope: "row" }, title),
-          h(
-            "td",
-            { class: "number", "data-key": key, "data-value": String(wished[key] ?? "") },
-            withUnit(wished[key], unit),
-          ),
+        headedRow(
+          title,
+          numberCell(key, wished[key], withUnit(wished[key], unit)),
           h("td", { class: "number quiet" }, withUnit(beside[key], unit)),
         ),
       ),

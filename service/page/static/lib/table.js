@@ -27,6 +27,19 @@ export function headsOf(titles, isNumber) {
   );
 }
 
+/** Return a row of a table after its head. @param {Dom.Child} title @param {...Dom.Child} cells */
+export function headedRow(title, ...cells) {
+  return h("tr", {}, h("th", { scope: "row" }, title), cells);
+}
+
+/**
+ * Return the cell of a number, which tests and scripts read from its attributes.
+ * @param {string | null} key of the column @param {string | number | null | undefined} value @param {...Dom.Child} shown
+ */
+export function numberCell(key, value, ...shown) {
+  return h("td", { class: "number", "data-key": key, "data-value": String(value ?? "") }, shown);
+}
+
 /** Return a node within a region that scrolls sideways, by keyboard, too. @param {string} label @param {Element} node */
 export function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);

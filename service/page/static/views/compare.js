@@ -9,7 +9,7 @@ import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
-import { headsOf, table as tableOf } from "../lib/table.js";
+import { headedRow, headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 export const title = "Compare runs";
 
@@ -149,9 +149,9 @@ export async function show(place, { query, signal }) {
             h("a", { href: helpLink(column) }, `best ${headed(known(column))}`),
           ),
           values.map((value, n) =>
-            h(
-              "td",
-              { class: "number", "data-key": column, "data-value": String(value) },
+            numberCell(
+              column,
+              value,
               toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)),
               isConstant(least, rank(value), target ?? 0) &&
                 values.some((other) => !isConstant(least, rank(other), target ?? 0))
@@ -163,10 +163,8 @@ export async function show(place, { query, signal }) {
       });
     /** @param {string} name @param {(run: (typeof runs)[0]) => Dom.Child} value */
     const plain = (name, value) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, name),
+      headedRow(
+        name,
         runs.map((run) => h("td", { class: "number" }, value(run))),
       );
     fill(
@@ -226,10 +224,8 @@ export async function show(place, { query, signal }) {
           "What differs between the jobs",
           headsOf(["Place in the job", ...runs.map(({ job }) => `run ${job.id}`)], () => false),
           found.differences.map(({ place, values }) =>
-            h(
-              "tr",
-              {},
-              h("th", { scope: "row" }, place),
+            headedRow(
+              place,
               values.map((value) => h("td", {}, value ?? "–")),
             ),
           ),
