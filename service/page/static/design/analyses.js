@@ -1,7 +1,7 @@
 /** Analyses of a design, a tab each: every topic that the service has and the view does not draw itself, with text, tables and figure. */
 
 import { address, get, isAbort, statusOf } from "../lib/api.js";
-import { fill, focused, h } from "../lib/dom.js";
+import { fill, focused, formOf, h, numberField } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { measured } from "../lib/measured.js";
 import { apiSystem, unitOf } from "../lib/numbers.js";
@@ -197,31 +197,21 @@ export function analyses(place, { job, number, drawn, tab, told, signal }) {
  */
 function asking(inputs, ask) {
   const fields = inputs.map(({ key, title, unit, usual }) => {
-    const field = h("input", {
-      type: "text",
-      inputmode: "decimal",
+    const field = numberField({
       class: "short number",
       name: key,
-      autocomplete: "off",
       placeholder: usual,
     });
     return { key, title, unit, field };
   });
-  const form = h(
-    "form",
-    {
-      class: "row",
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        ask();
-      },
-    },
+  const form = formOf(
+    ask,
     fields.map(({ title, unit, field }) =>
       h("label", {}, `${title} `, field, unit && ` ${unitOf(unit)}`),
     ),
     h("button", {}, "Compute"),
   );
+  form.classList.add("row");
   const given = () => {
     const typed = fields.map(({ key, unit, field }) => ({ key, ...measured(field.value, unit) }));
     const values = Object.fromEntries(typed.map(({ key, value }) => [key, value ?? null]));

@@ -1,7 +1,7 @@
 /** Round numbers for a design: a step for each number, misses that are allowed, the best rounded neighbours and what each of them costs. */
 
 import { isAbort, postFollowed } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, formOf, h, numberField } from "../lib/dom.js";
 import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { read } from "../lib/typed.js";
 import { kindOf, measureOf } from "../lib/units.js";
@@ -42,15 +42,8 @@ export function rounding(
     ({ lower, upper }) => lower !== null && lower === upper,
   );
   const bounds = requirements.requirements.filter((one) => !exact.includes(one));
-  const form = h(
-    "form",
-    {
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        ask();
-      },
-    },
+  const form = formOf(
+    ask,
     steps,
     misses,
     bounds.length > 0 && h("details", {}, h("summary", {}, "Allow misses of bounds"), others),
@@ -236,12 +229,8 @@ function missed({ quantity, title, amount, unit, side, allowed }) {
 function field({ id, name, label, unit, value, wrong }) {
   const said = h("p", { class: "bad", id: `${id}-wrong` });
   /** @type {HTMLInputElement} */
-  const input = h("input", {
+  const input = numberField({
     id,
-    type: "text",
-    inputmode: "decimal",
-    class: "number",
-    autocomplete: "off",
     value,
     "aria-describedby": `${id}-wrong`,
     oninput: () => say(input, said, ""),

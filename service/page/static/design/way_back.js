@@ -1,7 +1,7 @@
 /** The way back: crank angles, speeds and accelerations of a design that move its slider as given. */
 
 import { get, isAbort } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, formOf, h, numberField } from "../lib/dom.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
@@ -33,17 +33,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
   const wrong = new Map(); // why what was typed is no value
   const fields = h("div", { class: "row" });
   const answer = h("div", { "aria-live": "polite" });
-  const form = h(
-    "form",
-    {
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        ask();
-      },
-    },
-    fields,
-  );
+  const form = formOf(ask, fields);
   fill(
     place,
     h("h2", {}, "From the slider back to the crank"),
@@ -57,11 +47,9 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
       FIELDS.map(([key, title, unit]) => {
         const id = `way-back-${key}`;
         const value = asked[key];
-        const input = h("input", {
+        const input = numberField({
           id,
-          type: "text",
-          inputmode: "decimal",
-          autocomplete: "off",
+          class: null,
           value: value === undefined ? "" : String(Number(inShown(value, unit).toPrecision(8))),
           oninput: ({ currentTarget }) => take(currentTarget, key, unit),
         });

@@ -1,7 +1,7 @@
 /** Sliders for other lengths ("What if?"), and where the change leaves the front. */
 
 import { isAbort, post } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, h, numberField } from "../lib/dom.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
@@ -269,11 +269,7 @@ function lengthRow(key, title, [low, high], set) {
     " · outside the job",
   );
   let refused = ""; // why what was typed is no length
-  const number = h("input", {
-    type: "text",
-    inputmode: "decimal",
-    autocomplete: "off",
-    class: "number",
+  const number = numberField({
     id,
     disabled: fixed,
     oninput: type,

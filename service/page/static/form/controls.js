@@ -1,6 +1,6 @@
 /** Controls of the form, each tied to a place in the job. */
 
-import { h } from "../lib/dom.js";
+import { h, numberField } from "../lib/dom.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
@@ -146,10 +146,7 @@ export function list(form, path, { label, why, example }) {
  * @param {string} id @param {string} value @param {string | null} label
  */
 export function numberInput(id, value, label = null) {
-  return h("input", {
-    type: "text",
-    inputmode: "decimal",
-    autocomplete: "off",
+  return numberField({
     class: "short number",
     id,
     value,

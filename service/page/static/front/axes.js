@@ -1,6 +1,6 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
-import { fill, first, focused, h } from "../lib/dom.js";
+import { fill, first, focused, h, numberField } from "../lib/dom.js";
 import { ends, text } from "../lib/numbers.js";
 import { measured } from "../lib/measured.js";
 import { headed, helpLink } from "./columns.js";
@@ -108,10 +108,7 @@ export function axisFields(explorer) {
     const [low, high] = ends(explorer.data.range(key), column.unit);
     /** @param {string} side @param {string} placeholder @param {string} label */
     const input = (side, placeholder, label) =>
-      h("input", {
-        type: "text",
-        inputmode: "decimal",
-        class: "number",
+      numberField({
         "data-limit": `${side}.${key}`,
         placeholder,
         "aria-label": `${label} ${headed(column)}`,

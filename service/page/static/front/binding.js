@@ -2,7 +2,7 @@
 
 import { get, isAbort, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
-import { fill, h } from "../lib/dom.js";
+import { fill, h, numberField } from "../lib/dom.js";
 import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { measured } from "../lib/measured.js";
 import { sentenceOf } from "../lib/refusals.js";
@@ -103,12 +103,8 @@ export function bindingPanel(explorer) {
         h("p", {}, words, ". ", those),
         h("p", { class: "quiet" }, "Change it in the job."),
       );
-    const input = h("input", {
+    const input = numberField({
       id,
-      type: "text",
-      inputmode: "decimal",
-      class: "number",
-      autocomplete: "off",
       value: String(Number(inShown(wider, unit).toPrecision(6))),
       "aria-describedby": `${id}-unit`,
     });

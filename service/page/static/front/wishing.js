@@ -2,7 +2,7 @@
 
 import { link } from "../lib/address.js";
 import { get, isAbort, post } from "../lib/api.js";
-import { fill, first, h } from "../lib/dom.js";
+import { fill, first, formOf, h, numberField } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { measured } from "../lib/measured.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
@@ -53,15 +53,8 @@ export function wishingPanel(explorer) {
   const wrong = h("p", { class: "error", role: "alert" });
   const answer = h("div", { class: "wish-answer", "aria-live": "polite" });
   const before = h("div", { class: "wish-history" });
-  const form = h(
-    "form",
-    {
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        submit();
-      },
-    },
+  const form = formOf(
+    submit,
     h(
       "div",
       { class: "wish-rows" },
@@ -106,10 +99,7 @@ export function wishingPanel(explorer) {
       },
       KINDS.map(([value, words]) => h("option", { value }, words)),
     );
-    const value = h("input", {
-      type: "text",
-      inputmode: "decimal",
-      class: "number",
+    const value = numberField({
       "aria-label": `Value for ${title}`,
       "aria-describedby": `${id}-wrong`,
       oninput: clean,

@@ -32,6 +32,26 @@ export function mathml(tag, attributes = {}, ...children) {
   return dress(document.createElementNS(MATHML, tag), attributes, children);
 }
 
+/** Return a form that does something when it is sent, and stays on the page. @param {() => void} send @param {...Dom.Child} children */
+export function formOf(send, ...children) {
+  const onsubmit = (/** @type {Event} */ event) => {
+    event.preventDefault();
+    send();
+  };
+  return h("form", { novalidate: true, onsubmit }, children);
+}
+
+/** Return a field for a number, perhaps with a unit. @param {Dom.Attributes<HTMLInputElement>} attributes */
+export function numberField(attributes) {
+  return h("input", {
+    type: "text",
+    inputmode: "decimal",
+    autocomplete: "off",
+    class: "number",
+    ...attributes,
+  });
+}
+
 /** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */
 export function byId(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));
