@@ -81,6 +81,8 @@ def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
         compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, wanted.module]))
         found = read(folder / name)
     if found is None:  # no process could be started, or nothing be kept
+        if folder in _refusing:
+            _log.warning(f"slidercrank compiles its formulas, now {wanted.name.rpartition('.')[2]}")
         found = wanted.compile()
         if not keep(folder / name, found):
             _refusing.add(folder)
