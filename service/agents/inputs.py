@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from pydantic import Field
 
 from ...model.errors import InputError
 from ...optimise.job.model import Job as JobModel
 from ..presets.jobs import shipped_jobs
-from ..text.options import Rows, Units
+from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
 from ..topics.discovery import ALL, ASKED, COMMANDS, TOPICS
 from .call import Call, Job, tables_of
 
 if TYPE_CHECKING:
-    from ..designs.stored_designs import StoredDesign
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...optimise.problem.problem import Problem
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
@@ -77,6 +79,14 @@ class Shown:
         return usual if self.columns is None else [find_column(name, known).key for name in self.columns]
 
 
+class Machine(NamedTuple):
+    """A machine with a linkage, and the problem of its job or run."""
+
+    mechanism: Mechanism
+    linkage: Linkage
+    problem: Problem
+
+
 @dataclass(frozen=True)
 class Design:
     """A design of a run, or one with lengths of its own for a job."""
@@ -89,15 +99,15 @@ class Design:
     rod: Dimension = None
     offset: Dimension = None
 
-    def found(self, call: Call) -> StoredDesign:
-        """Return the design. Raises `InputError` for none, and for two."""
+    def found(self, call: Call) -> Machine:
+        """Return the machine. Raises `InputError` for none, and for two."""
         if (self.run is None) == (self.job is None):
             got = "both" if self.run else "neither"
             raise InputError(f"a design is of a run or of a job; got {got}; give one of them")
         lengths = {"crank": self.crank, "rod": self.rod, "offset": self.offset}
         return self._of_job(call, lengths) if self.run is None else self._of_run(call, self.run, lengths)
 
-    def _of_run(self, call: Call, run: str, lengths: Mapping[str, str | None]) -> StoredDesign:
+    def _of_run(self, call: Call, run: str, lengths: Mapping[str, str | None]) -> Machine:
         from ..designs.picking_options import require_alone
         from ..designs.stored_designs import stored_design
 
@@ -109,14 +119,12 @@ class Design:
         folder, result = call.front(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
         require_alone(number, result, run, others=False)
-        return stored_design(call.problem_of_run(folder, result), result, number)
+        of = stored_design(call.problem_of_run(folder, result), result, number)
+        return Machine(of.mechanism, of.linkage, of.part)
 
-    def _of_job(self, call: Call, lengths: Mapping[str, str | None]) -> StoredDesign:
-        from ..designs.stored_designs import StoredDesign
-        from ..text.options import Dimensions
-
+    def _of_job(self, call: Call, lengths: Mapping[str, str | None]) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
-        return StoredDesign(problem, tuple(Dimensions(**lengths).lengths(problem)))
+        return Machine(problem.mechanism.nominal, Dimensions(**lengths).linkage(problem), problem)
 
 
 @dataclass(frozen=True)

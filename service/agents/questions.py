@@ -21,7 +21,7 @@ from .call import Answer, Call, tables_of, text_of
 from .inputs import Design, Files, JobInput, Question
 
 if TYPE_CHECKING:
-    from ..designs.stored_designs import StoredDesign
+    from .inputs import Machine
 
 _MOST_RUNS = 20
 _OF_TOPIC = ("name", "title", "help", "usual", "example", "required")
@@ -100,11 +100,11 @@ def ask(call: Call, *, subject: Design, question: Question) -> Answer:
 
     options = question.options()
     of = subject.found(call)
-    with ending_own(of.part):
-        alone = question.alone or ("swing" if of.part.motion is not None and not question.topics else None)
+    with ending_own(of.problem):
+        alone = question.alone or ("swing" if of.problem.motion is not None and not question.topics else None)
         if alone is not None:
             return _alone(alone, of, question)
-        require_turning(of.part.motion, f"the topic {next(iter(options), '')}")
+        require_turning(of.problem.motion, f"the topic {next(iter(options), '')}")
         return _turn(call, of, options, question)
 
 
@@ -134,13 +134,13 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
     return Answer(record, "\n".join((heading, *told, freedom_in_words(look.problem), *look.said, *record["notes"])))
 
 
-def _turn(call: Call, of: StoredDesign, options: Mapping[str, dict[str, Any]], question: Question) -> Answer:
+def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Question) -> Answer:
     """Analyse a design that turns fully. options: of each topic."""
     from ..designs.requirements import judged
     from ..topics.analysis_text import show_analysis
     from ..topics.design_analysis import analysis_of, numbers_of
 
-    row, undefined = numbers_of(of.mechanism, of.linkage, of.part.own)
+    row, undefined = numbers_of(of.mechanism, of.linkage, of.problem.own)
     found = analysis_of(
         row,
         of.mechanism,
@@ -151,17 +151,17 @@ def _turn(call: Call, of: StoredDesign, options: Mapping[str, dict[str, Any]], q
         lenient=ALL in question.topics,
         undefined=undefined,
     )
-    rules = judged(of.part, row, question.units)
-    text = text_of(lambda screen: show_analysis(screen, found, rules, question.units, own=of.part.own))
+    rules = judged(of.problem, row, question.units)
+    text = text_of(lambda screen: show_analysis(screen, found, rules, question.units, own=of.problem.own))
     return Answer(found.record(question.units, rules), "\n".join((text, *found.notes, *found.refused)))
 
 
-def _alone(name: str, of: StoredDesign, question: Question) -> Answer:
+def _alone(name: str, of: Machine, question: Question) -> Answer:
     """Ask a design what is a command of its own."""
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks
 
-    asked = ASKED[name].asked(of.mechanism, of.linkage, of.part.motion, question.inputs)
+    asked = ASKED[name].asked(of.mechanism, of.linkage, of.problem.motion, question.inputs)
     record = asked.numbers(lambda: False)
     text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
     notes = filter(None, record.get("notes", [record.get("note")]))

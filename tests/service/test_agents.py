@@ -178,6 +178,13 @@ def test_a_front_its_part_and_its_picks_are_those_of_the_command(agent: Agent, r
         assert picked["trade_offs"]
 
 
+def test_a_design_of_a_job_whose_other_numbers_vary_is_analysed(agent: Agent, pytestconfig: pytest.Config) -> None:
+    lengths = {"crank": "26.8 mm", "rod": "108.8 mm", "offset": "47 mm"}
+    words = [word for name, length in lengths.items() for word in (f"--{name}", length)]
+    expected = command("analyse", pytestconfig.rootpath / "runs/press.toml", *words, "--show", "friction")
+    assert agent.ask("ask", job="press", **lengths, topics=["friction"]) == expected
+
+
 def test_a_design_is_analysed_as_by_the_command(agent: Agent, run: str, tmp_path: Path) -> None:
     topics, inputs = ["static_forces", "press"], {"touch_distance": "12 mm", "rated_torque": "60 N m"}
     options = ("--show", ",".join(topics), "--touch-distance", "12 mm", "--rated-torque", "60 N m")
