@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
+import os
+import signal
 import threading
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -55,23 +57,32 @@ State what a machine must do as a job, and get the Pareto front of designs with 
 Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers end with their unit: crank_mm."""
 
 
-def serve(place: Path, allowed: frozenset[str]) -> None:
+def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], None]) -> None:
     """Serve agents until standard input ends. place: of all that is read and written. allowed: functions of jobs.
+
+    interrupted: called after SIGINT or SIGTERM, once no call is at work; it ends the process.
 
     Raises `MissingExtra` at import without the package `mcp`.
     """
-    anyio.run(_serve, place, allowed)
+    anyio.run(_serve, place, allowed, interrupted)
 
 
-async def _serve(place: Path, allowed: frozenset[str]) -> None:
-    searches, others = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1)
+async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[], None]) -> None:
+    searches, others, stopping = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1), threading.Event()
+
+    async def end_on_signal() -> None:
+        with anyio.open_signal_receiver(signal.SIGINT, signal.SIGTERM) as signals:
+            async for _ in signals:
+                stopping.set()
+                async with searches, others:
+                    interrupted()
 
     async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
         return ListToolsResult(tools=[_declared(tool) for tool in TOOLS])
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else others
-        answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter)
+        answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
         content = [TextContent(type="text", text=answer.text)]
         record = json_ready(answer.record) or None
         return CallToolResult(content=[*content], structured_content=record, is_error=answer.is_error)
@@ -83,8 +94,11 @@ async def _serve(place: Path, allowed: frozenset[str]) -> None:
         on_list_tools=on_list_tools,
         on_call_tool=on_call_tool,
     )
-    async with stdio_server() as (read, write):
+    async with anyio.create_task_group() as group, stdio_server() as (read, write):
+        if os.name == "posix":  # elsewhere event loops have no signals
+            group.start_soon(end_on_signal)
         await server.run(read, write, server.create_initialization_options())
+        group.cancel_scope.cancel()
 
 
 async def _answer(
@@ -92,8 +106,12 @@ async def _answer(
     make: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
     params: CallToolRequestParams,
     limiter: anyio.CapacityLimiter,
+    stopping: threading.Event,
 ) -> Answer:
-    """Answer a call in a thread, which hears of a cancellation and reports its progress meanwhile."""
+    """Answer a call in a thread, which hears of a cancellation and reports its progress meanwhile.
+
+    make: gives the call by how it hears and reports. stopping: set when the server ends.
+    """
     cancelled, loop = threading.Event(), asyncio.get_running_loop()
     send, receive = anyio.create_memory_object_stream[Progress](math.inf)
     with send, receive:
@@ -104,7 +122,7 @@ async def _answer(
             def report(at: Progress) -> None:
                 loop.call_soon_threadsafe(partial(send.send_nowait, at))
 
-            call = make(cancelled.is_set, report)
+            call = make(lambda: cancelled.is_set() or stopping.is_set(), report)
             run = partial(_run, params.name, params.arguments or {}, call)
             answer = await anyio.to_thread.run_sync(run, limiter=limiter)
             group.cancel_scope.cancel()

@@ -8,6 +8,8 @@ from ...model.extras import required
 from ..jobs.stores import STORE_VARIABLE
 from ..runs.run_folder import runs_place
 from ..text.options import AllowQuantity, Runs
+from ..text.screen import say
+from .ending import INTERRUPTED
 from .optimise import SEARCH
 
 
@@ -15,7 +17,7 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
     """Serve agents by the Model Context Protocol, on standard input and output, until the input ends.
 
     An agent's client starts it. All is read and written where runs are kept, the store included; what else is to be
-    said goes to standard error.
+    said goes to standard error. Ctrl-C ends it, and a search that is under way keeps what it found.
     """
     required("mcp", "serving agents needs")
     from ...model.kernel.disk import compile_ahead
@@ -23,4 +25,10 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
     compile_ahead(*SEARCH)
     os.environ.pop(STORE_VARIABLE, None)
-    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()))
+    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()), interrupted=_leave)
+
+
+def _leave() -> None:
+    """End at once: a thread still reads standard input."""
+    say("slidercrank: interrupted")
+    os._exit(INTERRUPTED)

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -421,7 +422,8 @@ def test_only_the_protocol_is_on_standard_output(agent: Agent) -> None:
 
 
 @pytest.mark.slow
-def test_a_server_whose_client_leaves_ends_and_the_run_can_go_on(tmp_path: Path, agent: Agent) -> None:
+@pytest.mark.parametrize("code", [0, 130], ids=["its client leaves", "Ctrl-C"])
+def test_a_server_that_ends_leaves_a_run_that_can_go_on(tmp_path: Path, code: int) -> None:
     server = subprocess.Popen(
         [sys.executable, "-c", PROGRAM, "mcp", "--runs", str(tmp_path / "runs")],
         stdin=subprocess.PIPE,
@@ -441,8 +443,12 @@ def test_a_server_whose_client_leaves_ends_and_the_run_can_go_on(tmp_path: Path,
         server.stdin.flush()
     heard = [json.loads(server.stdout.readline()) for _ in range(4)]
     assert [one.get("method") for one in heard[1:]] == ["notifications/progress"] * 3
+    if code:
+        server.send_signal(signal.SIGINT)
+    else:
+        server.stdin.close()
+    assert server.wait(timeout=5.0) == code
     server.stdin.close()
-    assert server.wait(timeout=5.0) == 0
     server.stdout.close()
     done = CliRunner().invoke(app, ["optimise", "--resume", "latest", "--runs", str(tmp_path / "runs"), "--json"])
     assert done.exit_code == 0, done.stderr
