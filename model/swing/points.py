@@ -34,7 +34,6 @@ _STILL = 1e-200  # rad/s: says which way the crank turns, and has no inertia
 _NEWTON = 40
 _SETTLED = 1e-15
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
-_NO_WATCH = Watch(0, 0.0, 1.0, False)
 
 
 class Path(NamedTuple):

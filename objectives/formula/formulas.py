@@ -29,7 +29,6 @@ ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and begin names of formulas then."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3
-_LONGEST_TITLE = 60
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ from ..problem.violation import FEASIBLE
 from ..search.candidates import stacked
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .population import Brood, Generation, evolve, generation_seed
-from .registry import Method, budget
+from .population import Brood, Generation, evolve, generation_seed, generation_size
+from .registry import Method
 
 STEP = 0.3
 """First standard deviation, of the unit box: the optimum is expected within about two of the centre."""
@@ -40,7 +40,7 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that CMA-ES with restarts finds for the problem's only objective."""
     seed, widest = problem.settings.seed, max(evaluator.dimension for evaluator in evaluators)
     default = 4 + math.floor(3.0 * math.log(widest))
-    size = max(4, min(problem.settings.samples or default, budget(problem)))
+    size = max(4, generation_size(problem, default))
     climbs = [_Climb(index, evaluator.dimension, size, seed) for index, evaluator in enumerate(evaluators)]
 
     def breed(past: Sequence[Generation]) -> Brood:
@@ -48,7 +48,7 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         for generation in past[climb.index :: len(climbs)][climb.told :]:
             climb.tell(generation)
         u = climb.ask(generation_seed(seed, len(past)))
-        return Brood(np.full(len(u), climb.index), stacked(np.zeros((0, widest)), u), np.zeros(0, np.int64))
+        return Brood(np.full(len(u), climb.index), stacked(np.zeros((0, widest)), u))
 
     return evolve(problem, evaluators, run, breed, size=size)
 

@@ -27,8 +27,8 @@ from ...model.errors import InputError
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .population import Brood, Generation, evolve, generation_seed
-from .registry import Method, budget
+from .population import Brood, Generation, evolve, generation_seed, generation_size
+from .registry import Method
 from .trials import asked, new_study, quiet, space, stored
 
 POPULATION = 100
@@ -52,7 +52,7 @@ def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 def population_size(problem: Problem) -> int:
     """Return how many designs a generation has. Raises `InputError` for fewer than two, which cannot breed."""
-    size = min(problem.settings.samples or POPULATION, budget(problem))
+    size = generation_size(problem, POPULATION)
     if size < 2:
         raise InputError(
             f"{problem.settings.method} breeds from two designs or more; got {size}; raise samples and evaluations"

@@ -36,7 +36,7 @@ class Brood:
 
     sheet: Rows
     u: Array
-    parents: Rows
+    parents: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def __len__(self) -> int:
         return len(self.u)
@@ -61,6 +61,11 @@ class Generation(Table):
 def generation_seed(seed: int, generation: int) -> int:
     """Return the seed of one generation, independent of all others, so that a run may resume at any."""
     return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])
+
+
+def generation_size(problem: Problem, usual: int) -> int:
+    """Return how many designs a generation has, at most the whole budget. usual: where the job sets no number."""
+    return min(problem.settings.samples or usual, budget(problem))
 
 
 Breed = Callable[[Sequence[Generation]], Brood]

@@ -11,8 +11,8 @@ from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .population import Brood, Generation, evolve, generation_seed
-from .registry import Method, budget
+from .population import Brood, Generation, evolve, generation_seed, generation_size
+from .registry import Method
 
 Draw = Callable[[int, int, int], Array]
 
@@ -44,13 +44,13 @@ def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def _sampled(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw) -> Archive:
-    size = min(problem.settings.samples or BATCH, budget(problem))
+    size = generation_size(problem, BATCH)
     dimension, several = max(evaluator.dimension for evaluator in evaluators), len(evaluators) > 1
 
     def breed(past: Sequence[Generation]) -> Brood:
         points = draw(len(past), size, dimension + several)
         chosen = np.floor(points[:, -1] * len(evaluators)).astype(np.int64) if several else np.zeros(size, np.int64)
-        return Brood(chosen, points[:, :dimension], np.zeros(0, np.int64))
+        return Brood(chosen, points[:, :dimension])
 
     return evolve(problem, evaluators, run, breed, size=size)
 

@@ -41,21 +41,22 @@ _CELLS = 20_000  # of the grid of ceilings at most
 _WIDER = 1.5  # how far beyond the triangle
 
 
-def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the front by minimising the first objective with ceilings on all others, on a grid of the payoff table.
+Aims = tuple[list[Form], Callable[[Array], Form]]
+"""What a method solves first, and the form by which it aims at scaled objectives (m,) in a gap."""
+
+
+def epsilon_constraint(front: _Front) -> Aims:
+    """Return the aims of minimising the first objective with ceilings on all others, on a grid of the payoff table.
 
     Ceilings that no sample or optimum comes near are left out; the grid is refined until enough others are left. With
     the sum, see `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of
     the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
     2009).
     """
-    front = _begin(problem, evaluators, run)
-    if front is None:
-        return Archive.empty(len(problem.objectives))
-    m, scaled = len(problem.objectives), front.scaled(np.concatenate([front.begun.values, front.archive.values]))
+    m, scaled = len(front.payoff), front.scaled(np.concatenate([front.begun.values, front.archive.values]))
     ceilings = np.zeros((0, m - 1))
     parts = 2
-    while len(ceilings) < _first(problem) and parts ** (m - 1) <= _CELLS:
+    while len(ceilings) < _first(front.problem) and parts ** (m - 1) <= _CELLS:
         cells = grid(np.zeros(m - 1), np.ones(m - 1), parts)
         # Only what nothing dominates decides which ceilings can be kept.
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
@@ -63,30 +64,27 @@ def epsilon_constraint(problem: Problem, evaluators: list[Evaluator], run: Run) 
         parts += max(1, parts // 4)
     only = Form.single(m, 0, rho=SUM)
     forms = [Form(only.weights, only.reference, np.concatenate([[np.inf], row]), SUM) for row in ceilings]
-    return front.solve(forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), SUM))
+    return forms, lambda aim: Form(only.weights, only.reference, np.concatenate([[np.inf], aim[1:]]), SUM)
 
 
-def chebyshev(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the front by the augmented weighted Chebyshev norm from a utopian point, in evenly spread directions.
+def chebyshev(front: _Front) -> Aims:
+    """Return the aims of the augmented weighted Chebyshev norm from a utopian point, in evenly spread directions.
 
     R. E. Steuer and E.-U. Choo, "An interactive weighted Tchebycheff procedure for multiple objective programming",
     Math. Program. 26(3), 1983.
     """
-    front = _begin(problem, evaluators, run)
-    m = len(problem.objectives)
-    if front is None:
-        return Archive.empty(m)
+    m = len(front.payoff)
     none = np.full(m, np.inf)
 
     def along(direction: Array) -> Form:
         direction = np.maximum(direction, _SLIVER)
         return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, SUM)
 
-    return front.solve([along(direction) for direction in simplex(m, _first(problem))], along)
+    return [along(direction) for direction in simplex(m, _first(front.problem))], along
 
 
-def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the front by normal-boundary intersection.
+def nbi(front: _Front) -> Aims:
+    """Return the aims of normal-boundary intersection.
 
     From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
     go as far as they can along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex`). As there is a design
@@ -95,13 +93,10 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     Pareto-optimal, also on a front that is folded. Of three objectives and more the plane's triangle does not lie over
     the whole front: points outside of it are used as well.
     """
-    front = _begin(problem, evaluators, run)
-    m = len(problem.objectives)
-    if front is None:
-        return Archive.empty(m)
+    m = len(front.payoff)
     payoff = front.scaled(front.payoff)
     normal = np.maximum(payoff.sum(axis=0), _SLIVER)
-    shares = simplex(m, _first(problem))
+    shares = simplex(m, _first(front.problem))
     if m > 2:
         shares = 1.0 / m + (shares - 1.0 / m) * _WIDER
     none = np.full(m, np.inf)
@@ -109,7 +104,7 @@ def nbi(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     def through(point: Array) -> Form:
         return Form(normal.min() / normal, point, none, SUM)
 
-    return front.solve([through(share @ payoff) for share in shares], through)
+    return [through(share @ payoff) for share in shares], through
 
 
 @dataclass
@@ -258,22 +253,28 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
     return shared
 
 
+def scalarised(problem: Problem, evaluators: list[Evaluator], run: Run, *, aims: Callable[[_Front], Aims]) -> Archive:
+    """Return the front by the forms of a method."""
+    front = _begin(problem, evaluators, run)
+    return Archive.empty(len(problem.objectives)) if front is None else front.solve(*aims(front))
+
+
 _scalarisation = partial(Method, family="scalarisation", objectives="several", budget=100_000, uses=("scipy",))
 EPSILON_CONSTRAINT = _scalarisation(
     name="epsilon_constraint",
     title="Epsilon-constraint",
     help="Minimises the first objective with ceilings on all others, on a grid of ceilings.",
-    search=epsilon_constraint,
+    search=partial(scalarised, aims=epsilon_constraint),
 )
 CHEBYSHEV = _scalarisation(
     name="chebyshev",
     title="Weighted Chebyshev",
     help="Minimises the greatest weighted distance from a point below all designs, in evenly spread directions.",
-    search=chebyshev,
+    search=partial(scalarised, aims=chebyshev),
 )
 NBI = _scalarisation(
     name="nbi",
     title="Normal-boundary intersection",
     help="Goes as far as designs can along the normal of the plane through the single optima.",
-    search=nbi,
+    search=partial(scalarised, aims=nbi),
 )

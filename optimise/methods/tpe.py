@@ -11,13 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .population import Brood, Generation, evolve, generation_seed
-from .registry import Method, budget
+from .population import Brood, Generation, evolve, generation_seed, generation_size
+from .registry import Method
 from .trials import asked, new_study, quiet, space, stored
 
 BATCH = 20
@@ -29,7 +27,7 @@ def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that the tree-structured Parzen estimator finds; its densities are fitted anew every time."""
     from optuna.samplers import TPESampler
 
-    size, axes = min(problem.settings.samples or BATCH, budget(problem)), space(evaluators)
+    size, axes = generation_size(problem, BATCH), space(evaluators)
 
     def breed(past: Sequence[Generation]) -> Brood:
         seed = generation_seed(problem.settings.seed, len(past))
@@ -37,7 +35,7 @@ def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         if past:
             study.add_trials(stored(axes, past[0].join(*past[1:]), {}))
         sheet, u = asked(study, axes, size, run.checkpoints.poll)
-        return Brood(sheet, u, np.zeros(0, np.int64))
+        return Brood(sheet, u)
 
     with quiet():
         return evolve(problem, evaluators, run, breed, size=size)

@@ -38,7 +38,6 @@ MUTED = "#666666"
 FRAME = "#8c8c8c"
 GRID = "#dedede"
 SHADE = "#ededed"
-GHOST = "#b0b0b0"
 LINK = "#cfdce8"
 # Okabe and Ito, "Color Universal Design" (2008): told apart with every kind of colour vision, and by their greys.
 BLUE, VERMILION = "#0072b2", "#d55e00"
