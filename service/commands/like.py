@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,7 +24,6 @@ from .run_choice import front_of_run
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...optimise.front.front import ParetoFront
     from ...optimise.problem.problem import Problem
     from ...optimise.problem.requirements import Constraint
 
@@ -70,9 +69,22 @@ def like(
         end_without_design(found.message)
     apart = float(distance(found.values, given, span)[0])
     after = rows_of(found.columns)[0]
-    record = record_in(_record(path_text(folder), number, found, apart, row, after), units)
+    record = {
+        "run": path_text(folder),
+        "number": number,
+        "status": found.status,
+        "message": found.message,
+        "distance": apart,
+        "design": after,
+        "before": row,
+        "moved": {key: value for key in after if (value := _moved(row, after, key)) is not None},
+    }
     rows = row_in(row, units), row_in(after, units)
-    answer(json, record, lambda screen: _show(screen, result_in(result, units), number, where, apart, *rows))
+    answer(
+        json,
+        record_in(record, units),
+        lambda screen: _show(screen, result_in(result, units), number, where, apart, *rows),
+    )
 
 
 def _added(where: list[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
@@ -114,19 +126,6 @@ def _ends(condition: Condition, factor: float, text: str) -> Ends:
     if ends is None:
         raise InputError(f"a design is asked for with >=, <= or =; got {text!r}; write it like {_EXAMPLE}")
     return ends
-
-
-def _record(run: str, number: int, found: ParetoFront, apart: float, before: Row, after: Row) -> dict[str, Any]:
-    return {
-        "run": run,
-        "number": number,
-        "status": found.status,
-        "message": found.message,
-        "distance": apart,
-        "design": after,
-        "before": before,
-        "moved": {key: value for key in after if (value := _moved(before, after, key)) is not None},
-    }
 
 
 def _moved(before: Row, after: Row, key: str) -> float | None:

@@ -24,6 +24,7 @@ from ...objectives.kinds import (
     TORQUE,
     Kind,
 )
+from ..runs.result import json_ready
 
 POINTS = 181
 """Of one way, in curves and figures."""
@@ -141,9 +142,6 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
     for way, curves in zip(("forth", "back"), both_ways(mechanism, linkage, swing), strict=True):
         time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
         columns = time | {curve.field: curve.of(curves) for curve in shown}
-        rows += [{"way": way} | {name: _plain(values[i]) for name, values in columns.items()} for i in range(POINTS)]
+        plain = {name: json_ready(values.tolist(), gaps=True) for name, values in columns.items()}
+        rows += [{"way": way} | {name: values[i] for name, values in plain.items()} for i in range(POINTS)]
     return rows
-
-
-def _plain(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
