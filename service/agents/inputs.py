@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
 
 from pydantic import Field
 
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
 _SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in COMMANDS.items()]
-_INPUTS: dict[str, dict[str, str]] = {}
+_INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in ASKED.values():
     for _one in _topic.inputs:
-        _said = _INPUTS.setdefault(_one.name, {"type": "string", "description": ""})
+        _words = {"enum": list(get_args(_one.words))} if _one.words else {}
+        _said = _INPUTS.setdefault(_one.name, {"type": "string", "description": "", **_words})
         _said["description"] += f"{_topic.name}: {_one.remark}  "
 
 JobInput = Annotated[

@@ -231,5 +231,7 @@ def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:
             words = f", one of {', '.join(map(str, facts['enum']))}" if "enum" in facts else ""
             example = f"; such as {name} = {toml(facts['examples'][0])}" if "examples" in facts else ""
             yield f"  {name}: {facts.get('description', '')}{words}{example}"
+    if "enum" in key:
+        yield f"  one of {', '.join(map(str, key['enum']))}"
     if not key["tables"] and key.get("examples"):
         yield f"  such as {toml(key['examples'][0])}"

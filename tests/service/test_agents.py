@@ -30,6 +30,7 @@ from slidercrank.service.agents.call import Answer
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
+from slidercrank.service.text.tables import ROWS
 from slidercrank.service.topics.discovery import ASKED, INPUTS, TOPICS
 from tests.service import fronts
 
@@ -399,6 +400,7 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
     assert keys["required"] == ["mass"]
     assert keys["keys"]["mass"]["examples"]
     assert len(agent.ask("describe", name="load")["key"]["tables"]) > 10
+    assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
 
 
 def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:
@@ -409,8 +411,15 @@ def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:
         for one in topic.inputs:
             assert f"{topic.name}: {one.remark}" in asked["inputs"]["properties"][one.name]["description"]
     assert set(INPUTS) <= set(asked["inputs"]["properties"])
+    assert asked["inputs"]["properties"]["driver"]["enum"] == ["crank", "slider"]
     assert all(f"{name} ({topic.shows})" in asked["topics"]["description"] for name, topic in TOPICS.items())
     assert all("description" in one for tool in found.values() for one in tool.input_schema["properties"].values())
+
+
+def test_the_page_names_every_tool_and_how_many_designs_an_answer_has(pytestconfig: pytest.Config) -> None:
+    page = (pytestconfig.rootpath / "docs/agents.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE) == [tool.name for tool in TOOLS]
+    assert f"give {ROWS} designs" in page
 
 
 def test_only_the_protocol_is_on_standard_output(agent: Agent) -> None:
