@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from ...objectives.kinds import System
 from ..designs.stored_designs import StoredDesign
 from .linkage_drawing import CRANK_ANGLE, linkage_drawing
 from .shapes import Drawing
 from .swing_drawing import swing_drawing
 
 
-def design_drawing(of: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None) -> Drawing:
+def design_drawing(
+    of: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
+) -> Drawing:
     """Return a design at true scale: see `linkage_drawing`, and `swing_drawing` where its crank swings.
 
-    crank_angle: where it is drawn, rad; where these draw it if None.
+    crank_angle: where it is drawn, rad; where these draw it if None. system: of the units of texts.
     """
+    told: dict[str, Any] = {"name": name, "design": design, "system": system}
     if of.part.motion is not None:
-        swing = of.part.motion
-        return swing_drawing(of.mechanism, of.linkage, swing, name=name, design=design, crank_angle=crank_angle)
+        return swing_drawing(of.mechanism, of.linkage, of.part.motion, **told, crank_angle=crank_angle)
     angle = CRANK_ANGLE if crank_angle is None else crank_angle
-    return linkage_drawing(of.mechanism, of.linkage, name=name, design=design, crank_angle=angle)
+    return linkage_drawing(of.mechanism, of.linkage, **told, crank_angle=angle)

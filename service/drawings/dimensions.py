@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
+from ...objectives.kinds import System, shown_in
 from ..designs.toleranced import toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
@@ -12,22 +14,43 @@ _ARROW = 1.2  # length over the height of the text; a sixth as wide to either si
 _GAP, _BEYOND = 0.4, 0.6  # of an extension line, before its point and beyond the dimension line, over that height
 
 
+@dataclass(frozen=True)
+class Lettering:
+    """Texts of dimensions. height: mm. system: of their units."""
+
+    height: float
+    system: System = "metric"
+
+    @property
+    def factor(self) -> float:
+        """What one mm is in the unit of the texts."""
+        return shown_in("mm", self.system)[1]
+
+
 def dimension(
-    name: str, start: Point, end: Point, through: Point, angle: float, *, height: float, tolerance: float = 0.0
+    name: str,
+    start: Point,
+    end: Point,
+    through: Point,
+    angle: float,
+    *,
+    look: Lettering,
+    tolerance: float = 0.0,
 ) -> Dimension:
-    """Return the dimension of two points along `angle`, deg, its line through a point. height: of the text, mm.
+    """Return the dimension of two points along `angle`, deg, its line through a point.
 
     tolerance: mm; the text has the digits that it makes sensible, seven without one.
     Where arrows and text do not fit between the points they come from outside, the text beyond the end.
     """
-    turn = math.radians(angle)
+    turn, height = math.radians(angle), look.height
     along, across = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
     feet = [_at(through, along, _dot(_less(point, through), along)) for point in (start, end)]
     if _dot(feet[1], along) < _dot(feet[0], along):
         feet.reverse()
         start, end = end, start
     length = _dot(_less(feet[1], feet[0]), along)
-    text = toleranced(length, tolerance) if tolerance else f"{length:.7g}"
+    told, off = look.factor * length, look.factor * tolerance
+    text = toleranced(told, off) if tolerance else f"{told:.7g}"
     wide, arrow = WIDE * height * len(text), _ARROW * height
     inside = length > wide + 2.6 * arrow
     parts: list[Line | Wedge | Label] = []
@@ -52,14 +75,14 @@ def dimension(
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
-def aligned(name: str, start: Point, end: Point, away: float, height: float, tolerance: float) -> Dimension:
+def aligned(name: str, start: Point, end: Point, away: float, look: Lettering, tolerance: float) -> Dimension:
     """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
     x, y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(x, y)
     through = (start[0] - away * y / length, start[1] + away * x / length)
     angle = math.degrees(math.atan2(y, x))
     angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
-    return dimension(name, start, end, through, angle, height=height, tolerance=tolerance)
+    return dimension(name, start, end, through, angle, look=look, tolerance=tolerance)
 
 
 def _at(point: Point, unit: Point, length: float) -> Point:

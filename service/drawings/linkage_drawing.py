@@ -7,26 +7,33 @@ from collections.abc import Mapping
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import System
 from ..designs.toleranced import tolerances_of
 from . import layers as on
-from .dimensions import aligned, dimension
-from .parts import Look, in_words, look_of, moving, pins_at, scenery
+from .dimensions import Lettering, aligned, dimension
+from .parts import Look, lengths_in_words, look_of, moving, pins_at, scenery
 from .shapes import Drawing, Line, Point, Shape
-from .titles import TEXT, titled
+from .titles import TEXT, TRUE_SCALE, titled
 
 CRANK_ANGLE = math.radians(60.0)
 """Crank angle at which a linkage is drawn unless asked otherwise, rad."""
 
 
 def linkage_drawing(
-    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", crank_angle: float = CRANK_ANGLE
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    name: str,
+    design: str = "",
+    crank_angle: float = CRANK_ANGLE,
+    system: System = "metric",
 ) -> Drawing:
     """Return one fully turning linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
     Pivots, paths, dead centres and dimensions are exact. Links that the machine describes by their section have their
     true width; other widths, pins and slider are for show, in proportion. name: of the run. design: which of it,
-    "design 3", for the title. crank_angle: where it is drawn, rad. Raises `AssemblyError` for a linkage that does not
-    turn fully.
+    "design 3", for the title. crank_angle: where it is drawn, rad. system: of the units of texts.
+    Raises `AssemblyError` for a linkage that does not turn fully.
     """
     look = look_of(mechanism, linkage)
     size = look.size
@@ -36,18 +43,18 @@ def linkage_drawing(
         *moving(pin, slider, look),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), height=TEXT * size),
+        *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), Lettering(TEXT * size, system)),
     ]
     title = f"{name}, {design}" if design else name
     layers = on.GAS_LAYERS if look.barrels else on.LAYERS
-    return titled(layers, shapes, look.extent, size, title, _notes(linkage, crank_angle, look))
+    return titled(layers, shapes, look.extent, size, title, _notes(linkage, crank_angle, look, system))
 
 
 def _dimensions(
-    pin: Point, slider: Point, look: Look, tolerances: Mapping[str, float], *, height: float
+    pin: Point, slider: Point, look: Look, tolerances: Mapping[str, float], letters: Lettering
 ) -> list[Shape]:
     """Return the dimension lines: of crank and rod beside them, of the offset at the left, of the stroke outside."""
-    e, left = look.offset, look.extent[0]
+    e, left, height = look.offset, look.extent[0], letters.height
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     rod = (slider[0] - pin[0], slider[1] - pin[1])
     # Crank and rod on the outside of the bend between them.
@@ -55,26 +62,24 @@ def _dimensions(
     y = side * (max(look.crank + 0.5 * look.crank_width, side * e + 0.72 * look.block) + 3.0 * height)
     off = {name: tolerances.get(name, 0.0) for name in ("crank", "rod", "offset")}
     found: list[Shape] = [
-        aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), height, off["crank"]),
-        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, off["rod"]),
-        dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
+        aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), letters, off["crank"]),
+        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), letters, off["rod"]),
+        dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, look=letters),
     ]
     if e:
         x = left - 3.0 * height
-        found.append(
-            dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, height=height, tolerance=off["offset"])
-        )
+        found.append(dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, look=letters, tolerance=off["offset"]))
     return found
 
 
-def _notes(linkage: Linkage, angle: float, look: Look) -> tuple[str, ...]:
+def _notes(linkage: Linkage, angle: float, look: Look, system: System) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
     widths = "Widths of links are to scale; slider and pins are for show."
     return (
-        f"{in_words(linkage, 7)}.",
+        f"{lengths_in_words(linkage, system, stroke=True)}.",
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
-        "True scale in millimetres; pivots are exact.",
+        f"{TRUE_SCALE[system]}; pivots are exact.",
         widths if look.own else "Widths of links, slider and pins are for show.",
         *(["Bore and clearance of the cylinder are those of the job."] if look.barrels else []),
     )

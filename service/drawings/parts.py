@@ -11,6 +11,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import LENGTH, System
 from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
 
@@ -121,15 +122,11 @@ def look_between(
     return Look(r, l, e, (ends[0], e), (ends[1], e), reach, extent, crank, rod, block, block, pin, own)
 
 
-def in_words(linkage: Linkage, digits: int) -> str:
-    """Return dimensions, stroke and branch of a linkage."""
-    return f"{lengths_in_words(linkage, digits, stroke=True)}; {linkage.branch} branch"
-
-
-def lengths_in_words(linkage: Linkage, digits: int, *, stroke: bool = False) -> str:
-    """Return the dimensions of a linkage, with its stroke where that is asked."""
-    names = (*DIMENSIONS, *(["stroke"] if stroke else []))
-    return ", ".join(f"{name} {_MM * float(getattr(linkage, name)):.{digits}g} mm" for name in names)
+def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
+    """Return the dimensions of a linkage, with its stroke where that is asked, and its branch."""
+    names, face = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.face(system)
+    lengths = (f"{name} {face.factor * float(getattr(linkage, name)):.{digits}g} {face.symbol}" for name in names)
+    return f"{', '.join(lengths)}; {linkage.branch} branch"
 
 
 def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:

@@ -8,13 +8,14 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
+from ...objectives.kinds import System, shown_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
-from .dimensions import aligned, dimension
+from .dimensions import Lettering, aligned, dimension
 from .parts import lengths_in_words, pins_at
 from .shapes import Anchor, Arc, Drawing, Label, Line, Shape
 from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
-from .titles import TEXT, titled
+from .titles import TEXT, TRUE_SCALE, titled
 
 
 def swing_drawing(
@@ -25,6 +26,7 @@ def swing_drawing(
     name: str,
     design: str = "",
     crank_angle: float | None = None,
+    system: System = "metric",
 ) -> Drawing:
     """Return one linkage that swings at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
@@ -35,15 +37,15 @@ def swing_drawing(
     of = swing_look(mechanism, linkage, swing)
     angle = _within(of.swing, crank_angle)
     pin, slider = pins_at(of.linkage, angle)
-    height = TEXT * of.look.size
+    letters = Lettering(TEXT * of.look.size, system)
     shapes: list[Shape] = [
         *swing_scenery(of),
         *swing_moving(of, angle),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(of, angle, mechanism, height),
+        *_dimensions(of, angle, mechanism, letters),
     ]
-    notes = _notes(of, angle)
+    notes = _notes(of, angle, system)
     return titled(on.SWING_LAYERS, shapes, of.extent, of.look.size, f"{name}, {design}" if design else name, notes)
 
 
@@ -61,9 +63,9 @@ def _within(swing: Swing, angle: float | None) -> float:
     return found[0]
 
 
-def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float) -> list[Shape]:
+def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, letters: Lettering) -> list[Shape]:
     """Return the dimension lines: of crank and rod beside them, offset at the left, travel outside, angle within."""
-    look, swing = of.look, of.swing
+    look, swing, height = of.look, of.swing, letters.height
     (left, low, _, high), (pin, slider) = of.extent, pins_at(of.linkage, angle)
     given = tolerances_of(mechanism, of.linkage)
     rod = (slider[0] - pin[0], slider[1] - pin[1])
@@ -73,14 +75,14 @@ def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float
     if of.body is not None:
         beside = max(beside, bend * of.body[1] + half_body(look))
     found: list[Shape] = [
-        aligned("crank", (0.0, 0.0), pin, bend * (beside + 2.2 * height), height, given.get("crank", 0.0)),
-        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), height, given.get("rod", 0.0)),
-        dimension("travel", look.inner, look.outer, (look.inner[0], y), 0.0, height=height),
+        aligned("crank", (0.0, 0.0), pin, bend * (beside + 2.2 * height), letters, given.get("crank", 0.0)),
+        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), letters, given.get("rod", 0.0)),
+        dimension("travel", look.inner, look.outer, (look.inner[0], y), 0.0, look=letters),
     ]
     if look.offset:
         x, tolerance = left - 3.0 * height, given.get("offset", 0.0)
         ends = ((left, 0.0), (left, look.offset))
-        found.append(dimension("offset", *ends, (x, 0.0), 90.0, height=height, tolerance=tolerance))
+        found.append(dimension("offset", *ends, (x, 0.0), 90.0, look=letters, tolerance=tolerance))
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
     share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
@@ -90,16 +92,17 @@ def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, height: float
     return [*found, arc, text]
 
 
-def _notes(of: SwingLook, angle: float) -> tuple[str, ...]:
+def _notes(of: SwingLook, angle: float, system: System) -> tuple[str, ...]:
     look, swing = of.look, of.swing
+    unit, factor = shown_in("mm", system)
     start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
     widths = "Widths of links are to scale; slider and pins are for show."
     driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is for show."
     return (
-        f"{lengths_in_words(of.linkage, 7)}; {of.linkage.branch} branch.",
+        f"{lengths_in_words(of.linkage, system)}.",
         f"Swings from {start} to {end} deg; drawn at {drawn} deg, both ends dashed.",
-        f"The slider goes from {look.inner[0]:.7g} to {look.outer[0]:.7g} mm. {driven}",
-        "True scale in millimetres; pivots are exact.",
+        f"The slider goes from {factor * look.inner[0]:.7g} to {factor * look.outer[0]:.7g} {unit}. {driven}",
+        f"{TRUE_SCALE[system]}; pivots are exact.",
         widths if look.own else "Widths of links, slider and pins are for show.",
         *(() if of.body is None else ("The square on the crank, for show, is about its mass centre.",)),
     )

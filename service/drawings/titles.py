@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ...objectives.kinds import System
 from . import layers as on
 from .shapes import Drawing, Label, Layer, Shape
 
 TEXT = 0.022
 """Height of dimensions, of the drawing's size."""
+TRUE_SCALE: dict[System, str] = {
+    "metric": "True scale in millimetres",
+    "inch": "Dimensions in inches, the drawing at true scale",
+}
 
 
 def titled(

@@ -31,7 +31,8 @@ def design_file(what: str, found: StoredDesign, angle: float | None, units: Syst
         return animated_gif(found.mechanism, found.linkage, swing=found.part.motion, **named)
     from ..drawings.design_drawing import design_drawing
 
-    drawing = design_drawing(found, crank_angle=angle, **named)
+    system: System = units if what == "svg" else "metric"  # DXF is in mm
+    drawing = design_drawing(found, name=named["name"], design=named["design"], crank_angle=angle, system=system)
     if what == "svg":
         from ..drawings.svg import svg_file
 

@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.parts import Look, bar, block, in_words, look_of, scenery
+from ..drawings.parts import Look, bar, block, lengths_in_words, look_of, scenery
 from ..drawings.shapes import Circle, Shape
 
 ANGLES = 360
@@ -89,7 +89,7 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
     rpm = mechanism.speed * 30.0 / math.pi
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
     return Play(
-        summary=f"{in_words(linkage, 6)}; {turning}",
+        summary=f"{lengths_in_words(linkage, digits=6, stroke=True)}; {turning}",
         record={
             **places(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,

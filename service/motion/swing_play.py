@@ -50,7 +50,7 @@ def play_of_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play:
     start, end = (math.degrees(angle) for angle in (of.swing.start, of.swing.end))
     how = "slowly" if timed is None else f"{of.swing.law} law, {timed:g} s each way"
     return Play(
-        summary=f"{lengths_in_words(of.linkage, 6)}; {of.linkage.branch} branch; from {start:.6g} to {end:.6g} deg, "
+        summary=f"{lengths_in_words(of.linkage, digits=6)}; from {start:.6g} to {end:.6g} deg, "
         f"the {of.swing.driver} driven, {how}",
         record={
             **places(of.look, at.slider_position, at.rod_angle),

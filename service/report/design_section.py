@@ -191,7 +191,7 @@ def linkage_picture(subject: Subject) -> Picture:
     name, label = subject.result.name, subject.label
     return Picture(
         "The linkage, to scale",
-        lambda: drawing_figure(design_drawing(subject.design, name=name, design=label)),
+        lambda: drawing_figure(design_drawing(subject.design, name=name, design=label, system=subject.system)),
         tallest=3.6,
     )
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import math
 import os
+import random
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.swing import Swing
+from slidercrank.objectives.kinds import System
 from slidercrank.service.designs.toleranced import toleranced
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.layers import LAYERS, SWING_LAYERS
@@ -335,3 +337,22 @@ def test_dimensions_have_the_digits_of_their_tolerances() -> None:
         (5.0, 1e-7, "5.0000000 ± 0.0000001"),
     ):
         assert toleranced(length, tolerance) == words
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02, -0.013])
+def test_in_inches_only_texts_differ(offset: float) -> None:
+    chance, factor = random.Random(37), 1.0 / 25.4
+    for _ in range(20):
+        linkage = Linkage(chance.uniform(0.02, 0.05), chance.uniform(0.12, 0.3), offset)
+        metric, inch = (
+            linkage_drawing(Mechanism(speed=1.0), linkage, name="run", system=system) for system in get_args(System)
+        )
+        assert [shape.name for shape in inch.shapes if isinstance(shape, Dimension)] == [
+            shape.name for shape in metric.shapes if isinstance(shape, Dimension)
+        ]
+        for one, other in zip(inch.shapes, metric.shapes, strict=True):
+            if isinstance(one, Dimension) and isinstance(other, Dimension):
+                assert float(one.text) == pytest.approx(factor * float(other.text), rel=1e-6)
+                assert (one.start, one.end, one.through) == (other.start, other.end, other.through)
+        assert not [note for note in inch.notes if "mm" in note or "millimetre" in note]
+        assert f"crank {1e3 * factor * float(linkage.crank):.7g} in" in inch.notes[0]
