@@ -25,9 +25,9 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.panels import save_sheet
 from slidercrank.service.jobs.submission import submit
+from slidercrank.service.questions.cylinders import analysis as cylinders
+from slidercrank.service.questions.indicator import analysis as indicator
 from slidercrank.service.store import Store
-from slidercrank.service.topics.cylinders import analysis as cylinders
-from slidercrank.service.topics.indicator import analysis as indicator
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 

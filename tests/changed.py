@@ -1,7 +1,7 @@
 """Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
 
 They are the test files that differ and, for every other file, those named after it or after its folder, anywhere in the
-mirror of its top-level folder (`service/topics/clearance/analysis.py` has all `test_analysis*.py` and
+mirror of its top-level folder (`service/questions/clearance/analysis.py` has all `test_analysis*.py` and
 `test_clearance*.py` under `tests/service/`), then those that import it. If these are fewer than three, those that
 import it indirectly are added; the ones that mention most of its names come first. A source file without any test
 file is an error.

@@ -11,9 +11,9 @@ from pydantic import Field
 from ...model.errors import InputError
 from ...optimise.job.model import Job as JobModel
 from ..presets.jobs import shipped_jobs
+from ..questions.discovery import ALL, COMMANDS, QUESTIONS, TOPICS
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
-from ..topics.discovery import ALL, ASKED, COMMANDS, TOPICS
 from .call import Call, Job, tables_of
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
 _SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in COMMANDS.items()]
 _INPUTS: dict[str, dict[str, Any]] = {}
-for _topic in ASKED.values():
+for _topic in QUESTIONS.values():
     for _one in _topic.inputs:
         _words = {"enum": list(get_args(_one.words))} if _one.words else {}
         _said = _INPUTS.setdefault(_one.name, {"type": "string", "description": "", **_words})
@@ -138,16 +138,16 @@ class Question:
 
     def __post_init__(self) -> None:
         """Raise `InputError` for topics that there are not, or that do not go together, and for inputs of others."""
-        from ..topics.discovery import chosen_topics
+        from ..questions.discovery import chosen_topics
 
         if self.alone is None:
             chosen_topics(self.topics, job=True)
         elif len(self.topics) > 1:
             raise InputError(f"{self.alone} is asked alone; got {', '.join(self.topics)}; ask the others without it")
-        taken = [one.name for name in self.names for one in ASKED[name].inputs]
+        taken = [one.name for name in self.names for one in QUESTIONS[name].inputs]
         for name in self.inputs:
             if name not in taken and name in _INPUTS:
-                (topic, *_) = (topic for topic in ASKED.values() if any(one.name == name for one in topic.inputs))
+                (topic, *_) = (topic for topic in QUESTIONS.values() if any(one.name == name for one in topic.inputs))
                 raise InputError(f"{name} is an input of {topic.name}; got it without; add that topic")
             if name not in taken:
                 raise InputError(f"inputs are {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
@@ -160,17 +160,17 @@ class Question:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the topics."""
-        from ..topics.discovery import chosen_topics
+        from ..questions.discovery import chosen_topics
 
         return chosen_topics(self.topics, job=True) if self.alone is None else (self.alone,)
 
     def options(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""
-        from ..topics.inputs import read_inputs
+        from ..questions.inputs import read_inputs
 
         found = {}
         for name in self.names:
-            inputs = ASKED[name].inputs
+            inputs = QUESTIONS[name].inputs
             given = {one.name: self.inputs[one.name] for one in inputs if one.name in self.inputs}
             found[name] = read_inputs(inputs, given, f"the topic {name}")
         return found

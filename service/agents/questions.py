@@ -15,8 +15,8 @@ from ...objectives.units import closest
 from ..designs.quantity_facts import facts_of_all
 from ..designs.turning import require_turning
 from ..presets.jobs import shipped_jobs
-from ..topics.discovery import ALL, ASKED
-from ..topics.topic import Topic
+from ..questions.discovery import ALL, QUESTIONS
+from ..questions.question import Question as QuestionToDesign
 from .call import Answer, Call, tables_of, text_of
 from .inputs import Design, Files, JobInput, Question
 
@@ -40,7 +40,7 @@ def list_known(call: Call) -> Answer:
     quantities = [
         {key: facts[key] for key in ("name", "title", "column", "unit", "better")} for facts in facts_of_all()
     ]
-    topics, runs = list(map(_topic, ASKED.values())), list(_runs(call))
+    topics, runs = list(map(_topic, QUESTIONS.values())), list(_runs(call))
     lines = [
         *("Jobs that ship:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
         *("Topics of a design:", *(f"  {topic['name']}: {topic['shows'].partition(chr(10))[0]}" for topic in topics)),
@@ -73,9 +73,9 @@ def describe(
     if word in facts:
         record["quantity"] = of = facts[word]
         lines.append(f"{of['title']} ({of['column']}): {of['sentence']} {of['advice']}\n{of['formula']}")
-    if word in ASKED:
-        record["topic"] = topic = _topic(ASKED[word])
-        asked = "".join(f"\n  {one.name}: {one.remark}" for one in ASKED[word].inputs)
+    if word in QUESTIONS:
+        record["topic"] = topic = _topic(QUESTIONS[word])
+        asked = "".join(f"\n  {one.name}: {one.remark}" for one in QUESTIONS[word].inputs)
         lines.append(f"topic {word}: {topic['shows']}{asked}")
     if word in shipped_jobs():
         text = job_toml(shipped_jobs()[word])
@@ -85,7 +85,7 @@ def describe(
         record["key"] = key = _key(word)
         lines += [f"key {word}: {key['description']}", *_keys_in_words(key)]
     if not record:
-        near = closest(word, [*facts, *ASKED, *shipped_jobs()])
+        near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "list what there is"
         raise NotFound(f"a name is that of a quantity, a topic, a job or a key of one; got {word!r}; {remedy}")
     return Answer(record, "\n".join(lines))
@@ -137,8 +137,8 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
 def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Question) -> Answer:
     """Analyse a design that turns fully. options: of each topic."""
     from ..designs.requirements import judged
-    from ..topics.analysis_text import show_analysis
-    from ..topics.design_analysis import analysis_of, numbers_of
+    from ..questions.analysis_text import show_analysis
+    from ..questions.design_analysis import analysis_of, numbers_of
 
     row, undefined = numbers_of(of.mechanism, of.linkage, of.problem.own)
     found = analysis_of(
@@ -161,14 +161,14 @@ def _alone(name: str, of: Machine, question: Question) -> Answer:
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks
 
-    asked = ASKED[name].asked(of.mechanism, of.linkage, of.problem.motion, question.inputs)
+    asked = QUESTIONS[name].asked(of.mechanism, of.linkage, of.problem.motion, question.inputs)
     record = asked.numbers(lambda: False)
     text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
     notes = filter(None, record.get("notes", [record.get("note")]))
     return Answer(record_in(record, question.units), "\n".join((text, *notes)))
 
 
-def _topic(of: Topic) -> dict[str, Any]:
+def _topic(of: QuestionToDesign) -> dict[str, Any]:
     inputs = [{key: getattr(one, key) for key in _OF_TOPIC} for one in of.inputs]
     shows = of.shows if of.command is None else inspect.cleandoc(of.command.help)
     return {"name": of.name, "shows": shows, "inputs": inputs}

@@ -18,12 +18,12 @@ from ..designs.selection import none_meets, numbered, part_of
 from ..designs.shown_units import result_in
 from ..jobs.submission import LONGEST_CALL, ending_own, job_json
 from ..motion.design_file import ENDINGS, design_file
+from ..questions.discovery import ALL
 from ..runs.result import Result, csv_text, json_text, unsearched_result
 from ..runs.run_folder import write_file
 from ..text.design_options import Pick, Selection, SettingOptions
 from ..text.options import Run, Units
 from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
-from ..topics.discovery import ALL
 from .call import Answer, Call, tables_of, text_of
 from .inputs import Files, Number, OptionalJob, Shown
 

@@ -16,10 +16,10 @@ from ...objectives.quantity import Quantity
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.violations import violated_by
+from ..questions.design_analysis import analysis_of, numbers_of, numbers_of_swing
+from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
-from ..topics.design_analysis import analysis_of, numbers_of, numbers_of_swing
-from ..topics.discovery import ALL, TOPICS, chosen_topics
 from .computing import LongRoute
 from .fronts import OfDesign
 from .job_requests import given_problem
@@ -85,7 +85,7 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
     stored = found.design(design)
     if stored.part.motion is not None:
         if topics:
-            require_turning(stored.part.motion, f"the analysis {', '.join(topics)}")
+            require_turning(stored.part.motion, f"the topic {', '.join(topics)}")
         row, undefined = numbers_of_swing(stored)
         record = json_ready(row | {"violated": violated_by(stored.mechanism, row), "undefined": undefined})
         return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=[])

@@ -15,10 +15,10 @@ from ...model.machine.mechanism import Mechanism
 from ..designs.measured_file import read_measured
 from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
+from ..questions.discovery import COMMANDS, QUESTIONS
+from ..questions.measured import MEASURED
+from ..questions.question import Command
 from ..runs.result import json_ready
-from ..topics.discovery import ASKED, COMMANDS
-from ..topics.measured import MEASURED
-from ..topics.topic import Command
 from .computing import QuickRoute
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
@@ -32,24 +32,24 @@ router = APIRouter(
 
 
 def _add(name: str, says: Command) -> None:
-    """Add the endpoint of a topic that is a command. Its example is computed once the API is described."""
-    topic = ASKED[name]
+    """Add the endpoint of a question that is a command. Its example is computed once the API is described."""
+    question = QUESTIONS[name]
 
     def exemplify(schema: dict[str, Any]) -> None:
-        given = {one.name: one.example for one in topic.inputs if one.name in says.example}
-        schema["examples"] = [topic.answer(Mechanism(), Linkage(0.06, 0.23, 0.07), None, given)]
+        given = {one.name: one.example for one in question.inputs if one.name in says.example}
+        schema["examples"] = [question.answer(Mechanism(), Linkage(0.06, 0.23, 0.07), None, given)]
 
     answer: Any = (dict[str, Any], Field(json_schema_extra=exemplify))
     told = f"What `slidercrank {name} --json` prints of a design of a front."
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **{name: answer})
 
     def endpoint(found: FrontDep, design: DesignNumber, given: Any, units: UnitsAsked = "metric") -> OfDesign:
-        stored, words = found.design(design), {one.name: one.key for one in topic.inputs}
-        asked = topic.asked(stored.mechanism, stored.linkage, stored.part.motion, given, words)
+        stored, words = found.design(design), {one.name: one.key for one in question.inputs}
+        asked = question.asked(stored.mechanism, stored.linkage, stored.part.motion, given, words)
         return model(job=found.job.id, number=design, **{name: record_in(json_ready(asked.numbers()), units)})
 
     endpoint.__name__, endpoint.__doc__ = says.endpoint, says.help
-    inputs = inputs_in_address(topic.inputs, map(parameter_of, topic.inputs))
+    inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
     endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
     router.get(f"/{name}", response_model=model)(endpoint)
 

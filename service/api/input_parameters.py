@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Query
 
-from ..topics.inputs import Input
+from ..questions.inputs import Input
 
 
 def parameter_of(one: Input, before: str = "") -> inspect.Parameter:

@@ -8,8 +8,8 @@ from pydantic import BaseModel, Field
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, SHOWN, shown_in
 from ..designs.quantity_facts import facts_of_all
-from ..topics.discovery import TOPICS
-from ..topics.topic import Topic
+from ..questions.discovery import TOPICS
+from ..questions.question import Question
 
 router = APIRouter(tags=["designs"])
 
@@ -163,7 +163,7 @@ def list_topics() -> TopicList:
     return TopicList(topics=list(map(_topic, TOPICS.values())))
 
 
-def _topic(of: Topic) -> TopicModel:
+def _topic(of: Question) -> TopicModel:
     inputs = [InputModel(key=one.key, title=one.title, unit=one.unit.symbol, usual=one.usual) for one in of.inputs]
     title = of.name.replace("_", " ").capitalize()
     return TopicModel(name=of.name, title=title, shows=of.shows, inputs=inputs)

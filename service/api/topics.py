@@ -11,9 +11,9 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
+from ..questions.discovery import INPUTS, TOPIC_OF, TOPICS
+from ..questions.question import Question, QuestionOfDesign
 from ..runs.result import json_ready
-from ..topics.discovery import INPUTS, TOPIC_OF, TOPICS
-from ..topics.topic import Topic, TopicOfDesign
 from .computing import LongRoute
 from .exports import SEALED, of_type
 from .figures import require_figures
@@ -59,11 +59,11 @@ class Asked:
     units: System
     given: dict[str, str]
 
-    def of(self, topic: Topic, shown: ShownDesign) -> TopicOfDesign:
+    def of(self, topic: Question, shown: ShownDesign) -> QuestionOfDesign:
         """Return the topic of a design. Raises `InputError` for a swing, and for an input of another topic."""
         return topic.asked(shown.design.mechanism, shown.design.linkage, shown.design.part.motion, self.given)
 
-    def kind(self, topic: Topic, what: str) -> str:
+    def kind(self, topic: Question, what: str) -> str:
         """Return the name under which what is made of a topic is kept."""
         return f"topic {topic.name} {what} {self.units} {sorted(self.given.items())}"
 
@@ -130,7 +130,7 @@ def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"], asked: As
     return shown.found.made(shown.key, asked.kind(topic, kind), make)
 
 
-def _topic(name: str) -> Topic:
+def _topic(name: str) -> Question:
     """Return a topic by its name. Raises `NotFound` with those that there are."""
     if name not in TOPICS:
         raise NotFound(f"there is no topic {name!r}; choose from {', '.join(TOPICS)}")

@@ -14,8 +14,8 @@ from ..designs.holding import held
 from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
 from ..designs.variation import variation_of, with_numbers
 from ..designs.violations import violated_by, violations_in_words
+from ..questions.design_analysis import determined
 from ..runs.result import json_ready
-from ..topics.design_analysis import determined
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models

@@ -13,8 +13,8 @@ from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
 from ..figures.panels import save_sheet
 from ..figures.sheets import CRANK_ANGLE, Array, Line, Panel, Sheet, over_turn
-from ..topics.clearance.figure import speed_runs, speeds_figure
-from ..topics.polygons.analysis import both_branches, polygon_sheet
+from ..questions.clearance.figure import speed_runs, speeds_figure
+from ..questions.polygons.analysis import both_branches, polygon_sheet
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)

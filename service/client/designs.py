@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from ...objectives.kinds import System
-from ..topics.discovery import COMMANDS
+from ..questions.discovery import COMMANDS
 from .connection import Connection, Record, given
 
 if TYPE_CHECKING:

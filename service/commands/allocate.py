@@ -34,8 +34,8 @@ def allocate(
     tolerance, and takes its part of the limit; so do the clearances.
     """
     from ...optimise.sizing import tolerance_allocation as convex
+    from ..questions.allocation import analysis
     from ..render.terminal import print_blocks
-    from ..topics.allocation import analysis
 
     problem = turning_problem(job, "allocate")
     if problem.costs is None:
@@ -53,7 +53,7 @@ def allocate(
     if not found.converged:
         say(f"not proven to be the cheapest: the optimality conditions are met to {found.residual:.1e} only")
     if figures is not None:
-        from ..topics.allocation.figure import allocation_curves, allocation_figure
+        from ..questions.allocation.figure import allocation_curves, allocation_figure
 
         curves = allocation_curves(found, linkage, problem.costs, mechanism)
         write_figure(figures / "allocation.png", partial(allocation_figure, curves, units))

@@ -12,6 +12,9 @@ import typer
 from ...model.errors import InputError
 from ...objectives.kinds import System
 from ..designs.requirements import judged
+from ..questions.design_analysis import analysis_of, numbers_of
+from ..questions.discovery import ALL, INPUTS, TOPIC_OF, TOPICS, chosen_topics
+from ..questions.question import QuestionOfDesign
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -28,9 +31,6 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, give, say, waiting
-from ..topics.design_analysis import analysis_of, numbers_of
-from ..topics.discovery import ALL, INPUTS, TOPIC_OF, TOPICS, chosen_topics
-from ..topics.topic import TopicOfDesign
 from .ending import INTERRUPTED, Interruption
 from .input_options import option_of
 from .job_or_run import machine_of
@@ -121,7 +121,7 @@ def analyse(
     if json:
         give(json_text(found.record(units, None if problem is None else rules)))
     else:
-        from ..topics.analysis_text import show_analysis
+        from ..questions.analysis_text import show_analysis
 
         screen = console()
         more = f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}."
@@ -136,9 +136,9 @@ def analyse(
         raise InputError("; ".join(found.refused))
 
 
-def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> TopicOfDesign:
+def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> QuestionOfDesign:
     from ..designs.measured_file import measured_text, read_measured
-    from ..topics.measured import MEASURED
+    from ..questions.measured import MEASURED
 
     return MEASURED.of(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
 
@@ -162,7 +162,7 @@ def _draw(
     mechanism: Mechanism,
     linkage: Linkage,
     row: Row,
-    topics: Sequence[TopicOfDesign],
+    topics: Sequence[QuestionOfDesign],
     folder: Path,
     units: System,
 ) -> None:

@@ -62,8 +62,8 @@ def balance(
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.
     """
     from ...optimise.sizing import counterweight as balancing
+    from ..questions.counterweight import analysis
     from ..render.terminal import print_blocks
-    from ..topics.counterweight import analysis
 
     problem = turning_problem(job, "balance")
     linkage, mechanism = size.linkage(problem), problem.mechanism.nominal

@@ -1,4 +1,4 @@
-"""Options of the command line for what a topic is asked with."""
+"""Options of the command line for what a question is asked with."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..topics.inputs import Input
+from ..questions.inputs import Input
 
 
 def option_of(one: Input) -> inspect.Parameter:

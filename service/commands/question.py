@@ -10,18 +10,18 @@ from typing import Annotated, Any
 import typer
 
 from ..designs.shown_units import record_in
+from ..questions.discovery import COMMANDS, QUESTIONS
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
 from ..text.options import DesignOfRun, Dimensions, JobOrRun, Json, Runs, Units, drawable, require_ending
 from ..text.screen import answer, say, write_figure
-from ..topics.discovery import ASKED, COMMANDS
 from .input_options import option_of
 from .job_or_run import machine_of
 
 
 def command_of(name: str) -> Callable[..., None]:
-    """Return the command of a topic, for `for_typer`."""
-    topic, says = ASKED[name], COMMANDS[name]
+    """Return the command of a question, for `for_typer`."""
+    question, says = QUESTIONS[name], COMMANDS[name]
 
     def command(
         job: JobOrRun = None,
@@ -40,8 +40,8 @@ def command_of(name: str) -> Callable[..., None]:
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
-        words = {one.name: one.flag for one in topic.inputs}
-        asked = topic.asked(mechanism, linkage, None if problem is None else problem.motion, inputs, words)
+        words = {one.name: one.flag for one in question.inputs}
+        asked = question.asked(mechanism, linkage, None if problem is None else problem.motion, inputs, words)
         record = asked.numbers()
         answer(json, record_in(record, units), lambda screen: print_blocks(screen, asked.blocks(record), units))
         for note in () if json else filter(None, record.get("notes", [record.get("note")])):
@@ -57,7 +57,7 @@ def command_of(name: str) -> Callable[..., None]:
     command.__doc__ = f"{says.help} {says.alone}"
     command.__annotations__ |= {
         "job": Annotated[JobOrRun, says.job],
-        "inputs": Annotated[dict[str, Any], tuple(map(option_of, topic.inputs))],
+        "inputs": Annotated[dict[str, Any], tuple(map(option_of, question.inputs))],
         "files": Annotated[dict[str, Any], tuple(written)],
     }
     return command

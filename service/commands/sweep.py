@@ -73,7 +73,7 @@ def sweep(
     if (stuck := [row["reason"] for row in rows if row["reason"]]) and not json:
         say(f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}")
     if figures is not None:
-        from ..topics.sweep.figure import sweep_figure
+        from ..questions.sweep.figure import sweep_figure
 
         file = figures / "sweep.png"
         write_figure(file, lambda: sweep_figure(swept_table, axes, quantities, title=problem.name, system=units))

@@ -9,10 +9,10 @@ import numpy as np
 
 from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
+from ..questions.sensitivity.figure import tornado_figure, tornado_rows
+from ..questions.tolerances.analysis import numbers
+from ..questions.tolerances.figure import error_bands, tolerances_figure
 from ..render.numerals import length, rounded
-from ..topics.sensitivity.figure import tornado_figure, tornado_rows
-from ..topics.tolerances.analysis import numbers
-from ..topics.tolerances.figure import error_bands, tolerances_figure
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 

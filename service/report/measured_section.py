@@ -10,9 +10,9 @@ from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ..figures.panels import draw_sheet
 from ..figures.sheets import Sheet
+from ..questions.measured.analysis import curve_value, figure, file_notes, numbers
 from ..render.blocks import Unit
 from ..render.formatting import format_text
-from ..topics.measured.analysis import curve_value, figure, file_notes, numbers
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 

@@ -10,11 +10,11 @@ from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import shown_in
 from ..designs.swing_curves import driven, error_kind
+from ..questions.swing.analysis import blocks as swing_blocks
+from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
 from ..render.formatting import cells, heads
 from ..render.numerals import length, rounded
-from ..topics.swing.analysis import blocks as swing_blocks
-from ..topics.swing.analysis import swing_record, swing_title
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.questions.discovery import TOPICS
 from tests.doors.comparing import Allowance, compare
 from tests.doors.contents import text_of
 from tests.doors.coverage import untried_operations, untried_options

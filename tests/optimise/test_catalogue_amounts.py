@@ -257,7 +257,7 @@ def rows_of(random: np.random.Generator, *, masses: bool) -> list[dict[str, Any]
     return rows
 
 
-ASKED: list[tuple[dict[str, Any], dict[str, Any]]] = [
+QUESTIONS: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"peak_torque": "minimise", "stroke": "maximise"}, {}),
     ({"price": "minimise", "stroke": "maximise"}, {}),
     ({"price": "minimise", "mass": "minimise", "transmission_angle": "maximise"}, {}),
@@ -269,10 +269,10 @@ ASKED: list[tuple[dict[str, Any], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize("masses", [False, True])
-@pytest.mark.parametrize("place", range(len(ASKED)))
+@pytest.mark.parametrize("place", range(len(QUESTIONS)))
 def test_the_front_and_the_least_rows_are_those_of_judging_every_row_alone(place: int, masses: bool) -> None:
     random = np.random.default_rng([35, place, masses])
-    objectives, constraints = ASKED[place]
+    objectives, constraints = QUESTIONS[place]
     rows = rows_of(random, masses=masses)
     table = "\n".join([",".join(rows[0]), *(",".join(map(str, row.values())) for row in rows)])
     problem = parse_job(pusher(table, objectives=objectives, constraints=constraints))

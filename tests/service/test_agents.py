@@ -30,8 +30,8 @@ from slidercrank.service.agents.call import Answer
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
+from slidercrank.service.questions.discovery import INPUTS, QUESTIONS, TOPICS
 from slidercrank.service.text.tables import ROWS
-from slidercrank.service.topics.discovery import ASKED, INPUTS, TOPICS
 from tests.service import fronts
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="what the server writes is copied by a shell")
@@ -392,7 +392,7 @@ def test_files_are_those_of_the_commands_and_lie_in_the_run(agent: Agent, run: s
 def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
     known = agent.ask("list")
     assert {facts["name"] for facts in known["quantities"]} >= set(QUANTITIES)
-    assert [topic["name"] for topic in known["topics"]] == list(ASKED)
+    assert [topic["name"] for topic in known["topics"]] == list(QUESTIONS)
     for part in ("jobs", "topics", "quantities"):
         for one in known[part]:
             assert part.rstrip("s").replace("quantitie", "quantity") in agent.ask("describe", name=one["name"])
@@ -407,7 +407,7 @@ def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:
     found = {tool.name: tool for tool in agent.portal.call(agent.client.list_tools).tools}
     assert list(found) == [tool.name for tool in TOOLS]
     asked = found["ask"].input_schema["properties"]
-    for topic in ASKED.values():
+    for topic in QUESTIONS.values():
         for one in topic.inputs:
             assert f"{topic.name}: {one.remark}" in asked["inputs"]["properties"][one.name]["description"]
     assert set(INPUTS) <= set(asked["inputs"]["properties"])

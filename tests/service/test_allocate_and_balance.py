@@ -21,8 +21,8 @@ from slidercrank.optimise.sizing.counterweight import RodSpace, balance
 from slidercrank.optimise.sizing.error_rows import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
 from slidercrank.service.figures.panels import draw_sheet
-from slidercrank.service.topics.allocation.figure import allocation_curves, allocation_figure
-from slidercrank.service.topics.counterweight import analysis as counterweight
+from slidercrank.service.questions.allocation.figure import allocation_curves, allocation_figure
+from slidercrank.service.questions.counterweight import analysis as counterweight
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps
 

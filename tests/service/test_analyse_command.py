@@ -14,7 +14,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
-from slidercrank.service.topics.discovery import TOLD_THERE
+from slidercrank.service.questions.discovery import TOLD_THERE
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS

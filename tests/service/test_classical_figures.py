@@ -22,14 +22,14 @@ from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.figures.sheets import Line, Panel, Sheet
+from slidercrank.service.questions.approximations import analysis as approximations_analysis
+from slidercrank.service.questions.discovery import TOPICS
+from slidercrank.service.questions.polygons import analysis as polygons_analysis
+from slidercrank.service.questions.static_forces import analysis as static_analysis
 from slidercrank.service.render.formatting import format_text
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
 from slidercrank.service.text.screen import console
-from slidercrank.service.topics.approximations import analysis as approximations_analysis
-from slidercrank.service.topics.discovery import TOPICS
-from slidercrank.service.topics.polygons import analysis as polygons_analysis
-from slidercrank.service.topics.static_forces import analysis as static_analysis
 from tests.model.virtual_work import path
 from tests.service import fronts
 from tests.service.test_figures import overlaps

@@ -21,9 +21,9 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
 from slidercrank.service.figures.panels import figure_of
 from slidercrank.service.figures.style import image
+from slidercrank.service.questions.clearance.analysis import blocks, figure, numbers, simulated
+from slidercrank.service.questions.clearance.figure import loose_curves, speed_runs, speeds_figure
 from slidercrank.service.render.terminal import print_blocks
-from slidercrank.service.topics.clearance.analysis import blocks, figure, numbers, simulated
-from slidercrank.service.topics.clearance.figure import loose_curves, speed_runs, speeds_figure
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
 LINKAGE = Linkage(0.14, 0.31, -0.06)

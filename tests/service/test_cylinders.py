@@ -14,8 +14,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.members import alone
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.sizing.counterweight import balance
-from slidercrank.service.topics.cylinders import analysis
-from slidercrank.service.topics.motor import analysis as motor
+from slidercrank.service.questions.cylinders import analysis
+from slidercrank.service.questions.motor import analysis as motor
 from tests.service.conftest import Command
 
 LINKAGE = Linkage(0.03, 0.12, 0.0)

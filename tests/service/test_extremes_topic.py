@@ -21,11 +21,11 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves as curves_of_figure
 from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.questions.discovery import TOPICS
+from slidercrank.service.questions.extremes import analysis as extremes
 from slidercrank.service.render.formatting import format_text
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
-from slidercrank.service.topics.discovery import TOPICS
-from slidercrank.service.topics.extremes import analysis as extremes
 from tests.model.cases import linkage_of, random_designs, random_machine
 from tests.service import fronts
 from tests.service.conftest import Command

@@ -22,11 +22,11 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.service.questions.balance import analysis as balance
+from slidercrank.service.questions.discovery import TOPICS as DECLARED
+from slidercrank.service.questions.friction import analysis as friction
+from slidercrank.service.questions.motor import analysis as motor
 from slidercrank.service.render.terminal import print_blocks
-from slidercrank.service.topics.balance import analysis as balance
-from slidercrank.service.topics.discovery import TOPICS as DECLARED
-from slidercrank.service.topics.friction import analysis as friction
-from slidercrank.service.topics.motor import analysis as motor
 
 LINKAGE = Linkage(0.04, 0.1, 0.02)
 PIN = Pin(radius=0.01, coefficient=0.08)

@@ -14,7 +14,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.figures.sheets import panel_in
-from slidercrank.service.topics.indicator import analysis
+from slidercrank.service.questions.indicator import analysis
 from tests.service.conftest import Command
 
 AIR = Compressor(bore=0.07, low=1e5, high=8e5, clearance=0.05, compression_exponent=1.3, expansion_exponent=1.2)

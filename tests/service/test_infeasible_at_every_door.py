@@ -18,10 +18,10 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.client import Client
 from slidercrank.service.designs.requirements import judged
+from slidercrank.service.questions.design_analysis import numbers_of
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder
 from slidercrank.service.store import Store
-from slidercrank.service.topics.design_analysis import numbers_of
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.api.fixed_front import served

@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.kinds import LENGTH, RATIO
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.topics.discovery import INPUTS, TOPIC_OF, TOPICS
-from slidercrank.service.topics.inputs import Input, read_inputs
+from slidercrank.service.questions.discovery import INPUTS, TOPIC_OF, TOPICS
+from slidercrank.service.questions.inputs import Input, read_inputs
 from tests.service.api.fixed_front import API, Solved, client_of
 
 RANGES = {"crank_angle": (-400.0, 400.0), "fluctuation": (0.005, 0.5)}
@@ -66,7 +66,7 @@ def test_a_topic_that_the_machine_lacks_is_refused_with_its_input_too(client: ht
     answer = client.get(f"{solved.path}/designs/2/topics/tolerances", params={"limit_mm": 0.3})
     assert (answer.status_code, "a position error comes from tolerances; got none" in answer.text) == (422, True)
     answer = client.get(f"{solved.path}/designs/2/topics/motor", params={"limit_mm": 0.3})
-    assert "the analysis motor is asked with nothing else; got limit; leave limit out" in answer.text
+    assert "the topic motor is asked with nothing else; got limit; leave limit out" in answer.text
 
 
 def test_the_list_of_topics_has_what_each_is_asked_with(client: httpx.Client) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from slidercrank.model.swing.swing import placed, require_swing
-from slidercrank.service.topics.inverse.analysis import numbers
+from slidercrank.service.questions.inverse.analysis import numbers
 from tests.model.swing.swings import random_swings
 
 

@@ -16,7 +16,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.service.topics.strength import analysis as strength
+from slidercrank.service.questions.strength import analysis as strength
 from tests.service import fronts as made
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
 from tests.service.conftest import Command

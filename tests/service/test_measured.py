@@ -22,10 +22,10 @@ from slidercrank.service.designs import measured_file
 from slidercrank.service.designs.measured_file import measured_text, read_measured
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.questions.measured import MEASURED
+from slidercrank.service.questions.measured import analysis as topic
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_text
-from slidercrank.service.topics.measured import MEASURED
-from slidercrank.service.topics.measured import analysis as topic
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps

@@ -17,9 +17,9 @@ from slidercrank.model.signals.first_greatest import angle_in_cycle, first_great
 from slidercrank.objectives.tables.analysis import columns_of
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves
-from slidercrank.service.topics.cylinders import analysis as cylinders
-from slidercrank.service.topics.motor import analysis as motor
-from slidercrank.service.topics.uneven_speed import analysis as uneven_speed
+from slidercrank.service.questions.cylinders import analysis as cylinders
+from slidercrank.service.questions.motor import analysis as motor
+from slidercrank.service.questions.uneven_speed import analysis as uneven_speed
 
 TURN = 2.0 * math.pi
 

@@ -21,8 +21,8 @@ from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.slider_distances import SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.dead_centre import TOUCH_SPEED
-from slidercrank.service.topics.press import analysis as press
-from slidercrank.service.topics.pump import analysis as pump
+from slidercrank.service.questions.press import analysis as press
+from slidercrank.service.questions.pump import analysis as pump
 from tests.model.cases import linkage_of, random_designs
 
 DESIGNS = random_designs(6, seed=11, least_margin=0.02)

@@ -20,7 +20,7 @@ from slidercrank.model.errors import InputError, NotFound
 from slidercrank.optimise.problem import questions as announced
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
-from slidercrank.service.topics.discovery import ASKED, COMMANDS, TOPICS
+from slidercrank.service.questions.discovery import COMMANDS, QUESTIONS, TOPICS
 from tests.doors.scripts import JOBS
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, served
@@ -164,7 +164,7 @@ def test_a_swing_of_a_job_is_asked_in_python_as_on_the_command_line() -> None:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_example_of_an_endpoint_is_the_answer_of_its_linkage(address: str, name: str) -> None:
-    topic = ASKED[name]
+    topic = QUESTIONS[name]
     given = {one.name: one.example for one in topic.inputs if one.name in COMMANDS[name].example}
     described = httpx.get(f"{address}{API}/openapi.json", timeout=60.0).json()
     (example,) = described["components"]["schemas"][f"{name.capitalize()}Model"]["properties"][name]["examples"]
@@ -204,7 +204,7 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
         "a design is asked a question by its name; got 'weather'; choose from inverse, swing, ",
     ),
     ("press", {"touch": 1.0}, "press is asked with touch_distance, dwell_distance, rated_torque; got touch; leave"),
-    ("motor", {"limit": 1.0}, "the analysis motor is asked with nothing else; got limit; leave limit out"),
+    ("motor", {"limit": 1.0}, "the topic motor is asked with nothing else; got limit; leave limit out"),
     ("press", {"touch_distance": "12 kg"}, 'touch_distance must be a length; got "12 kg", which is a mass; write it'),
     ("press", {"touch_distance": "12"}, 'touch_distance must be a length with its unit; got "12"; write it like'),
     ("press", {"touch_distance": 0.0}, "touch_distance must be positive; got 0"),
@@ -246,7 +246,7 @@ def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> N
         problem.ask("balance", [0.2, 0.1, 0.06])
     with pytest.raises(InputError, match="designs need 3 numbers each"):
         problem.ask("balance", [0.2, 0.1])
-    with pytest.raises(InputError, match="the analysis balance is of a crank that turns through; got a job whose"):
+    with pytest.raises(InputError, match="the topic balance is of a crank that turns through; got a job whose"):
         sc.load_job("runs/support.toml").ask("balance", [1.4, 1.8, -0.05])
     with pytest.raises(InputError, match="a design of a problem with choices"):
         sc.load_job(JOBS / "catalogue.toml").ask("balance", [0.04, 0.1, 0.02])

@@ -21,9 +21,9 @@ from slidercrank.objectives.quantity import Group
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.questions.strength.analysis import blocks, figure, numbers
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_ready
-from slidercrank.service.topics.strength.analysis import blocks, figure, numbers
 from tests.model.cases import STRENGTH, random_designs
 from tests.model.strength.sections import eye_rows, linkage_with, random_bars, section_stress
 from tests.service import fronts

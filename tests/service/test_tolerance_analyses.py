@@ -26,12 +26,12 @@ from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import simulate, variances
 from slidercrank.objectives.tables.sensitivity import sensitivity
+from slidercrank.service.questions.discovery import TOPICS
+from slidercrank.service.questions.sensitivity import analysis as sensitivity_analysis
+from slidercrank.service.questions.sensitivity.figure import tornado_figure, tornado_rows
+from slidercrank.service.questions.tolerances import analysis as tolerance_analysis
+from slidercrank.service.questions.tolerances.figure import PERCENTS, error_bands, tolerances_figure
 from slidercrank.service.render.terminal import print_blocks
-from slidercrank.service.topics.discovery import TOPICS
-from slidercrank.service.topics.sensitivity import analysis as sensitivity_analysis
-from slidercrank.service.topics.sensitivity.figure import tornado_figure, tornado_rows
-from slidercrank.service.topics.tolerances import analysis as tolerance_analysis
-from slidercrank.service.topics.tolerances.figure import PERCENTS, error_bands, tolerances_figure
 from tests.model.cases import SMOOTH
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT
 from tests.service.test_figures import overlaps

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service import topics
-from slidercrank.service.topics.discovery import ALL, ASKED, TOPICS, chosen_topics
+from slidercrank.service import questions
+from slidercrank.service.questions.discovery import ALL, QUESTIONS, TOPICS, chosen_topics
 
 
 def test_every_topic_has_numbers_text_and_figure_in_its_folder() -> None:
@@ -23,17 +23,17 @@ def test_topics_are_shown_in_the_order_of_their_places() -> None:
 
 
 def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from slidercrank.service.topics import discovery
+    from slidercrank.service.questions import discovery
 
     folder = tmp_path / "weather"
     folder.mkdir()
     (folder / "__init__.py").write_text(
-        "from slidercrank.service.topics.topic import Topic\nTOPIC = Topic(__name__, 35, 'rain')\n"
+        "from slidercrank.service.questions.question import Question\nQUESTION = Question(__name__, 35, 'rain')\n"
     )
-    monkeypatch.setattr(topics, "__path__", [*topics.__path__, str(tmp_path)])
+    monkeypatch.setattr(questions, "__path__", [*questions.__path__, str(tmp_path)])
     found = list(discovery._found())
-    assert found.index("weather") == list(ASKED).index("motor") + 1
-    assert [name for name in found if name != "weather"] == list(ASKED)
+    assert found.index("weather") == list(QUESTIONS).index("motor") + 1
+    assert [name for name in found if name != "weather"] == list(QUESTIONS)
 
 
 def test_without_a_job_all_topics_are_those_that_need_none() -> None:

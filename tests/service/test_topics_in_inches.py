@@ -25,10 +25,10 @@ from slidercrank.objectives.kinds import ANGLE, FORCE, LENGTH, PERCENT, RATIO, S
 from slidercrank.service.designs.shown_units import record_in
 from slidercrank.service.figures.panels import draw_sheet
 from slidercrank.service.figures.sheets import Line, Panel, Sheet, over_turn, panel_in
+from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.render.blocks import Table, Text, Unit, Value, column, heading, words
 from slidercrank.service.render.formatting import PlainBlock, format_text, format_value, plain_blocks
 from slidercrank.service.render.numerals import shown
-from slidercrank.service.topics.discovery import TOPICS
 from tests.service import fronts
 from tests.service.conftest import Command
 
@@ -153,7 +153,7 @@ def test_axes_of_a_figure_are_changed_with_all_that_is_drawn() -> None:
 
 
 def test_the_figure_of_a_topic_has_lengths_and_extremes_in_inches() -> None:
-    from slidercrank.service.topics.extremes.analysis import figure
+    from slidercrank.service.questions.extremes.analysis import figure
 
     sheet = figure(fronts.MACHINE, Linkage(0.1237, 0.3519, 0.0811))
     assert format_text(sheet.subtitle, "inch") == "crank 4.87008 in, rod 13.8543 in, offset 3.19291 in"

@@ -23,10 +23,10 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
 from slidercrank.service.figures.sheets import Panel, panel_in
+from slidercrank.service.questions.discovery import TOPICS
+from slidercrank.service.questions.flywheel import analysis as flywheel
+from slidercrank.service.questions.start_up import analysis as start_up
 from slidercrank.service.render.terminal import print_blocks
-from slidercrank.service.topics.discovery import TOPICS
-from slidercrank.service.topics.flywheel import analysis as flywheel
-from slidercrank.service.topics.start_up import analysis as start_up
 from tests.model.cases import STROKES
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)

@@ -17,13 +17,13 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.service.figures.curves import cycle_curves
 from slidercrank.service.figures.sheets import Sheet, turn
-from slidercrank.service.topics.cylinders import analysis as cylinders
-from slidercrank.service.topics.extremes import analysis as extremes
-from slidercrank.service.topics.friction import analysis as friction
-from slidercrank.service.topics.indicator import analysis as indicator
-from slidercrank.service.topics.motor import analysis as motor
-from slidercrank.service.topics.static_forces import analysis as static_forces
-from slidercrank.service.topics.uneven_speed import analysis as uneven_speed
+from slidercrank.service.questions.cylinders import analysis as cylinders
+from slidercrank.service.questions.extremes import analysis as extremes
+from slidercrank.service.questions.friction import analysis as friction
+from slidercrank.service.questions.indicator import analysis as indicator
+from slidercrank.service.questions.motor import analysis as motor
+from slidercrank.service.questions.static_forces import analysis as static_forces
+from slidercrank.service.questions.uneven_speed import analysis as uneven_speed
 
 LINKAGE = Linkage(0.043, 0.15, 0.005)
 ENGINE = FourStroke(

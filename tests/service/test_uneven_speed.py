@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 from slidercrank.optimise.job import load_job
-from slidercrank.service.topics.uneven_speed import analysis
+from slidercrank.service.questions.uneven_speed import analysis
 from tests.service.conftest import Command
 
 DIMENSIONS = ("--crank", "30 mm", "--rod", "110 mm", "--offset", "-10 mm")

@@ -18,7 +18,7 @@ from slidercrank.service.runs.stored_runs import problem_of, read_run
 from tests.service.api.serving import serving
 from tests.service.conftest import Command
 
-ASKED = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
+QUESTIONS = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
 
 
 def at(wishes: dict[str, str]) -> list[str]:
@@ -28,11 +28,11 @@ def at(wishes: dict[str, str]) -> list[str]:
 def test_json_has_the_numbers_of_python(kept: Path, command: Command) -> None:
     (folder,) = (file.parent for file in kept.glob("*/front.json"))
     result = read_run(folder)
-    expected = wish(front_of(problem_of(folder, result), result), ASKED)
-    done = command("wish", "latest", "--runs", kept, *at(ASKED), "--json")
+    expected = wish(front_of(problem_of(folder, result), result), QUESTIONS)
+    done = command("wish", "latest", "--runs", kept, *at(QUESTIONS), "--json")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
-    assert (found["wishes"], found["number"], found["possible"]) == (ASKED, None, expected.possible)
+    assert (found["wishes"], found["number"], found["possible"]) == (QUESTIONS, None, expected.possible)
     assert found["sentences"] == expected.sentences()
     assert found["achievement"] == expected.value
     assert found["design"]["crank_mm"] == expected.found.columns["crank_mm"][0]
@@ -118,7 +118,7 @@ def test_wishes_are_listed_wherever_they_were_made_the_latest_first_and_each_onc
 
 
 def test_a_wish_and_the_list_at_once_or_neither_is_told(kept: Path, command: Command) -> None:
-    for options, got in (([], "neither"), ([*at(ASKED), "--list"], "both")):
+    for options, got in (([], "neither"), ([*at(QUESTIONS), "--list"], "both")):
         done = command("wish", "latest", "--runs", kept, *options)
         assert done.exit_code == 2
         assert f"either a wish or --list; got {got}" in done.output
@@ -130,5 +130,5 @@ def test_a_run_without_a_store_answers_and_has_no_list(kept: Path, tmp_path: Pat
     for file in place.glob("slidercrank.db*"):
         file.unlink()
     (folder,) = (file.parent for file in place.glob("*/front.json"))
-    assert command("wish", folder, *at(ASKED), "--json").exit_code == 0
+    assert command("wish", folder, *at(QUESTIONS), "--json").exit_code == 0
     assert "no wish was made of it yet" in command("wish", folder, "--list").stdout

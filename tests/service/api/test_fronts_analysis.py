@@ -22,8 +22,8 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.designs.stored_designs import design_of, front_of
+from slidercrank.service.questions.design_analysis import numbers_of
 from slidercrank.service.runs.result import result_of
-from slidercrank.service.topics.design_analysis import numbers_of
 from tests.service import fronts, test_variables
 from tests.service.api.fixed_front import API, Solved, client_of
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.topics.discovery import TOPICS
+from slidercrank.service.questions.discovery import TOPICS
 from tests.service.api.fixed_front import API, Solved, client_of
 
 QUICK = ("motor", "balance", "friction", "extremes", "flywheel", "static_forces")

@@ -117,7 +117,7 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
     refused = httpx.get(path.replace("flywheel", "motor"), params={"fluctuation": 0.05}, timeout=60.0)
     assert (
         refused.status_code,
-        "the analysis motor is asked with nothing else; got fluctuation; leave" in refused.text,
+        "the topic motor is asked with nothing else; got fluctuation; leave" in refused.text,
     ) == (422, True)
     page.evaluate("localStorage.clear()")
 

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.service.topics.tolerances.analysis import numbers
+from slidercrank.service.questions.tolerances.analysis import numbers
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved
 from tests.service.page.conftest import Open

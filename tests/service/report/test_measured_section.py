@@ -12,6 +12,7 @@ from slidercrank.objectives.tables.measured import Measured, measured_from
 from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.cycle_table import cycle_csv
 from slidercrank.service.designs.measured_file import read_measured
+from slidercrank.service.questions.measured.analysis import numbers
 from slidercrank.service.render.numerals import rounded
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph, Picture, Section, Table
@@ -20,7 +21,6 @@ from slidercrank.service.report.measured_section import measured_section
 from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
-from slidercrank.service.topics.measured.analysis import numbers
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.report.paper import paper

@@ -1,0 +1,10 @@
+"""Shaking of the frame: numbers, text and figure."""
+
+from ..question import Question
+
+QUESTION = Question(
+    __name__,
+    40,
+    "shaking force and moment",
+    tells=("peak_shaking_force_N", "rms_shaking_force_N", "peak_shaking_moment_Nm", "rms_shaking_moment_Nm"),
+)

@@ -1,0 +1,53 @@
+"""Questions, found by looking into their folders, and the topics that somebody asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from pkgutil import iter_modules
+
+from ...model.errors import InputError
+from .question import Question
+
+ALL = "all"
+
+
+def _found() -> dict[str, Question]:
+    package = __name__.rpartition(".")[0]
+    folders = [item.name for item in iter_modules(import_module(package).__path__) if item.ispkg]
+    declared = [getattr(import_module(f"{package}.{folder}"), "QUESTION", None) for folder in folders]
+    return {one.name: one for one in sorted((one for one in declared if one is not None), key=lambda one: one.place)}
+
+
+QUESTIONS = _found()
+"""All that one design can be asked, by name."""
+COMMANDS = {name: one.command for name, one in QUESTIONS.items() if one.command is not None}
+"""Those that are commands of their own."""
+TOPICS = {name: one for name, one in QUESTIONS.items() if name not in COMMANDS}
+"""Those that `analyse --show` adds, in their order."""
+TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
+"""Columns that topics show; the table of a design leaves them out."""
+
+
+INPUTS = {given.name: given for topic in TOPICS.values() for given in topic.inputs}
+"""What topics may be asked with, by name; no two topics have one of the same name."""
+TOPIC_OF = {given.name: topic.name for topic in TOPICS.values() for given in topic.inputs}
+"""Name of the topic of an input."""
+
+
+def chosen_topics(names: Iterable[str], *, job: bool) -> tuple[str, ...]:
+    """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job."""
+    import difflib
+
+    asked = [name.strip().replace("-", "_") for text in names for name in text.split(",")]
+    possible = tuple(name for name, topic in TOPICS.items() if job or not topic.needs_job)
+    for name in asked:
+        if name not in TOPICS and name != ALL:
+            near = difflib.get_close_matches(name, TOPICS, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(TOPICS)}, {ALL}"
+            raise InputError(f"--show must name a topic; got {name!r}; {hint}")
+        if name not in (*possible, ALL):
+            raise InputError(
+                f"--show {name} needs masses, loads or tolerances; got no job file; give one: analyse JOB --show {name}"
+            )
+    return possible if ALL in asked else tuple(dict.fromkeys(asked))

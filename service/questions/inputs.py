@@ -1,0 +1,108 @@
+"""What a question is asked with besides its design: declared once, read from the words of every door."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ...model.errors import InputError
+from ...objectives.kinds import Face, Kind
+
+if TYPE_CHECKING:
+    from ...objectives.units import Sign
+
+
+@dataclass(frozen=True)
+class Input:
+    """A value that a question is asked with.
+
+    name: the parameter of the question's `numbers`, which has its default. kind: of the value, in SI there; None for a
+    word. title: before the field of a form. help: of the option, with the default in brackets. usual: the default, as
+    it is typed, "" if there is none. option: of the command line, without dashes, if it is not the name. sign: what the
+    value must be. below: what it must be less than, in SI. drawn: whether the figure takes it too. example: as
+    it is typed. words: a `Literal` of those that it may be. required: whether there is no answer without it.
+    """
+
+    name: str
+    kind: Kind | None = None
+    title: str = ""
+    help: str = ""
+    usual: str = ""
+    option: str = ""
+    sign: Sign = "any"
+    below: float | None = None
+    drawn: bool = True
+    example: str = ""
+    words: Any = None
+    required: bool = False
+
+    @property
+    def unit(self) -> Face:
+        """Unit in the API, whose numbers are metric."""
+        return Face("", "") if self.kind is None else self.kind.metric
+
+    @property
+    def key(self) -> str:
+        """Name in the API: its unit is its end."""
+        return self.name + self.unit.suffix
+
+    @property
+    def flag(self) -> str:
+        """Option of the command line, with its dashes."""
+        return f"--{(self.option or self.name).replace('_', '-')}"
+
+    @property
+    def default(self) -> float:
+        """The default in SI."""
+        return float(self.read(self.usual, self.name))
+
+    @property
+    def remark(self) -> str:
+        """The help with the default or an example."""
+        typed = self.usual or self.example
+        shown = f'"{typed}"' if self.unit.symbol else typed
+        return f"{self.help}  [{'default' if self.usual else 'example'}: {shown}]" if typed else self.help
+
+    def read(self, given: object, word: str) -> Any:
+        """Return the value in SI of a text with its unit, or of a number in SI; a word as it is.
+
+        word: what the door calls the input. Raises `InputError` that begins with it.
+        """
+        from ...model.machine.loads.load import require_word
+        from ...objectives.units import shown
+        from ..designs.selection import value_of
+
+        if self.kind is None:
+            require_word(word, given, self.words)
+            return given
+        value = value_of(word, given, self.kind, sign=self.sign)
+        if self.below is not None and value >= self.below:
+            limit = f"{self.unit.factor * self.below:g} {self.unit.symbol}".rstrip()
+            raise InputError(f"{word} must be less than {limit}; got {shown(given)}; write it like {self.usual}")
+        return value
+
+    def typed(self, number: float | str) -> str:
+        """Return a number of the API as text with its unit; a word as it is."""
+        return number if isinstance(number, str) else f"{number!r} {self.unit.symbol}"
+
+
+def read_inputs(
+    inputs: Sequence[Input], given: Mapping[str, object], question: str, words: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Return the values, in SI, of the inputs that are given by name; None is not given.
+
+    words: what the door calls them, if not by their names. Raises `InputError` for an input that the question does not
+    have, and without one that it needs.
+    """
+    said = {one.name: one.name for one in inputs} | dict(words or {})
+    known = {one.name: one for one in inputs}
+    for name in given:
+        if name not in known:
+            rule = f"{question} is asked with {', '.join(known)}" if known else f"{question} is asked with nothing else"
+            raise InputError(f"{rule}; got {name}; leave {name} out")
+    values = {name: known[name].read(value, said[name]) for name, value in given.items() if value is not None}
+    for one in inputs:
+        if one.required and one.name not in values:
+            raise InputError(f"{question} needs {said[one.name]}; got none; give it like {one.example}")
+    return values

@@ -1,0 +1,10 @@
+"""Motor sizing of one design: numbers, text and figure."""
+
+from ..question import Question
+
+QUESTION = Question(
+    __name__,
+    30,
+    "power, RMS torque over time, reflected inertia",
+    tells=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
+)

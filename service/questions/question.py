@@ -1,0 +1,169 @@
+"""A question to one design: a topic, which `analyse --show` can add, or a command of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..designs.turning import require_turning
+from ..runs.result import json_ready
+from .inputs import Input, read_inputs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ...model.linkage.linkage import Linkage
+    from ...model.machine.mechanism import Mechanism
+    from ...model.swing.swing import Swing
+    from ...objectives.kinds import System
+    from ..figures.panels import Drawn
+    from ..render.blocks import Block
+
+
+@dataclass(frozen=True, kw_only=True)
+class Command:
+    """What a question says that is a command, with an address of its own, and no topic of `analyse --show`.
+
+    help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
+    help on JOB, and on what holds without. example: inputs of the example. curves: what the command can write and draw,
+    by functions `curves` and `figure` that take what `numbers` takes and `units`.
+    """
+
+    help: str
+    endpoint: str
+    job: str
+    alone: str
+    example: tuple[str, ...]
+    curves: str = ""
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
+
+    package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
+    shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
+    the table of a design therefore leaves out. inputs: what it may be asked with. A function `prepare` of that module,
+    if it has one, gives further options for numbers and figure. A function `in_units`, if it has one, gives the numbers
+    in a system of units.
+
+    command: if it is one of its own. Its numbers also take `swing`, that the crank makes in its job, and `words`, what
+    the door calls the inputs; the design need not turn fully. `note` or `notes` among them say what is undefined.
+    """
+
+    package: str
+    place: int = 0
+    shows: str = ""
+    needs_job: bool = True
+    tells: tuple[str, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    command: Command | None = None
+
+    @property
+    def name(self) -> str:
+        """Name in `--show`, in JSON and of the figure's file."""
+        return self.package.rpartition(".")[2]
+
+    def asked(
+        self,
+        mechanism: Mechanism,
+        linkage: Linkage,
+        swing: Swing | None,
+        inputs: Mapping[str, object],
+        words: Mapping[str, str] | None = None,
+    ) -> QuestionOfDesign:
+        """Return the question to a design. swing: that its crank makes. inputs: by name, in SI or as text with a unit.
+
+        words: what the door calls the inputs, if not by their names. Raises `InputError` for a swing, unless the
+        question takes it, and for inputs that it does not take.
+        """
+        if self.command is not None:
+            given = read_inputs(self.inputs, inputs, self.name, words)
+            return self.of(mechanism, linkage, {"swing": swing, "words": words, **given})
+        require_turning(swing, f"the topic {self.name}")
+        return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words))
+
+    def answer(
+        self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
+    ) -> dict[str, Any]:
+        """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
+        from ...model.linkage.single import single
+
+        found = self.asked(mechanism, linkage, swing, inputs)
+        if self.command is None:
+            single(mechanism, linkage)
+        answer: dict[str, Any] = json_ready(found.numbers())
+        return answer
+
+    def of(self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None) -> QuestionOfDesign:
+        """Return the question to one design. options: of its `numbers`."""
+        return QuestionOfDesign(self, mechanism, linkage, dict(options or {}))
+
+
+@dataclass(frozen=True)
+class QuestionOfDesign:
+    """A question to one design, with its options."""
+
+    question: Question
+    mechanism: Mechanism
+    linkage: Linkage
+    options: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Name of the question."""
+        return self.question.name
+
+    def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
+        """Return the numbers, ready for JSON. Raises `InputError` where the design has none."""
+        self._prepare(cancelled)
+        found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
+        return found
+
+    def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
+        """Return the numbers, metric as they are, in a system of units, for JSON."""
+        from ..designs.shown_units import record_in
+
+        found: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
+        return found
+
+    def blocks(self, numbers: dict[str, Any]) -> list[Block]:
+        """Return the numbers, metric as they are, for people."""
+        found: list[Block] = self._analysis.blocks(numbers)
+        return found
+
+    def written(self, name: str, units: System) -> Any:
+        """Return what a command writes, by the name of its function: rows of `curves`, or a `figure`."""
+        return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
+
+    def draw(self, folder: Path, units: System = "metric") -> Path:
+        """Write the figure into a folder, after its numbers; return the file."""
+        from ..figures.panels import save_sheet
+
+        file = folder / f"{self.name}.png"
+        save_sheet(self._drawn(), file, units)
+        return file
+
+    def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
+        """Return the figure, its numbers not asked for before. Raises `InputError` where there is none."""
+        from ..figures.panels import figure_of
+
+        self._prepare(cancelled)
+        return figure_of(self._drawn(), units)
+
+    def _prepare(self, cancelled: Callable[[], bool]) -> None:
+        if hasattr(self._analysis, "prepare"):
+            self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
+
+    def _drawn(self) -> Drawn:
+        hidden = {one.name for one in self.question.inputs if not one.drawn}
+        options = {name: value for name, value in self.options.items() if name not in hidden}
+        found: Drawn = self._analysis.figure(self.mechanism, self.linkage, **options)
+        return found
+
+    @property
+    def _analysis(self) -> Any:
+        return import_module(f"{self.question.package}.analysis")

@@ -1,0 +1,5 @@
+"""Sensitivity to the dimensions: numbers, text and figure."""
+
+from ..question import Question
+
+QUESTION = Question(__name__, 60, "change of every quantity with every dimension")

@@ -1,0 +1,5 @@
+"""A crank speed that varies over the turn: numbers, text and figure."""
+
+from ..question import Question
+
+QUESTION = Question(__name__, 92, "torque, forces and shaking at the speed profile of the job")

@@ -1,5 +1,0 @@
-"""Extremes of every curve of one design: numbers, text and figure."""
-
-from ..topic import Topic
-
-TOPIC = Topic(__name__, 85, "least and greatest value of every curve, where they are, both strokes", needs_job=False)

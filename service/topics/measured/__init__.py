@@ -1,6 +1,0 @@
-"""Measured curves beside the computed ones of one design: numbers, text and figure."""
-
-from ..topic import Topic
-
-MEASURED = Topic(__name__, 88, "measured curves beside the computed ones", needs_job=False)
-"""Shown where there are samples, and so none of the topics that are asked for by name."""

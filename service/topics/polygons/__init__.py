@@ -1,9 +1,0 @@
-"""Kinematic polygons: numbers, text and figure."""
-
-from ....objectives.kinds import ANGLE
-from ..inputs import Input
-from ..topic import Topic
-
-# At 30 deg no link of any common proportion is normal to the slider line.
-AT = Input("crank_angle", ANGLE, "Crank angle", "Crank angle of the polygons.", "30 deg", "at")
-TOPIC = Topic(__name__, 80, "position, velocity and acceleration diagrams at --at", needs_job=False, inputs=(AT,))

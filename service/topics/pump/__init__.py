@@ -1,5 +1,0 @@
-"""What a pump or compressor delivers: numbers, text and figure."""
-
-from ..topic import Topic
-
-TOPIC = Topic(__name__, 44, "delivered flow of pumps and compressors, its ripple, torque of the pressures")
