@@ -24,7 +24,7 @@ from ...model.arrays import Array, Mask, Whole, row_lengths
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
-from .programme import FIRM, LOSS, ROUNDING, VIOLATION, Step, roots, solve_step
+from .programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots, solve_step
 
 ITERATIONS = 100
 CONVERGED = 1e-9
@@ -202,11 +202,8 @@ class _Batch:
             limits,
             self.roots[row] if chosen else np.eye(self.u.shape[1]),
             radius=self.radius[row],
-            chosen=chosen,
-            tops=self.held[row],
             violation=self.weight[row],
-            loss=self.loss[row],
-            hold=self.hold,
+            aim=Aim(chosen, self.held[row], self.loss[row], self.hold),
         )
 
     def _hessians(self, rows: Whole, drafts: list[Step]) -> Array:

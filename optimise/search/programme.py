@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 
@@ -48,6 +49,19 @@ class Step:
     normals: Array
 
 
+class Aim(NamedTuple):
+    """What a step improves and what it keeps.
+
+    chosen: objectives to improve. tops: (m,), F of every objective. loss: (m,), K of every objective. hold: whether the
+    loss of each objective is penalised, besides the sum.
+    """
+
+    chosen: tuple[int, ...]
+    tops: Array
+    loss: Array
+    hold: bool
+
+
 def solve_step(
     u: Array,
     goals: Rows,
@@ -55,22 +69,18 @@ def solve_step(
     root: Array,
     *,
     radius: float,
-    chosen: tuple[int, ...],
-    tops: Array,
     violation: float,
-    loss: Array,
-    hold: bool = True,
+    aim: Aim,
 ) -> Step:
     """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
 
-    root: transposed inverse of L with B = L L', see `roots`. chosen: objectives to improve. tops: (m,), F of every
-    objective. violation: C. loss: (m,), K of every objective. hold: whether the loss of each objective is penalised,
-    besides the sum.
+    root: transposed inverse of L with B = L L', see `roots`. violation: C.
 
     With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
     its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
     ch. 23.4).
     """
+    chosen, tops, loss, hold = aim
     k, count = len(u), len(chosen)
     low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
     close = goals.values > (tops - _REACH)[goals.owner]
