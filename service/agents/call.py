@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InfeasibleError, InputError, NotFound
+from ...optimise.job import parse_job, read_job, with_files
+from ...optimise.job.file import require_plain, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
 from ..jobs.submission import LONGEST_ANSWER, LONGEST_CALL, bounded, parse_allowed, require_allowed
@@ -82,8 +84,6 @@ class Call:
 
     def problem_of_run(self, folder: Path, result: Result) -> Problem:
         """Return the problem of a run. Raises `JobError` for functions that are not allowed."""
-        from ...optimise.job import read_job
-
         file = job_file(folder)
         if file is not None:
             require_allowed(read_job(file), self.allowed)
@@ -98,8 +98,6 @@ class Call:
 
     def problem_again(self, tables: Mapping[str, Any], folder: Path) -> Problem:
         """Return the problem of a search that goes on in a folder. Raises `JobError`."""
-        from ...optimise.job import parse_job
-
         require_allowed(tables, self.allowed)
         return bounded(parse_job(tables, folder=folder), LONGEST_CALL)
 
@@ -116,9 +114,6 @@ def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
 
     Raises `JobError`, also for a file that was not given: none is read.
     """
-    from ...optimise.job import with_files
-    from ...optimise.job.file import require_plain, toml_tables
-
     if isinstance(job, str) and "=" not in job:
         jobs = shipped_jobs()
         if job.strip() not in jobs:

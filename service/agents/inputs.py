@@ -10,8 +10,12 @@ from pydantic import Field
 
 from ...model.errors import InputError
 from ...optimise.job.model import Job as JobModel
+from ..designs.columns import find_column
+from ..designs.picking_options import require_alone
+from ..designs.stored_designs import stored_design
 from ..presets.jobs import shipped_jobs
-from ..questions.discovery import ALL, COMMANDS, QUESTIONS, TOPICS
+from ..questions.discovery import ALL, COMMANDS, QUESTIONS, TOPICS, chosen_topics
+from ..questions.inputs import read_inputs
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
 from .call import Call, Job, tables_of
@@ -73,8 +77,6 @@ class Shown:
 
     def keys(self, known: list[str], usual: list[str]) -> list[str] | None:
         """Return the columns that are asked for, None for all. Raises `InputError` for others."""
-        from ..designs.columns import find_column
-
         if self.columns == [ALL]:
             return None
         return usual if self.columns is None else [find_column(name, known).key for name in self.columns]
@@ -109,9 +111,6 @@ class Design:
         return self._of_job(call, lengths) if self.run is None else self._of_run(call, self.run, lengths)
 
     def _of_run(self, call: Call, run: str, lengths: Mapping[str, str | None]) -> Machine:
-        from ..designs.picking_options import require_alone
-        from ..designs.stored_designs import stored_design
-
         besides = [name for name, value in lengths.items() if value is not None]
         if besides:
             raise InputError(
@@ -138,8 +137,6 @@ class Question:
 
     def __post_init__(self) -> None:
         """Raise `InputError` for topics that there are not, or that do not go together, and for inputs of others."""
-        from ..questions.discovery import chosen_topics
-
         if self.alone is None:
             chosen_topics(self.topics, job=True)
         elif len(self.topics) > 1:
@@ -160,17 +157,10 @@ class Question:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the topics."""
-        from ..questions.discovery import chosen_topics
-
         return chosen_topics(self.topics, job=True) if self.alone is None else (self.alone,)
 
     def options(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""
-        from ..questions.inputs import read_inputs
-
-        found = {}
-        for name in self.names:
-            inputs = QUESTIONS[name].inputs
-            given = {one.name: self.inputs[one.name] for one in inputs if one.name in self.inputs}
-            found[name] = read_inputs(inputs, given, f"the topic {name}")
-        return found
+        takes = {name: QUESTIONS[name].inputs for name in self.names}
+        given = {name: {one.name: self.inputs.get(one.name) for one in inputs} for name, inputs in takes.items()}
+        return {name: read_inputs(takes[name], given[name], f"the topic {name}") for name in takes}

@@ -12,8 +12,14 @@ from pydantic import Field
 
 from ...model.errors import InputError, NotFound, RunError
 from ...objectives.units import closest
+from ...optimise.job.messages import nodes_at, toml
+from ...optimise.job.model import Job
+from ...optimise.job.schema import schema_of
 from ..designs.quantity_facts import facts_of_all
 from ..designs.turning import require_turning
+from ..jobs.find_run import run_folders
+from ..jobs.job_toml import job_toml
+from ..jobs.submission import ending_own
 from ..presets.jobs import shipped_jobs
 from ..questions.discovery import ALL, QUESTIONS
 from ..questions.question import Question as QuestionToDesign
@@ -64,8 +70,6 @@ def describe(
     ],
 ) -> Answer:
     """Describe a quantity (meaning, formula, unit), a topic, a job that ships (its tables and TOML), a key of a job."""
-    from ..jobs.job_toml import job_toml
-
     word = name.strip()
     facts = {one["name"]: one for one in facts_of_all()}
     record: dict[str, Any] = {}
@@ -96,8 +100,6 @@ def ask(call: Call, *, subject: Design, question: Question) -> Answer:
 
     The design is one of a run, its knee if none is named, or has lengths of your own for a job.
     """
-    from ..jobs.submission import ending_own
-
     options = question.options()
     of = subject.found(call)
     with ending_own(of.problem):
@@ -176,8 +178,6 @@ def _topic(of: QuestionToDesign) -> dict[str, Any]:
 
 def _runs(call: Call) -> Iterator[dict[str, Any]]:
     """Yield the latest runs: what became of each."""
-    from ..jobs.find_run import run_folders
-
     for folder in sorted(run_folders(call.runs), key=lambda folder: folder.name, reverse=True)[:_MOST_RUNS]:
         try:
             _, result = call.run(folder.name)
@@ -190,10 +190,6 @@ def _runs(call: Call) -> Iterator[dict[str, Any]]:
 
 def _key(name: str) -> dict[str, Any]:
     """Return the description of a key of job files, and of the keys in it. Raises `NotFound`."""
-    from ...optimise.job.messages import nodes_at
-    from ...optimise.job.model import Job
-    from ...optimise.job.schema import schema_of
-
     schema, path = schema_of(Job), list[str | int]()
     for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):
         path.append(part)
@@ -222,8 +218,6 @@ def _facts(node: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:
-    from ...optimise.job.messages import toml
-
     for table in key["tables"]:
         if table["description"]:
             yield f"- {table['description']} Needs: {', '.join(table['required']) or 'nothing'}"

@@ -16,6 +16,7 @@ from ...objectives.kinds import System
 from ..designs.picking_options import require_alone
 from ..designs.selection import none_meets, numbered, part_of
 from ..designs.shown_units import result_in
+from ..designs.stored_designs import front_of, stored_design
 from ..jobs.submission import LONGEST_CALL, ending_own, job_json
 from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
@@ -143,8 +144,6 @@ def files(
     Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
     as HTML or PDF, a drawing at true scale as DXF or SVG, its motion as HTML or GIF, its cycle as CSV.
     """
-    from ..designs.stored_designs import stored_design
-
     folder, result = call.front(run)
     picked = _picked(result, run, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
@@ -193,7 +192,6 @@ def _picked(result: Result, run: str, chosen: Sequence[int], pick: Pick) -> int 
 
 def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
     """Return what one objective costs in the others at a design, in words; nothing where there are no such rates."""
-    from ..designs.stored_designs import front_of, stored_design
     from ..designs.trade_offs import trade_offs_of
 
     try:
@@ -204,7 +202,6 @@ def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: Syste
 
 
 def _figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
-    from ..designs.stored_designs import front_of
     from ..figures.front import draw_front
 
     return [path_text(file) for file in draw_front(front_of(problem, result), folder / "figures", units)]

@@ -10,13 +10,13 @@ import signal
 import threading
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
 from ...model.extras import NamingExtra
 from ...optimise.front.progress import Progress, standing
+from ...optimise.search.fingerprint import version_of
 from ..resources.disk import full_places, is_full
 from ..runs.result import json_ready
 from . import questions, runs
@@ -89,7 +89,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
 
     server: Server[Any] = Server(
         "slidercrank",
-        version=_version(),
+        version=version_of("slidercrank"),
         instructions=INSTRUCTIONS,
         on_list_tools=on_list_tools,
         on_call_tool=on_call_tool,
@@ -169,10 +169,3 @@ def _refused(sentence: str) -> Answer:
 def _declared(tool: Tool) -> Declared:
     hints = ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
     return Declared(name=tool.name, description=tool.description, input_schema=tool.schema, annotations=hints)
-
-
-def _version() -> str:
-    try:
-        return version("slidercrank")
-    except PackageNotFoundError:
-        return ""

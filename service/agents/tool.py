@@ -13,6 +13,8 @@ from pydantic.fields import FieldInfo
 
 from ...model.errors import InputError
 from ...objectives.units import closest, shown
+from ...optimise.job.messages import rule_of
+from ...optimise.job.schema import schema_of
 from .call import Answer, Call
 
 
@@ -55,8 +57,6 @@ class Tool:
     @cached_property
     def schema(self) -> dict[str, Any]:
         """JSON Schema of the inputs."""
-        from ...optimise.job.schema import schema_of
-
         return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
 
     def answer(self, call: Call, given: Mapping[str, Any]) -> Answer:
@@ -72,8 +72,6 @@ class Tool:
 
     def _sentence(self, details: Any) -> str:
         """Return what is wrong with an input: rule, value, remedy."""
-        from ...optimise.job.messages import rule_of
-
         name, known = str(details["loc"][0]), list(self.inputs.model_fields)
         if details["type"] == "extra_forbidden":
             near = closest(name, known)
