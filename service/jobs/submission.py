@@ -9,11 +9,11 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ...model.errors import JobError
 from ..runs.result import json_text
-from ..store import MOST_ATTEMPTS, NO_LIMITS, Artefact, Job, Limits, Store
+from ..store import NO_LIMITS, Artefact, Job, Limits, Queueing, Store
 
 if TYPE_CHECKING:
     from ...optimise.engine.engine import Engine
@@ -114,12 +114,10 @@ def submit(
     store: Store,
     tables: Mapping[str, Any],
     *,
-    priority: int = 0,
-    key: str | None = None,
-    most_attempts: int = MOST_ATTEMPTS,
     limits: Limits = NO_LIMITS,
     source: Artefact | None = None,
     allowed_quantities: Collection[str] = (),
+    **queueing: Unpack[Queueing],
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
@@ -131,11 +129,9 @@ def submit(
     return store.submit(
         tables,
         name=parse_allowed(tables, allowed_quantities).name,
-        priority=priority,
-        key=key,
-        most_attempts=most_attempts,
         limits=limits,
         files=[source or job_json(tables)],
+        **queueing,
     )
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from .claim import Claim
-from .records import NO_LIMITS, NOT_DONE, RESUMABLE, Artefact, Event, Job, Limits, News, State, Worker
-from .store import LEASE, MOST_ATTEMPTS, MOST_QUEUED, Store
+from .records import NO_LIMITS, NOT_DONE, RESUMABLE, Artefact, Event, Job, Limits, News, Queueing, State, Worker
+from .store import LEASE, MOST_QUEUED, Store
 
 __all__ = [
     "LEASE",
-    "MOST_ATTEMPTS",
     "MOST_QUEUED",
     "NOT_DONE",
     "NO_LIMITS",
@@ -19,6 +18,7 @@ __all__ = [
     "Job",
     "Limits",
     "News",
+    "Queueing",
     "State",
     "Store",
     "Worker",

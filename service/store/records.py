@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 from sqlalchemy import Row as Found
 
@@ -48,6 +48,19 @@ class Limits:
 
 
 NO_LIMITS = Limits()
+
+
+class Queueing(TypedDict, total=False):
+    """How a job is queued.
+
+    priority: higher ones are claimed first, 0 if not given. key: of this submission; with one that was used before,
+    nothing is queued and the job of that time is returned. most_attempts: how often it is tried without going forward
+    before it is set aside, `store.MOST_ATTEMPTS` if not given.
+    """
+
+    priority: int
+    key: str | None
+    most_attempts: int
 
 
 @dataclass(frozen=True, kw_only=True)

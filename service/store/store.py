@@ -6,7 +6,7 @@ import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from sqlalchemy import Connection, and_, delete, func, select, update
 
@@ -17,7 +17,7 @@ from ..runs.stored_runs import result_from
 from . import queue
 from .claim import Claim
 from .clock import Jumps, now
-from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, State
+from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, Queueing, State
 from .rows import add_events, become, damaged, news_of, records_of, require_resumable, require_sum, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
@@ -63,24 +63,21 @@ class Store(Workers):
         tables: Mapping[str, Any],
         *,
         name: str,
-        priority: int = 0,
-        key: str | None = None,
-        most_attempts: int = MOST_ATTEMPTS,
         limits: Limits = NO_LIMITS,
         files: Sequence[Artefact] = (),
         origin: int | None = None,
+        **queueing: Unpack[Queueing],
     ) -> Job:
         """Queue a job and return it. The job itself is not read; `submission.submit` checks it first.
 
-        tables: of its job file. priority: higher ones are claimed first. key: of this submission; with one that was
-        used before, nothing is queued and the job of that time is returned. most_attempts: how often it is tried
-        without going forward before it is set aside. files: what belongs to it, such as the job file as it was given.
-        origin: the number of the job that it is a changed copy of.
+        tables: of its job file. files: what belongs to it, such as the job file as it was given. origin: the number of
+        the job that it is a changed copy of. queueing: see there.
 
         Raises `QueueFull`, and `InputError` if the key was used for another job.
         """
-        queue.require_bounds(priority, key, most_attempts)
-        more = {"key": key, "priority": priority, "most_attempts": most_attempts, "origin": origin}
+        wanted: Queueing = {"priority": 0, "key": None, "most_attempts": MOST_ATTEMPTS, **queueing}
+        queue.require_bounds(**wanted)
+        key, more = wanted["key"], {**wanted, "origin": origin}
         with self.writing() as connection:
             queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
             known = queue.submitted_before(connection, key, tables) if key else None
