@@ -112,7 +112,8 @@ class Over:
             rows = np.flatnonzero(np.isnan(drive))
             if len(rows):
                 first = int(rows[0])
-                at = self._change(share[max(first - 1, 0)], share[first], _locks, back) if first else 0.0
+                before = share[max(first - 1, 0)]
+                at = self._change(before, share[first], lambda curves: np.isnan(curves.drive), back) if first else 0.0
                 return _place(self.at(np.array([at]), back=back), 0, back, np.nan)
         return None
 
@@ -209,10 +210,6 @@ class Over:
 
 def _ranks(values: Array, worth: np.ufunc) -> Array:
     return np.where(np.isnan(values), -np.inf, worth(values))
-
-
-def _locks(curves: SwingCurves) -> Mask:
-    return np.isnan(curves.drive)
 
 
 def _presses(curves: SwingCurves) -> Mask:

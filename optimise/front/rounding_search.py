@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -88,9 +89,9 @@ class RoundingSearch:
         """
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
-            misses = yield from self._in_blocks("screening combinations", designs, self._screened, _BLOCK)
+            misses = yield from self._in_blocks("screening combinations", designs, self._missed(self.quick), _BLOCK)
             rows = np.flatnonzero(misses <= FEASIBLE)
-            judged = yield from self._in_blocks("judging combinations", designs[rows], self._judged)
+            judged = yield from self._in_blocks("judging combinations", designs[rows], self._missed(self.slow))
             misses[rows] = np.maximum(misses[rows], judged)
             kept = rows[misses[rows] <= FEASIBLE]
             values = yield from self._in_blocks("ranking combinations", designs[kept], self.values)
@@ -128,11 +129,9 @@ class RoundingSearch:
             return np.zeros((len(designs), len(constraints)))
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
 
-    def _screened(self, designs: Array) -> Array:
-        return greatest_violation(self.part, designs, self.quick, allowed=self.allowed)
-
-    def _judged(self, designs: Array) -> Array:
-        return greatest_violation(self.part, designs, self.slow, allowed=self.allowed)
+    def _missed(self, constraints: Sequence[Constraint]) -> Callable[[Array], Array]:
+        """Return what gives the greatest violations of some constraints, of quick or of slow ones."""
+        return partial(greatest_violation, self.part, constraints=constraints, allowed=self.allowed)
 
     def _in_blocks(
         self, stage: str, designs: Array, of: Callable[[Array], Array], size: int = _SLOW_BLOCK
@@ -223,7 +222,7 @@ class RoundingSearch:
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
             rows = rows[~known[rows]]
-            misses[rows] = np.maximum(misses[rows], self._judged(designs[rows]))
+            misses[rows] = np.maximum(misses[rows], self._missed(self.slow)(designs[rows]))
             bar = np.round(misses[ahead[0]], _TIE) if len(ahead) else np.inf
             placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
             fresh = placed[np.isnan(losses[placed])]
