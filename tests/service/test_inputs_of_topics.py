@@ -18,6 +18,7 @@ from slidercrank.objectives.kinds import LENGTH, RATIO
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.questions.discovery import INPUTS, TOPIC_OF, TOPICS
 from slidercrank.service.questions.inputs import Input, read_inputs
+from tests.service.alike import assert_same
 from tests.service.api.fixed_front import API, Solved, client_of
 
 RANGES = {"crank_angle": (-400.0, 400.0), "fluctuation": (0.005, 0.5)}
@@ -59,7 +60,7 @@ def test_any_value_gives_the_same_numbers_by_option_and_in_the_api(
         typed = f"{value!r} {one.unit.symbol}".strip()
         expected = printed(solved, "--show", topic, one.flag, typed)[topic]
         answer = client.get(f"{solved.path}/designs/2/topics/{topic}", params={one.key: value})
-        assert answer.json()["numbers"] == expected
+        assert_same(answer.json()["numbers"], expected)
 
 
 def test_a_topic_that_the_machine_lacks_is_refused_with_its_input_too(client: httpx.Client, solved: Solved) -> None:

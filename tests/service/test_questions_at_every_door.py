@@ -23,6 +23,7 @@ from slidercrank.service.client import Client
 from slidercrank.service.questions.discovery import COMMANDS, QUESTIONS, TOPICS
 from tests.doors.scripts import JOBS
 from tests.service import fronts
+from tests.service.alike import assert_same
 from tests.service.api.fixed_front import API, Solved, served
 
 MACHINES = (JOBS / "loose.toml", JOBS / "cylinders.toml")
@@ -180,20 +181,6 @@ def without_gaps(record: Any) -> Any:
     if isinstance(record, dict):
         return {key: without_gaps(value) for key, value in record.items() if value is not None}
     return [without_gaps(one) for one in record] if isinstance(record, list) else record
-
-
-def assert_same(answer: Any, expected: Any) -> None:
-    """Compare two answers; stored designs have the last digit of their own."""
-    if isinstance(expected, dict):
-        assert list(answer) == list(expected)
-        for key, value in expected.items():
-            assert_same(answer[key], value)
-    elif isinstance(expected, list):
-        assert len(answer) == len(expected)
-        for one, other in zip(answer, expected, strict=True):
-            assert_same(one, other)
-    else:
-        assert answer == (pytest.approx(expected, rel=1e-9, abs=1e-9) if isinstance(expected, float) else expected)
 
 
 WRONG: list[tuple[str, dict[str, object], str]] = [

@@ -20,8 +20,9 @@ from tests.service.page.conftest import Pages, watched
 
 @pytest.fixture(scope="module")
 def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
-    with watched(pages, solved.store) as found:
-        yield found
+    with watched(pages, solved.store) as (page, address):
+        page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
+        yield page, address
 
 
 def test_curves_go_over_what_is_chosen_and_the_address_says_so(opened: tuple[Page, str], solved: Solved) -> None:
