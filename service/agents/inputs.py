@@ -128,7 +128,7 @@ class Design:
 
 
 @dataclass(frozen=True)
-class Question:
+class Asked:
     """What a design is asked."""
 
     topics: Topics = field(default_factory=list)

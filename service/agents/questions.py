@@ -22,9 +22,9 @@ from ..jobs.job_toml import job_toml
 from ..jobs.submission import ending_own
 from ..presets.jobs import shipped_jobs
 from ..questions.discovery import ALL, QUESTIONS
-from ..questions.question import Question as QuestionToDesign
+from ..questions.question import Question
 from .call import Answer, Call, tables_of, text_of
-from .inputs import Design, Files, JobInput, Question
+from .inputs import Asked, Design, Files, JobInput
 
 if TYPE_CHECKING:
     from .inputs import Machine
@@ -95,7 +95,7 @@ def describe(
     return Answer(record, "\n".join(lines))
 
 
-def ask(call: Call, *, subject: Design, question: Question) -> Answer:
+def ask(call: Call, *, subject: Design, question: Asked) -> Answer:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
     The design is one of a run, its knee if none is named, or has lengths of your own for a job.
@@ -136,7 +136,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
     return Answer(record, "\n".join((heading, *told, freedom_in_words(look.problem), *look.said, *record["notes"])))
 
 
-def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Question) -> Answer:
+def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Asked) -> Answer:
     """Analyse a design that turns fully. options: of each topic."""
     from ..designs.requirements import judged
     from ..questions.analysis_text import show_analysis
@@ -158,7 +158,7 @@ def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], questi
     return Answer(found.record(question.units, rules), "\n".join((text, *found.notes, *found.refused)))
 
 
-def _alone(name: str, of: Machine, question: Question) -> Answer:
+def _alone(name: str, of: Machine, question: Asked) -> Answer:
     """Ask a design what is a command of its own."""
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks
@@ -170,7 +170,7 @@ def _alone(name: str, of: Machine, question: Question) -> Answer:
     return Answer(record_in(record, question.units), "\n".join((text, *notes)))
 
 
-def _topic(of: QuestionToDesign) -> dict[str, Any]:
+def _topic(of: Question) -> dict[str, Any]:
     inputs = [{key: getattr(one, key) for key in _OF_TOPIC} for one in of.inputs]
     shows = of.shows if of.command is None else inspect.cleandoc(of.command.help)
     return {"name": of.name, "shows": shows, "inputs": inputs}
