@@ -46,7 +46,7 @@ _COMMANDS = (
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
-_MODULES |= dict.fromkeys(("inverse", "swing"), "question")
+_MODULES |= dict.fromkeys(("inverse", "swing", "allocate", "balance", "sections"), "question")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of the commands that have none of their own name."""
 

@@ -19,10 +19,8 @@ from pydantic import ValidationError
 
 from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
-from ...model.machine.strength import Material
 from ...objectives.units import shown
 from ..problem.problem import Problem
-from ..sizing.section_limits import SectionLimits
 from .beside import Files
 from .catalogue import catalogues, with_catalogues, with_options
 from .file import LARGEST, read, require_plain
@@ -38,7 +36,7 @@ from .target_motion import points_file, with_points
 from .toml_errors import with_lines
 from .varying import with_values
 
-__all__ = ["Job", "files_beside", "job_schema", "load_job", "load_sections", "parse_job", "read_job", "with_files"]
+__all__ = ["Job", "files_beside", "job_schema", "load_job", "parse_job", "read_job", "with_files"]
 
 
 def load_job(
@@ -182,18 +180,6 @@ def _with_doubts(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: b
     found = [item.warning for item in doubts if item.warning and (everywhere or not key or item.concerns(key))]
     rest = sentence[len(key) :].removeprefix(": ")
     return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(found), rest))
-
-
-def load_sections(path: str | PathLike[str]) -> tuple[Material, SectionLimits]:
-    """Return material and limits of the table [sections] of a job file. Raises JobError like `load_job`."""
-    load_job(path, require_feasible=False)  # tells what is wrong with the file, if anything is
-    with _named(path):
-        data, _ = with_options(read_job(path))
-    part = job_with(declared(data, allowed=True)).model_validate(data).sections
-    with _named(path):
-        if part is None:
-            raise JobError("sizing sections needs the table [sections]; got none; add it with a material and pins")
-    return part.build()
 
 
 def job_schema() -> dict[str, Any]:

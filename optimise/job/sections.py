@@ -97,7 +97,7 @@ class PinsPart(Part):
     slider_pin: PositiveLength = required("between connecting rod and slider", "15 mm")
 
 
-class SectionsPart(Checked[tuple[Material, SectionLimits]]):
+class SectionsPart(Checked[SectionLimits]):
     """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
 
     material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
@@ -119,12 +119,12 @@ class SectionsPart(Checked[tuple[Material, SectionLimits]]):
         "1e-9 mm^2/N",
     )
 
-    def build(self) -> tuple[Material, SectionLimits]:
-        """Return material and limits as the sizing has them."""
+    def build(self) -> SectionLimits:
+        """Return the limits as the sizing has them."""
         own = dict(self)
         for name in ("material", "pins", "wear_coefficient"):
             own.pop(name)
-        return self.material.build(), SectionLimits(**dict(self.pins), **own)
+        return SectionLimits(**dict(self.pins), **own)
 
     def strength(self) -> Strength:
         """Return material and pins as quantities have them."""

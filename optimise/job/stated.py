@@ -92,6 +92,7 @@ def problem_of(
         discrete=discrete_of(job),
         motion=motion,
         costs=None if job.costs is None else job.costs.build(),
+        sections=None if job.sections is None else job.sections.build(),
         settings=job.optimiser.build(),
         own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in named)),
     )

@@ -32,6 +32,7 @@ from ...objectives.tables.swinging import (
     swing_quantities,
     why_not,
 )
+from ..sizing.section_limits import SectionLimits
 from .costs import Costs
 from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
@@ -124,11 +125,11 @@ class Problem:
     chosen. left_out: combinations whose limits the constraints exclude, label and reason, to be told. With
     variants, mechanism and ranges here are those of no variant in particular: use `parts`. catalogue: combinations that
     a design may name as the least that also serves, see `search.least`; also ones that are not searched. costs: of the
-    tolerances, for their allocation. own: quantities besides those that every problem has; objectives and
-    constraints may name them too. slow_stroke: which stroke must be the slow one, if that is asked; then the offset
-    has only one sign, see `slow_side`, unless the speed follows a profile, and the time ratio is above 1, see
-    `violation.constraints_of`. discrete:
-    which of a design's numbers have one of some values only; their ranges are the hulls of these. motion: a swing
+    tolerances, for their allocation. sections: what bars are sized within, of the material of the mechanism. own:
+    quantities besides those that every problem has; objectives and constraints may name them too. slow_stroke: which
+    stroke must be the slow one, if that is asked; then the offset has only one sign, see `slow_side`, unless the speed
+    follows a profile, and the time ratio is above 1, see `violation.constraints_of`. discrete: which of a design's
+    numbers have one of some values only; their ranges are the hulls of these. motion: a swing
     of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
     refused. warnings: sentences on what the job says and probably does not mean.
     """
@@ -142,6 +143,7 @@ class Problem:
     constraints: tuple[Constraint, ...] = ()
     settings: Settings = Settings()
     costs: Costs | None = None
+    sections: SectionLimits | None = None
     own: tuple[Quantity, ...] = ()
     choices: tuple[str, ...] = ()
     variants: tuple[Variant, ...] = ()
@@ -298,16 +300,16 @@ class Problem:
     def ask(self, question: str, design: ArrayLike, /, **inputs: object) -> dict[str, Any]:
         """Return the answer of a design (3 + k,) to a question, as JSON has it: `problem.ask("press", design)`.
 
-        question: a topic of `analyse --show`, "inverse", "swing", or one that another installed package has. inputs:
-        those that it takes, in SI or as text with a unit, `touch_distance="12 mm"`. Keys and values are those of
-        `analyse --show press --json`. Raises `InputError` for an unknown question or input, for what the design does
-        not have, and as `analyse` does.
+        question: a topic of `analyse --show`, "inverse", "swing", "allocate", "counterweight" (the command `balance`),
+        "sections", or one that another installed package has. inputs: those that it takes, in SI or as text with a
+        unit, `touch_distance="12 mm"`. Keys and values are those of `analyse --show press --json`. Raises
+        `InputError` for an unknown question or input, for what the design does not have, and as `analyse` does.
         """
         self._require_chosen()
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        return question_named(question).answer(machine, linkage, self.motion, inputs)
+        return question_named(question).answer(machine, linkage, self, inputs)
 
     def swing(
         self,

@@ -25,7 +25,6 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -43,8 +42,7 @@ from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from .shaking_rows import mean_rows, moving_moment, rows, with_masses
-
-Measure = Literal["peak", "rms"]
+from .words import Measure
 
 ROUNDS = 60
 _START = 24  # crank angles a turn that the first round has

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ...model.tolerance.sources import counted_angles, limits, source_influences
 from ..problem.costs import NAMES, Costs
-
-Kind = Literal["worst case", "rss"]
+from .words import Kind
 
 _START = 32  # crank angles a turn in `start`
 _TURN = 2.0 * np.pi

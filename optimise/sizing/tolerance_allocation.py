@@ -40,7 +40,8 @@ from ...model.linkage.single import single
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ..problem.costs import Costs
-from .error_rows import ErrorRows, Kind
+from .error_rows import ErrorRows
+from .words import Kind
 
 ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried

@@ -163,11 +163,10 @@ def _alone(name: str, of: Machine, question: Asked) -> Answer:
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks
 
-    asked = QUESTIONS[name].asked(of.mechanism, of.linkage, of.problem.motion, question.inputs)
+    asked = QUESTIONS[name].asked(of.mechanism, of.linkage, of.problem, question.inputs)
     record = asked.numbers(lambda: False)
     text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
-    notes = filter(None, record.get("notes", [record.get("note")]))
-    return Answer(record_in(record, question.units), "\n".join((text, *notes)))
+    return Answer(record_in(record, question.units), "\n".join((text, *asked.notes(record))))
 
 
 def _topic(of: Question) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from ..questions.discovery import COMMANDS, QUESTIONS
 from ..questions.measured import MEASURED
 from ..questions.question import Command
 from ..runs.result import json_ready
-from .computing import QuickRoute
+from .computing import LongRoute, QuickRoute
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
 from .models import UnitsAsked
@@ -37,21 +37,26 @@ def _add(name: str, says: Command) -> None:
 
     def exemplify(schema: dict[str, Any]) -> None:
         given = {one.name: one.example for one in question.inputs if one.name in says.example}
-        schema["examples"] = [question.answer(Mechanism(), Linkage(0.06, 0.23, 0.07), None, given)]
+        schema["examples"] = [says.sized or question.answer(Mechanism(), Linkage(0.06, 0.23, 0.07), None, given)]
 
     answer: Any = (dict[str, Any], Field(json_schema_extra=exemplify))
-    told = f"What `slidercrank {name} --json` prints of a design of a front."
+    told = f"What `slidercrank {says.called or name} --json` prints of a design of a front."
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **{name: answer})
 
     def endpoint(found: FrontDep, design: DesignNumber, given: Any, units: UnitsAsked = "metric") -> OfDesign:
         stored, words = found.design(design), {one.name: one.key for one in question.inputs}
-        asked = question.asked(stored.mechanism, stored.linkage, stored.part.motion, given, words)
+        asked = question.asked(stored.mechanism, stored.linkage, stored.part, given, words)
         return model(job=found.job.id, number=design, **{name: record_in(json_ready(asked.numbers()), units)})
 
     endpoint.__name__, endpoint.__doc__ = says.endpoint, says.help
     inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
     endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
-    router.get(f"/{name}", response_model=model)(endpoint)
+    router.add_api_route(
+        f"/{name}",
+        endpoint,
+        response_model=model,
+        route_class_override=QuickRoute if says.sized is None else LongRoute,
+    )
 
 
 for _name, _says in COMMANDS.items():

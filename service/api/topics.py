@@ -61,7 +61,7 @@ class Asked:
 
     def of(self, topic: Question, shown: ShownDesign) -> QuestionOfDesign:
         """Return the topic of a design. Raises `InputError` for a swing, and for an input of another topic."""
-        return topic.asked(shown.design.mechanism, shown.design.linkage, shown.design.part.motion, self.given)
+        return topic.asked(shown.design.mechanism, shown.design.linkage, shown.design.part, self.given)
 
     def kind(self, topic: Question, what: str) -> str:
         """Return the name under which what is made of a topic is kept."""

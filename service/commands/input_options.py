@@ -12,8 +12,10 @@ from ..questions.inputs import Input
 
 def option_of(one: Input) -> inspect.Parameter:
     """Return the option of an input, a text or a word that typer knows."""
-    metavar = None if one.kind is None else one.kind.plain.upper().replace(" ", "_")
-    kind: Any = one.words or str
+    metavar = one.name.upper() if one.loose else None
+    if one.kind is not None:
+        metavar = one.kind.plain.upper().replace(" ", "_")
+    kind: Any = str if one.loose else one.words or str
     return inspect.Parameter(
         one.name,
         inspect.Parameter.KEYWORD_ONLY,

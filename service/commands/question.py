@@ -1,4 +1,4 @@
-"""Commands that ask one design a question of their own name: `slidercrank inverse`, `slidercrank swing`."""
+"""Commands that ask one design a question, such as `slidercrank inverse`, and those that size parts of it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from typing import Annotated, Any
 
 import typer
 
+from ...objectives.kinds import System
 from ..designs.shown_units import record_in
 from ..questions.discovery import COMMANDS, QUESTIONS
+from ..questions.question import QuestionOfDesign
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
-from ..text.options import DesignOfRun, Dimensions, JobOrRun, Json, Runs, Units, drawable, require_ending
-from ..text.screen import answer, say, write_figure
+from ..text.options import DesignOfRun, Dimensions, JobFile, JobOrRun, Json, Runs, Units, drawable, require_ending
+from ..text.screen import answer, say, waiting, write_figure
 from .input_options import option_of
-from .job_or_run import machine_of
+from .job_or_run import machine_of, turning_problem
 
 
 def command_of(name: str) -> Callable[..., None]:
@@ -34,17 +36,14 @@ def command_of(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        from ..render.terminal import print_blocks
-
         curves, figure = files.get("curves"), drawable(files.get("figure"))
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {one.name: one.flag for one in question.inputs}
-        asked = question.asked(mechanism, linkage, None if problem is None else problem.motion, inputs, words)
-        record = asked.numbers()
-        answer(json, record_in(record, units), lambda screen: print_blocks(screen, asked.blocks(record), units))
-        for note in () if json else filter(None, record.get("notes", [record.get("note")])):
+        asked = question.asked(mechanism, linkage, problem, inputs, words)
+        notes = _answered(asked, units, json)
+        for note in () if json else notes:
             say(note)
         if curves is not None:
             write_file(curves, csv_text(asked.written("curves", units)))
@@ -63,9 +62,52 @@ def command_of(name: str) -> Callable[..., None]:
     return command
 
 
-def _file_option(name: str, help: str) -> inspect.Parameter:
-    hint = Annotated[Path | None, typer.Option(metavar="FILE", help=help)]
+def sizing_of(name: str) -> Callable[..., None]:
+    """Return the command of a question that sizes, for `for_typer`."""
+    question, says = QUESTIONS[name], COMMANDS[name]
+
+    def command(
+        job: JobFile,
+        *,
+        size: Dimensions,
+        inputs: dict[str, str | None],
+        files: dict[str, Path],
+        units: Units = "metric",
+        json: Json = False,
+    ) -> None:
+        folder = drawable(files.get("figures"))
+        problem = turning_problem(job, says.called or name)
+        words = {one.name: one.flag for one in question.inputs}
+        asked = question.asked(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
+        for note in _answered(asked, units, json):
+            say(note)
+        if folder is not None and says.figure is not None:
+            write_figure(folder / f"{says.figure[0]}.png", lambda: asked.written("figure", units), units)
+
+    draws = [f"Draw {says.figure[1]} into {says.figure[0]}.png there."] if says.figure else []
+    command.__doc__ = says.help
+    command.__annotations__ |= {
+        "job": Annotated[JobFile, says.job],
+        "inputs": Annotated[dict[str, Any], tuple(map(option_of, question.inputs))],
+        "files": Annotated[dict[str, Any], tuple(_file_option("figures", help, "DIR") for help in draws)],
+    }
+    return command
+
+
+def _answered(asked: QuestionOfDesign, units: System, json: bool) -> list[str]:
+    """Print the answer; return what is to be said besides."""
+    from ..render.terminal import print_blocks
+
+    with waiting("computing"):
+        record = asked.numbers()
+    answer(json, record_in(record, units), lambda screen: print_blocks(screen, asked.blocks(record), units))
+    return asked.notes(record)
+
+
+def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Parameter:
+    hint = Annotated[Path | None, typer.Option(metavar=metavar, help=help)]
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
 
 
 inverse, swing = map(command_of, ("inverse", "swing"))
+allocate, balance, sections = map(sizing_of, ("allocate", "counterweight", "sections"))

@@ -21,7 +21,8 @@ class Input:
     word. title: before the field of a form. help: of the option, with the default in brackets. usual: the default, as
     it is typed, "" if there is none. option: of the command line, without dashes, if it is not the name. sign: what the
     value must be. below: what it must be less than, in SI. drawn: whether the figure takes it too. example: as
-    it is typed. words: a `Literal` of those that it may be. required: whether there is no answer without it.
+    it is typed. words: a `Literal` of those that it may be. loose: whether they may be in capitals, with - and _ for
+    spaces. required: whether there is no answer without it.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Input:
     drawn: bool = True
     example: str = ""
     words: Any = None
+    loose: bool = False
     required: bool = False
 
     @property
@@ -74,6 +76,8 @@ class Input:
         from ..designs.selection import value_of
 
         if self.kind is None:
+            if self.loose and isinstance(given, str):
+                given = given.strip().casefold().replace("-", " ").replace("_", " ")
             require_word(word, given, self.words)
             return given
         value = value_of(word, given, self.kind, sign=self.sign)

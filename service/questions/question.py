@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
-    from ...model.swing.swing import Swing
     from ...objectives.kinds import System
+    from ...optimise.problem.problem import Problem
     from ..figures.panels import Drawn
     from ..render.blocks import Block
 
@@ -30,14 +30,21 @@ class Command:
     help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
     help on JOB, and on what holds without. example: inputs of the example. curves: what the command can write and draw,
     by functions `curves` and `figure` that take what `numbers` takes and `units`.
+
+    sized: a part of an answer, as an example, if the question sizes a part of a machine that turns: it needs a job,
+    libraries that are not always there, and seconds. called: name of such a command, if it is not the question's.
+    figure: name of the file that it draws by a function `figure`, and what that shows.
     """
 
     help: str
     endpoint: str
     job: str
-    alone: str
-    example: tuple[str, ...]
+    alone: str = ""
+    example: tuple[str, ...] = ()
     curves: str = ""
+    sized: Mapping[str, Any] | None = None
+    called: str = ""
+    figure: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True)
@@ -47,11 +54,12 @@ class Question:
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
     the table of a design therefore leaves out. inputs: what it may be asked with. A function `prepare` of that module,
-    if it has one, gives further options for numbers and figure. A function `in_units`, if it has one, gives the numbers
-    in a system of units.
+    if it has one, gives further options for numbers and figure, from those that there are. A function `in_units`, if it
+    has one, gives the numbers in a system of units.
 
-    command: if it is one of its own. Its numbers also take `swing`, that the crank makes in its job, and `words`, what
-    the door calls the inputs; the design need not turn fully. `note` or `notes` among them say what is undefined.
+    command: if it is one of its own. Its numbers also take `words`, what the door calls the inputs, and `swing`, that
+    the crank makes in its job, or `problem` if it sizes; the design need not turn fully. `note` or `notes` among them
+    say what is undefined; a function `notes` of the module, if it has one, what is not proven.
     """
 
     package: str
@@ -71,28 +79,32 @@ class Question:
         self,
         mechanism: Mechanism,
         linkage: Linkage,
-        swing: Swing | None,
+        problem: Problem | None,
         inputs: Mapping[str, object],
         words: Mapping[str, str] | None = None,
     ) -> QuestionOfDesign:
-        """Return the question to a design. swing: that its crank makes. inputs: by name, in SI or as text with a unit.
+        """Return the question to a design. problem: that it answers. inputs: by name, in SI or as text with a unit.
 
-        words: what the door calls the inputs, if not by their names. Raises `InputError` for a swing, unless the
-        question takes it, and for inputs that it does not take.
+        words: what the door calls the inputs, if not by their names. Raises `InputError` for a problem that swings,
+        unless the question takes it, and for inputs that it does not take.
         """
-        if self.command is not None:
-            given = read_inputs(self.inputs, inputs, self.name, words)
-            return self.of(mechanism, linkage, {"swing": swing, "words": words, **given})
-        require_turning(swing, f"the topic {self.name}")
-        return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words))
+        swing = None if problem is None else problem.motion
+        if self.command is None:
+            require_turning(swing, f"the topic {self.name}")
+            return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words))
+        of: dict[str, object] = {"swing": swing}
+        if self.command.sized is not None:
+            require_turning(swing, self.command.called or self.name)
+            of = {"problem": problem}
+        return self.of(mechanism, linkage, {**of, "words": words, **read_inputs(self.inputs, inputs, self.name, words)})
 
     def answer(
-        self, mechanism: Mechanism, linkage: Linkage, swing: Swing | None, inputs: Mapping[str, object]
+        self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
         """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
         from ...model.linkage.single import single
 
-        found = self.asked(mechanism, linkage, swing, inputs)
+        found = self.asked(mechanism, linkage, problem, inputs)
         if self.command is None:
             single(mechanism, linkage)
         answer: dict[str, Any] = json_ready(found.numbers())
@@ -135,6 +147,13 @@ class QuestionOfDesign:
         found: list[Block] = self._analysis.blocks(numbers)
         return found
 
+    def notes(self, numbers: dict[str, Any]) -> list[str]:
+        """Return what is to be said of the numbers besides: what is undefined, or not proven."""
+        if hasattr(self._analysis, "notes"):
+            found: list[str] = self._analysis.notes(numbers)
+            return found
+        return [note for note in numbers.get("notes", [numbers.get("note")]) if note]
+
     def written(self, name: str, units: System) -> Any:
         """Return what a command writes, by the name of its function: rows of `curves`, or a `figure`."""
         return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
@@ -156,7 +175,9 @@ class QuestionOfDesign:
 
     def _prepare(self, cancelled: Callable[[], bool]) -> None:
         if hasattr(self._analysis, "prepare"):
-            self.options.update(self._analysis.prepare(self.mechanism, self.linkage, cancelled))
+            self.options.update(
+                self._analysis.prepare(self.mechanism, self.linkage, **{**self.options, "cancelled": cancelled})
+            )
 
     def _drawn(self) -> Drawn:
         hidden = {one.name for one in self.question.inputs if not one.drawn}

@@ -37,7 +37,6 @@ Output = Annotated[str | None, typer.Option(metavar="FILE")]
 """A file, or - for standard output."""
 Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]
 Length = Annotated[str | None, typer.Option(metavar="LENGTH")]
-Mass = Annotated[str | None, typer.Option(metavar="MASS")]
 Speed = Annotated[str | None, typer.Option(metavar="SPEED")]
 Number = Annotated[int, typer.Argument(metavar="NO", help="The design: its number in `slidercrank front RUN`.")]
 JobOrRun = Annotated[Path | None, typer.Argument(metavar="JOB")]

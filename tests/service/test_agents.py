@@ -32,7 +32,7 @@ from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
 from slidercrank.service.questions.discovery import INPUTS, QUESTIONS, TOPICS
 from slidercrank.service.text.tables import ROWS
-from tests.service import fronts
+from tests.service import fronts, sized
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="what the server writes is copied by a shell")
 OWN = """
@@ -222,6 +222,25 @@ def test_a_question_with_a_command_of_its_own_is_asked_as_by_that(agent: Agent, 
     words = [word for name, text in inputs.items() for word in (f"--{name.replace('_', '-')}", text)]
     asked = agent.ask("ask", run=run, design=2, topics=["inverse"], inputs=inputs)
     assert asked == command("inverse", agent.runs / run, "--design", 2, *words)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("topic", "name", "inputs"),
+    [
+        ("allocate", "allocate", {"limit": "0.3 mm", "kind": "RSS"}),
+        ("counterweight", "balance", {"rod_radius": "60 mm", "rod_mass": "2 kg"}),
+        ("sections", "sections", {}),
+    ],
+)
+def test_a_design_is_sized_as_by_the_command(
+    agent: Agent, tmp_path: Path, topic: str, name: str, inputs: dict[str, str]
+) -> None:
+    (tmp_path / "job.json").write_text(json.dumps(sized.TABLES), encoding="utf-8")
+    lengths = {"crank": "60 mm", "rod": "230 mm", "offset": "70 mm"}
+    words = [word for key, text in (lengths | inputs).items() for word in (f"--{key.replace('_', '-')}", text)]
+    asked = agent.ask("ask", job=sized.TABLES, **lengths, topics=[topic], inputs=inputs)
+    assert asked == command(name, tmp_path / "job.json", *words)
 
 
 def test_a_job_is_checked_as_by_the_command(agent: Agent, pytestconfig: pytest.Config) -> None:

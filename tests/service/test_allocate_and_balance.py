@@ -18,10 +18,10 @@ from slidercrank.model.machine.mechanism import Window
 from slidercrank.model.tolerance.first_order import first_order
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, balance
-from slidercrank.optimise.sizing.error_rows import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
+from slidercrank.optimise.sizing.words import Kind
 from slidercrank.service.figures.panels import draw_sheet
-from slidercrank.service.questions.allocation.figure import allocation_curves, allocation_figure
+from slidercrank.service.questions.allocate.figure import allocation_curves, allocation_figure
 from slidercrank.service.questions.counterweight import analysis as counterweight
 from tests.service.conftest import Command
 from tests.service.test_figures import overlaps
@@ -231,9 +231,10 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
 
 @pytest.mark.parametrize("space", [None, RodSpace(radius=0.06, mass=2.0)])
 def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | None, job: Path) -> None:
-    mechanism = load_job(job).mechanism
+    problem = load_job(job)
+    mechanism = problem.mechanism
     found = balance(mechanism, LINKAGE, rod=space)
-    sheet = counterweight.figure(found, title="Sieve")
+    sheet = counterweight.figure(mechanism, LINKAGE, found=found, problem=problem)
     assert len(sheet.panels) == (2 if space is None else 3)
     theta = np.radians(sheet.panels[1].lines[0].x)
     for n, machine in enumerate((mechanism, found.after)):

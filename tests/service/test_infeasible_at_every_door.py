@@ -27,6 +27,7 @@ from tests.service import fronts
 from tests.service.api.fixed_front import served
 from tests.service.api.serving import client_of, refused
 from tests.service.conftest import Command
+from tests.service.sized import NEEDED
 
 SMALL = tomllib.loads(fronts.JOB)
 SIZE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
@@ -51,25 +52,6 @@ OF_RUNS = (
     ("like", "1", "--where", "peak_torque <= 1 N m"),
     ("compare", "nothing"),
 )
-
-
-OF_TOPICS: dict[str, Any] = {
-    "tolerances": {"crank": "0.02 mm", "rod": "0.05 mm", "offset": "0.05 mm", "crank_angle": "0.1 deg"},
-    "costs": {name: {"cost": 8.0, "at": "0.05 mm"} for name in ("crank", "rod", "offset")}
-    | {"crank_angle": {"cost": 10.0, "at": "0.1 deg"}},
-    "sections": {
-        "pins": {"crank_pivot": "15 mm", "crank_pin": "12 mm", "slider_pin": "10 mm"},
-        "material": {
-            "density": "7800 kg/m^3",
-            "elasticity": "207 GPa",
-            "yield_strength": "350 MPa",
-            "ultimate_strength": "520 MPa",
-            "endurance": "150 MPa",
-            "bearing_pressure": "20 MPa",
-        },
-    },
-}
-"""What `balance`, `allocate` and `sections` need besides a machine."""
 
 
 def changed_job(**tables: Any) -> dict[str, Any]:
@@ -216,7 +198,7 @@ def test_commands_on_a_given_design_give_the_same_for_a_job_that_no_design_can_m
     """Only the rules that the design misses differ, and they are no part of the comparison."""
     name, *rest = arguments
     found = []
-    for title, tables in (("possible", changed_job(**OF_TOPICS)), ("impossible", changed_job(**OF_TOPICS, **WISH))):
+    for title, tables in (("possible", changed_job(**NEEDED)), ("impossible", changed_job(**NEEDED, **WISH))):
         file = tmp_path / f"{title}.json"
         file.write_text(json.dumps(tables), encoding="utf-8")
         done = command(*(name, file, *rest) if name != "inverse" else (name, *rest, file), "--json")

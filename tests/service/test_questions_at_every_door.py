@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from importlib import metadata
 from inspect import cleandoc
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import httpx
 import numpy as np
@@ -20,15 +20,22 @@ from slidercrank.model.errors import InputError, NotFound
 from slidercrank.optimise.problem import questions as announced
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
+from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.discovery import COMMANDS, QUESTIONS, TOPICS
+from slidercrank.service.questions.inputs import Input
+from slidercrank.service.store import Store
+from slidercrank.service.workers.worker import work
 from tests.doors.scripts import JOBS
-from tests.service import fronts
+from tests.service import fronts, sized
 from tests.service.alike import assert_same
 from tests.service.api.fixed_front import API, Solved, served
 
 MACHINES = (JOBS / "loose.toml", JOBS / "cylinders.toml")
 """Between them they have every topic but the press, whose distance is given."""
 TOUCH, RATED = 0.0125, 55.5
+SIZING = tuple(name for name, command in COMMANDS.items() if command.sized is not None)
+SIZES = {"limit": (0.25, 0.5), "radius": (40, 120), "mass": (1, 6), "rod_radius": (30, 80), "rod_mass": (1, 3)}
+"""From and to, metric, of what sizing is asked with; moments count on arms of 100 to 500 mm."""
 
 
 @pytest.fixture(scope="module")
@@ -145,6 +152,98 @@ def test_random_swings_have_the_same_numbers_at_every_door(solved: Solved, clien
         assert client.swing(solved.number, row + 1, **given) == expected
 
 
+@pytest.fixture(scope="module")
+def sizes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Client, int, Path]]:
+    """Yield a client of a front that can be sized, the number of its job, and its file."""
+    place = tmp_path_factory.mktemp("sized")
+    file = place / "job.json"
+    file.write_text(json.dumps(sized.TABLES), encoding="utf-8")
+    with Store(place / "store.db") as store:
+        number = submit(store, sized.TABLES).id
+        work(store, drain=True)
+        with served(store) as address, Client(address) as client:
+            yield client, number, file
+
+
+def some_input(one: Input, random: np.random.Generator) -> float | str:
+    if one.words is not None:
+        return str(random.choice(get_args(one.words)))
+    return round(float(random.uniform(*SIZES.get(one.name, (100, 500)))), 3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SIZING)
+def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, Path], name: str) -> None:
+    (client, number, job), random = sizes, np.random.default_rng(10)
+    front, question = sc.solve(sc.load_job(job)), QUESTIONS[name]
+    for row in random.choice(len(front), 3, replace=False).tolist():
+        given = {one: some_input(one, random) for one in question.inputs}
+        expected = client.ask(number, row + 1, name, **{one.key: value for one, value in given.items()})
+        texts = {one: one.typed(value) for one, value in given.items()}
+        assert front.ask(name, row, **{one.name: text for one, text in texts.items()}) == expected
+        lengths = zip(("crank", "rod", "offset"), front.dimensions[row].tolist(), strict=True)
+        options = [f"--{of}={length!r} m" for of, length in lengths]
+        options += [f"{one.flag}={text}" for one, text in texts.items()]
+        done = CliRunner().invoke(command_line, [COMMANDS[name].called or name, str(job), *options, "--json"])
+        assert done.exit_code == 0, done.stderr
+        assert json.loads(done.stdout) == expected
+
+
+@pytest.mark.parametrize("name", SIZING)
+def test_the_example_of_an_endpoint_that_sizes_is_a_part_of_an_answer(address: str, name: str) -> None:
+    linkage = sized.LINKAGE
+    design = [float(linkage.crank), float(linkage.rod), float(linkage.offset)]
+    answer = sc.problem(sized.TABLES).ask(name, design, **sized.EXAMPLES[name])
+    assert_part(example_of(address, name), answer)
+
+
+def assert_part(part: Any, whole: Any) -> None:
+    if isinstance(part, dict):
+        for key, value in part.items():
+            assert_part(value, whole[key])
+    else:
+        assert whole == (pytest.approx(part, rel=1e-3) if isinstance(part, float) else part)
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "sentence"),
+    [
+        ("allocate", ("limit", 0.3), "an allocation needs what the tolerances cost; got a job without [costs]; add"),
+        ("sections", None, "sizing sections needs the table [sections]; got none; add it with a material and pins"),
+        ("counterweight", ("arm", 200.0), "moment"),
+    ],
+)
+def test_what_cannot_be_sized_is_refused_in_one_sentence(
+    solved: Solved, client: Client, name: str, given: tuple[str, float] | None, sentence: str
+) -> None:
+    key, value = given or ("", 0.0)
+    row = client.analysis(solved.number, 1)
+    words = [f"--{of}={row[f'{of}_mm']!r} mm" for of in ("crank", "rod", "offset")]
+    with pytest.raises(InputError) as refused:
+        client.ask(solved.number, 1, name, **({f"{key}_mm": value} if given else {}))
+    with pytest.raises(InputError) as alone:
+        sc.solve(sc.load_job(solved.job)).ask(name, 0, **({key: f"{value} mm"} if given else {}))
+    done = CliRunner().invoke(
+        command_line,
+        [COMMANDS[name].called or name, str(solved.job), *words, *([f"--{key}={value} mm"] if given else [])],
+    )
+    assert sentence in str(alone.value)
+    assert str(alone.value) in str(refused.value)
+    assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {alone.value}")
+
+
+@pytest.mark.parametrize("name", SIZING)
+def test_a_job_that_swings_is_sized_at_no_door(name: str) -> None:
+    command = COMMANDS[name].called or name
+    given = {"limit": "1 mm"} if name == "allocate" else {}
+    with pytest.raises(InputError) as refused:
+        sc.load_job("runs/support.toml").ask(name, [1.4, 1.8, -0.05], **given)
+    words = ["--crank", "1.4 m", "--rod", "1.8 m", "--offset", "-50 mm", *(["--limit", "1 mm"] if given else [])]
+    done = CliRunner().invoke(command_line, [command, "runs/support.toml", *words])
+    assert str(refused.value).startswith(f"{command} is of a crank that turns through; got a job whose crank swings")
+    assert (done.exit_code, done.stderr.splitlines()[-1]) == (2, f"slidercrank: {refused.value}")
+
+
 def printed_by(name: str, solved: Solved, row: int, *options: str) -> Any:
     place = ["latest", "--runs", str(solved.folder.parent), "--design", str(row + 1), "--json"]
     done = CliRunner().invoke(command_line, [name, *place, *options])
@@ -166,14 +265,25 @@ def test_a_swing_of_a_job_is_asked_in_python_as_on_the_command_line() -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_example_of_an_endpoint_is_the_answer_of_its_linkage(address: str, name: str) -> None:
     topic = QUESTIONS[name]
-    given = {one.name: one.example for one in topic.inputs if one.name in COMMANDS[name].example}
-    described = httpx.get(f"{address}{API}/openapi.json", timeout=60.0).json()
-    (example,) = described["components"]["schemas"][f"{name.capitalize()}Model"]["properties"][name]["examples"]
-    assert example == without_gaps(topic.answer(sc.Mechanism(), sc.Linkage(0.06, 0.23, 0.07), None, given))
-    asked = described["paths"][f"/api/v1/jobs/{{number}}/designs/{{design}}/{name}"]["get"]
+    if name not in SIZING:
+        given = {one.name: one.example for one in topic.inputs if one.name in COMMANDS[name].example}
+        answer = topic.answer(sc.Mechanism(), sc.Linkage(0.06, 0.23, 0.07), None, given)
+        assert example_of(address, name) == without_gaps(answer)
+    asked = described_at(address)["paths"][f"/api/v1/jobs/{{number}}/designs/{{design}}/{name}"]["get"]
     assert (asked["operationId"], asked["description"]) == (COMMANDS[name].endpoint, cleandoc(COMMANDS[name].help))
     keys = [parameter["name"] for parameter in asked["parameters"]]
     assert [key for key in keys if key not in ("number", "design", "units")] == [one.key for one in topic.inputs]
+
+
+def described_at(address: str) -> Any:
+    return httpx.get(f"{address}{API}/openapi.json", timeout=60.0).json()
+
+
+def example_of(address: str, name: str) -> Any:
+    (example,) = described_at(address)["components"]["schemas"][f"{name.capitalize()}Model"]["properties"][name][
+        "examples"
+    ]
+    return example
 
 
 def without_gaps(record: Any) -> Any:
@@ -213,6 +323,14 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
     ("swing", {"start": 0.1, "end": 0.5, "law": ["slow"]}, "law must be 'slow' or "),
     ("swing", {"start": 0.1, "end": 0.5, "actuator_tolerance": -1e-3}, "actuator_tolerance must be zero or more"),
     ("swing", {"start": "1 mm", "end": 0.5}, 'start must be an angle; got "1 mm"'),
+    ("allocate", {}, "allocate needs limit; got none; give it like 0.1 mm"),
+    ("allocate", {"limit": "0.3 mm", "kind": "mean"}, "kind must be 'worst case' or 'rss'; got 'mean'"),
+    ("allocate", {"limit": "0.3 mm", "kind": 2}, "kind must be 'worst case' or 'rss'; got 2"),
+    ("allocate", {"limit": 0.0}, "limit must be positive; got 0"),
+    ("counterweight", {"rod_mass": 1.0}, "needs rod_radius and rod_mass; got rod_mass alone; add rod_radius"),
+    ("counterweight", {"rod_radius": 0.1}, "needs rod_radius and rod_mass; got rod_radius alone; add rod_mass"),
+    ("counterweight", {"mass": "2 mm"}, 'mass must be a mass; got "2 mm"'),
+    ("sections", {"width": "2 mm"}, "sections is asked with nothing else; got width; leave width out"),
     ("uneven_speed", {}, "an uneven speed needs a profile; got a constant speed"),
 ]
 

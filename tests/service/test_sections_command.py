@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.optimise.job import load_job, load_sections
+from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.sections import size_sections
 from tests.service.conftest import Command
 
@@ -53,10 +53,13 @@ def test_json_is_what_the_function_gives(command: Command, tmp_path: Path) -> No
     done = command("sections", job, "--rod", "200 mm", "--json")
     assert done.exit_code == 0, done.output
     shown = json.loads(done.stdout)
-    material, limits = load_sections(job)
+    problem = load_job(job)
+    limits, strength = problem.sections, problem.mechanism.strength
+    assert limits is not None
+    assert strength is not None
     assert limits.static_safety == 2.5
     assert limits.crank_pin == pytest.approx(0.012)
-    found = size_sections(load_job(job).mechanism, Linkage(0.05, 0.2, 0.01), material, limits)
+    found = size_sections(problem.mechanism, Linkage(0.05, 0.2, 0.01), strength.material, limits)
     assert shown["mass_kg"] == pytest.approx(found.mass, rel=1e-9)
     assert shown["rod_width_mm"] == pytest.approx(1e3 * found.rod.width, rel=1e-9)
     assert shown["utilisation"] == pytest.approx(found.utilisation, rel=1e-6)
@@ -69,7 +72,9 @@ def test_a_job_that_names_a_catalogue_is_sized_with_the_concentration_of_its_eye
     choice = '[[choice]]\nname = "drive"\nfile = "drives.csv"\n'
     (tmp_path / "drives.csv").write_text("name,mechanism.speed (rpm)\nslow,100\nfast,120\n", encoding="utf-8")
     job = written(tmp_path, JOB + choice + SECTIONS.replace("[sections]\n", "[sections]\neye_concentration = 2.5\n", 1))
-    assert load_sections(job)[1].eye_concentration == 2.5
+    limits = load_job(job).sections
+    assert limits is not None
+    assert limits.eye_concentration == 2.5
     done = command("sections", job, "--rod", "200 mm")
     assert done.exit_code == 0, done.output
 

@@ -62,7 +62,7 @@ def simulated(
         return simulate(mechanism, linkage, mechanism.clearance, **options)
 
 
-def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool]) -> dict[str, Any]:
+def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
     """Return one simulation for numbers and figure."""
     return {"run": simulated(mechanism, linkage, cancelled=cancelled)}
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, face
-from ....optimise.sizing.counterweight import Balance, Shaking
+from ....optimise.problem.problem import Problem
+from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, balance
+from ....optimise.sizing.words import Measure
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...render.blocks import (
     Block,
@@ -24,11 +30,49 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import shown
+from . import QUESTION
 
 _SAMPLES = 1441
 
 
-def numbers(found: Balance, measure: str) -> dict[str, Any]:
+def prepare(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    words: Mapping[str, str] | None = None,
+    measure: Measure = "peak",
+    radius: float | None = None,
+    mass: float | None = None,
+    arm: float | None = None,
+    **inputs: Any,
+) -> dict[str, Any]:
+    """Return one balance for numbers and figure. inputs: what is left of them, in SI."""
+    at = radius or mechanism.counterweight.radius or float(linkage.crank)
+    found = balance(
+        mechanism,
+        linkage,
+        measure=measure,
+        arm=arm,
+        radius=at,
+        most=None if mass is None else mass * at,
+        rod=_rod_space(inputs, words or {}),
+    )
+    return {"found": found}
+
+
+def _rod_space(inputs: Mapping[str, Any], said: Mapping[str, str]) -> RodSpace | None:
+    """Return the space for a balance mass on the rod. Raises `InputError` for its radius or mass alone."""
+    names = [one.name for one in QUESTION.inputs if one.name.startswith("rod_")]
+    (first, radius), (second, mass) = ((said.get(name, name), inputs.get(name)) for name in names)
+    if radius is None and mass is None:
+        return None
+    if radius is None or mass is None:
+        have, need = (second, first) if radius is None else (first, second)
+        raise InputError(f"a rod balance needs {first} and {second}; got {have} alone; add {need}")
+    return RodSpace(radius=radius, mass=mass)
+
+
+def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "peak", **options: Any) -> dict[str, Any]:
     """Return a balance ready for JSON; the angle of the counterweight is from the crank's direction."""
     rod = found.rod
     weighs = rod is not None and rod.mass > 0.0
@@ -56,6 +100,12 @@ def numbers(found: Balance, measure: str) -> dict[str, Any]:
         "rounds": found.rounds,
         "converged": found.converged,
     }
+
+
+def notes(numbers: Mapping[str, Any]) -> list[str]:
+    """Return what is not proven."""
+    proven = f"{numbers['objective_N']:.6g} N, and no less than {numbers['least_possible_N']:.6g} N is possible"
+    return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
 
 
 def _shaking(shaking: Shaking) -> dict[str, float]:
@@ -110,7 +160,7 @@ def _centre(rod: dict[str, Any]) -> Text:
     return words("centre {along} along, {across} across the rod", along=along, across=across)
 
 
-def figure(found: Balance, *, title: str) -> Sheet:
+def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> Sheet:
     """Return hodograph, force and, where a rod balance changes it, moment before and after."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
@@ -132,4 +182,4 @@ def figure(found: Balance, *, title: str) -> Sheet:
         panels.append(over_turn("moment about the pivot", *moments, kind=TORQUE))
         added = words("{mass} added to the rod", mass=Value(found.rod.mass, MASS, 4))
         parts.append(added if found.rod.mass else "nothing added to the rod")
-    return Sheet(f"{title}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4)
+    return Sheet(f"{problem.name}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4)

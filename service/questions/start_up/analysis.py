@@ -40,7 +40,7 @@ def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Trans
         return run, None, str(error)
 
 
-def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool]) -> dict[str, Any]:
+def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
     """Return the option that stops a simulation."""
     return {"cancelled": cancelled}
 

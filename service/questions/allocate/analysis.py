@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....model.errors import AssemblyError
+from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
@@ -15,15 +16,41 @@ from ....model.tolerance.exact import worst
 from ....model.tolerance.sources import limits
 from ....objectives.kinds import ANGLE, LENGTH, face
 from ....optimise.problem.costs import NAMES, Costs
-from ....optimise.sizing.tolerance_allocation import Allocation
+from ....optimise.problem.problem import Problem
+from ....optimise.sizing.tolerance_allocation import Allocation, allocate
+from ....optimise.sizing.words import Kind
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
 from ..peaks import peak
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ....objectives.kinds import System
 
 _STEP = replace(LENGTH, metric=face("1 µm", 1e6), inch=face("0.0001 in", 1e4 * LENGTH.face("inch").factor))
 """A step of length, for what it saves: as a unit of its own."""
 
 
-def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> dict[str, Any]:
+def prepare(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    problem: Problem | None,
+    limit: float,
+    kind: Kind = "worst case",
+    **_: Any,
+) -> dict[str, Any]:
+    """Return one allocation for numbers and figure, and the costs. Raises `InputError` without [costs]."""
+    if problem is None or problem.costs is None:
+        raise InputError(
+            "an allocation needs what the tolerances cost; got a job without [costs]; "
+            'add for example [costs] crank = { cost = 8.0, at = "0.05 mm" }'
+        )
+    found = allocate(linkage, problem.costs, limit, kind, mechanism=mechanism)
+    return {"found": found, "costs": problem.costs}
+
+
+def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, **_: Any) -> dict[str, Any]:
     """Return an allocation ready for JSON.
 
     before: the mechanism as it was; cost and error of its own tolerances are None unless it has all that have a cost.
@@ -69,6 +96,19 @@ def numbers(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism
         "residual": found.residual,
         "converged": found.converged,
     }
+
+
+def notes(numbers: Mapping[str, Any]) -> list[str]:
+    """Return what is not proven."""
+    residual = f"the optimality conditions are met to {numbers['residual']:.1e} only"
+    return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
+
+
+def figure(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, units: System, **_: Any) -> Figure:
+    """Return error and costs over the cycle."""
+    from .figure import allocation_curves, allocation_figure
+
+    return allocation_figure(allocation_curves(found, linkage, costs, before), units)
 
 
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:

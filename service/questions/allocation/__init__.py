@@ -1,1 +1,0 @@
-"""Tolerances of least cost: numbers, text and figure."""
