@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from ..model.kernel.arithmetic import arcsine, magnitude, root
 from ..model.kinematics.geometry import inner_dead_centre, outer_dead_centre
 from ..model.machine.mechanism import Mechanism
@@ -16,7 +18,7 @@ from .kinds import ANGLE, SPEED
 from .needs import EVEN_SPEED, Need
 from .needs import SPEED as TURNS
 from .proportions import STROKE
-from .quantity import Formula, Group, Number
+from .quantity import Array, Formula, Group, Number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,25 +53,48 @@ def _triangle(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     return x, x * x + lengths[2] * lengths[2], above, below
 
 
-def _touch_speed(machine: Mechanism, number: Number) -> Any:
-    """Return |x'| |omega|, with |x'| the area of the parallelogram of crank and rod over l cos(phi)."""
+def _travel(machine: Mechanism, number: Number, distance: Any) -> Any:
+    """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod over l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
-    x, square, above, below = _triangle(number, machine.slider.touch or 0.0, outer)
+    x, square, above, below = _triangle(number, distance, outer)
     area = 0.5 * root(above * below)
     side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # of the crank pin
     along = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
-    return area / along * magnitude(number(Raw.SPEED))
+    return area / along
+
+
+def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
+    """Return the angle of the crank from the line of its pivot and the slider pin, rad: twice the half of it."""
+    r, l = number(Raw.CRANK), number(Raw.ROD)
+    outer = machine.slider.dead_centre == "outer"
+    _, square, above, below = _triangle(number, distance, outer)
+    b = root(square)
+    share = above / (l + r + b) * (l + b - r) if outer else below / (b + l - r) * (b + l + r)
+    return 2.0 * arcsine(root(share / (4.0 * r * b)))
+
+
+def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> tuple[Array, Array]:
+    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it.
+
+    design: crank, rod, offset, m, whose stroke is longer. What is small with the distance is so to its last digits.
+    """
+    lengths = dict(zip((int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)), design, strict=True))
+    number: Number = lengths.__getitem__
+    outer, e = machine.slider.dead_centre == "outer", design[2]
+    dead = (outer_dead_centre if outer else inner_dead_centre)(*design)
+    way = 1.0 if outer else -1.0
+    turned = way * np.arctan2(e * distances, (dead - way * distances) * dead + e * e)  # of the line, from there
+    angles = _angle_from_line(machine, number, distances) - machine.sign * machine.direction * turned
+    return angles, _travel(machine, number, distances)
+
+
+def _touch_speed(machine: Mechanism, number: Number) -> Any:
+    return _travel(machine, number, machine.slider.touch or 0.0) * magnitude(number(Raw.SPEED))
 
 
 def _dwell_angle(machine: Mechanism, number: Number) -> Any:
-    """Return four times half the angle of the crank from the line of its pivot and the slider pin."""
-    r, l = number(Raw.CRANK), number(Raw.ROD)
-    outer = machine.slider.dead_centre == "outer"
-    _, square, above, below = _triangle(number, machine.slider.dwell or 0.0, outer)
-    b = root(square)
-    share = above / (l + r + b) * (l + b - r) if outer else below / (b + l - r) * (b + l + r)
-    return 4.0 * arcsine(root(share / (4.0 * r * b)))
+    return 2.0 * _angle_from_line(machine, number, machine.slider.dwell or 0.0)
 
 
 def _needs(name: str) -> Need:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from .kinds import RATIO, SHOWN, Face, Kind, System, kind_in
+from .kinds import PRESSURE, RATIO, SHOWN, Face, Kind, System, face, kind_in
 
 # How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
 _FACES = sorted(
@@ -17,8 +17,11 @@ _TO_INCH = {
     for kind in SHOWN
     if kind.inch is not None
 }
+_BAR = face("bar", 1e-5)  # of suction and discharge, beside the unit of other pressures
+_FACES.append(_BAR)
 _CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
+_TO_INCH[_BAR.suffix] = next((kind.inch.suffix, kind.inch.factor / _BAR.factor) for kind in [PRESSURE] if kind.inch)
 
 
 def split_unit(key: str) -> tuple[str, str, float]:
@@ -38,7 +41,13 @@ def kind_of_key(key: str) -> tuple[str, Kind]:
 def key_in(key: str, system: System) -> tuple[str, float]:
     """Return the key of a metric column in a system of units, and the factor for its values."""
     face = _face(key)
-    if system == "metric" or face is None or face.suffix not in _TO_INCH:
+    if system == "metric" or face is None:
+        return key, 1.0
+    if key.removesuffix(face.suffix).endswith("_per"):  # a quotient that no kind has: of both its units
+        above, _, below = key.rpartition("_per_")
+        (upper, up), (lower, down) = key_in(above, system), key_in(f"_{below}", system)
+        return f"{upper}_per{lower}", up / down
+    if face.suffix not in _TO_INCH:
         return key, 1.0
     suffix, factor = _TO_INCH[face.suffix]
     return key.removesuffix(face.suffix) + suffix, factor

@@ -69,10 +69,17 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     place = np.arange(len(row))
     high = np.where(place == last, low[first] + period, low[np.minimum(place + 1, len(row) - 1)])
     kept = high - low >= _THIN
+    thin, thin_row = order[~kept], row[~kept]
+    behind = np.searchsorted(np.flatnonzero(kept), np.flatnonzero(~kept))
     row, low, high, cut = row[kept], low[kept], high[kept], order[kept]
     place = np.arange(len(row))
     ends = np.searchsorted(row, row, side="right") - 1
-    after = np.where(place == ends, np.searchsorted(row, row, side="left"), place + 1)
+    begins = np.searchsorted(row, row, side="left")
+    after = np.where(place == ends, begins, place + 1)
+    # What is thin is one breakpoint with the next, around the cycle too: designs move it if they move either.
+    behind = np.where(behind > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), behind)
+    moves = (breaks.code[cut[behind]] == FIXED) & (breaks.code[thin] != FIXED)
+    cut[behind[moves]] = thin[moves]
     return Segments(row, low, high, cut, after)
 
 

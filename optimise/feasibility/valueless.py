@@ -27,7 +27,8 @@ def valueless(part: Problem, designs: Array) -> str:
         if np.isfinite(of.evaluate(part.mechanism, designs).values).any():
             continue
         remedy = "correct the formula, or change the ranges" if isinstance(of, FormulaQuantity) else "change the ranges"
-        return f"{of.title} has no value for any of {counted(len(designs), 'design')} of the ranges; {remedy}"
+        why = f": {of.blank}" if of.blank else ""
+        return f"{of.title} has no value for any of {counted(len(designs), 'design')} of the ranges{why}; {remedy}"
     return ""
 
 

@@ -6,9 +6,13 @@ import inspect
 from collections.abc import Collection, Iterable
 from typing import Annotated, Any
 
-from fastapi import Depends, Query
+from fastapi import Depends, Query, Request
 
+from ...model.errors import InputError
+from ...objectives.units import closest, shown
 from ..questions.inputs import Input
+
+_REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
 
 
 def parameter_of(one: Input, before: str = "") -> inspect.Parameter:
@@ -35,11 +39,21 @@ def _limits(one: Input) -> dict[str, Any]:
 
 
 def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Parameter]) -> Any:
-    """Return the dependency that gives inputs of an address by name, as text with their units."""
+    """Return the dependency that gives inputs of an address by name, as text with their units.
 
-    def named(**given: float | str | None) -> dict[str, str]:
+    It raises `InputError` for a word in the query that is neither one of them nor `units`.
+    """
+    parameters = list(parameters)
+    known = [*(one.name for one in parameters), "units"]
+
+    def named(request: Request, **given: float | str | None) -> dict[str, str]:
+        for word in request.query_params:
+            if word not in known:
+                near = closest(word, known)
+                remedy = f"did you mean {near}?" if near else f"leave {shown(word)} out"
+                raise InputError(f"this query takes {', '.join(known)}; got {shown(word)}; {remedy}")
         typed = ((one, given[one.key]) for one in inputs)
         return {one.name: one.typed(value) for one, value in typed if value is not None}
 
-    named.__signature__ = inspect.Signature(list(parameters))  # type: ignore[attr-defined]
+    named.__signature__ = inspect.Signature([_REQUEST, *parameters])  # type: ignore[attr-defined]
     return Depends(named)

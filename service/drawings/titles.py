@@ -11,8 +11,8 @@ from .shapes import Drawing, Label, Layer, Shape
 TEXT = 0.022
 """Height of dimensions, of the drawing's size."""
 TRUE_SCALE: dict[System, str] = {
-    "metric": "True scale in millimetres",
-    "inch": "Dimensions in inches, the drawing at true scale",
+    "metric": "Dimensions in millimetres",
+    "inch": "Dimensions in inches",
 }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
@@ -80,7 +80,8 @@ class Input:
                 given = given.strip().casefold().replace("-", " ").replace("_", " ")
             require_word(word, given, self.words)
             return given
-        value = value_of(word, given, self.kind, sign=self.sign)
+        kind = replace(self.kind, example=self.usual or self.example or self.kind.example)
+        value = value_of(word, given, kind, sign=self.sign)
         if self.below is not None and value >= self.below:
             limit = f"{self.unit.factor * self.below:g} {self.unit.symbol}".rstrip()
             raise InputError(f"{word} must be less than {limit}; got {shown(given)}; write it like {self.usual}")

@@ -22,7 +22,7 @@ typst = required("typst", "reports as PDF need")
 
 _TEMPLATE = Path(__file__).parent / "page" / "report.typ"
 _FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-"""Those of the figures. No font of the machine is used, so that pages are the same everywhere."""
+"""Those of the figures, so that pages are the same everywhere; others serve letters that these lack."""
 _ACROSS = 6.77  # inches
 _SHARP = 220  # dots an inch of what is drawn as points
 _UNITS = sorted({unit_text(face.symbol) for of in SHOWN for face in (of.metric, of.inch) if face}, key=len)[::-1]
@@ -44,7 +44,7 @@ def pdf_file(report: Report) -> bytes:
         told = {"title": report.title, "subtitle": report.subtitle, "made": report.made}
         content = told | {"signatures": report.signatures, "sections": sections}
         (folder / "report.json").write_text(json.dumps(content), encoding="utf-8")
-        found = typst.compile(folder / _TEMPLATE.name, font_paths=[_FONTS], ignore_system_fonts=True)
+        found = typst.compile(folder / _TEMPLATE.name, font_paths=[_FONTS])
     return bytes(found)
 
 

@@ -353,3 +353,23 @@ def test_every_table_of_a_job_may_step(table: dict[str, Any]) -> None:
     peak = find_peaks(machine, Signal.TORQUE, np.array([[0.04, 0.15, 0.0]]), kept=1, gradients=True)
     assert np.isfinite(peak.values).all()
     assert np.isfinite(np.asarray(peak.gradients)).all()
+
+
+@pytest.mark.parametrize("kind", [AngleTable, CrankTable])
+def test_a_table_of_two_turns_with_all_points_in_one_of_them(kind: Any) -> None:
+    chance = np.random.default_rng(37)
+    for _ in range(200):
+        begin = chance.choice([0.0, TURN]) + chance.uniform(-0.2, 2.0)
+        angles = begin + np.sort(chance.uniform(0.0, TURN - 2.2, chance.integers(2, 6)))
+        values = np.round(chance.uniform(-100.0, 100.0, len(angles)), 3)
+        names = {"forces": tuple(values)}
+        table = kind(angles=tuple(angles), cycle="720 deg", **names)
+        for turn in (1, 2):
+            at, forces = table.on_turn(turn).knots()
+            where = np.linspace(0.0, TURN, 97)
+            expected = np.interp(
+                np.mod(where + TURN * (turn - 1) - angles[0], 2.0 * TURN),
+                [*(angles - angles[0]), 2.0 * TURN],
+                [*values, values[0]],
+            )
+            np.testing.assert_allclose(np.interp(where, at, forces), expected, rtol=0, atol=1e-6)

@@ -13,8 +13,9 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.slider_distances import DeadCentre, SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.objectives.dead_centre import DWELL_ANGLE, TOUCH_SPEED
+from slidercrank.objectives.dead_centre import DWELL_ANGLE, TOUCH_SPEED, before_dead_centre
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.solve import solve
 from tests.model.cases import Array, linkage_of, random_designs
 
 DESIGNS = random_designs(40, seed=3, least_margin=1e-3)
@@ -100,3 +101,44 @@ def test_a_job_gives_the_distances_with_its_slider() -> None:
     assert machine.slider == SliderDistances(dead_centre="inner", touch=0.012, dwell=0.0005)
     with pytest.raises(JobError, match=r"mechanism\.slider\.touch_distance: .* positive"):
         parse_job(JOB | {"mechanism": {"speed": "60 rpm", "slider": {"mass": "80 kg", "touch_distance": "-1 mm"}}})
+
+
+@pytest.mark.parametrize("branch", ["open", "crossed"])
+@pytest.mark.parametrize("speed", [5.0, -5.0])
+@pytest.mark.parametrize("dead_centre", ["outer", "inner"])
+@pytest.mark.parametrize("share", [1e-12, 1e-9, 1e-5, 1e-2, 0.5, 0.99])
+def test_angle_and_travel_before_a_dead_centre_at_any_distance(
+    share: float, dead_centre: DeadCentre, speed: float, branch: Branch
+) -> None:
+    """By the motion from the angle that was found, with the most digits that numpy has."""
+    slider, big = SliderDistances(dead_centre=dead_centre, touch=1.0), np.longdouble
+    for crank, rod, offset in DESIGNS.tolist():
+        design = np.array([crank, rod, offset])
+        linkage = linkage_of(design, branch)
+        distance = share * float(linkage.stroke)
+        machine = Mechanism(speed=speed, branch=branch, slider=slider)
+        (angle,), (travel,) = before_dead_centre(machine, design, np.array([distance]))
+        r, l, e = map(big, (crank, rod, offset))
+        outer, sign = dead_centre == "outer", big(machine.sign)
+        dead = np.sqrt((l + r) ** 2 - e * e) if outer else np.sqrt((l - r) ** 2 - e * e)
+        along = np.arctan2(e, dead) + (0.0 if outer else big(np.pi))  # of the crank at the dead centre, open branch
+        at = along - sign * big(machine.direction) * big(angle)
+        sine = (e - r * np.sin(at)) / l
+        x = r * np.cos(at) + l * np.sqrt(1.0 - sine * sine)
+        rounding = 1e-17 * (crank + rod) / distance
+        assert float(abs(dead - x)) == pytest.approx(distance, rel=max(1e-8, rounding))
+        slope = -r * np.sin(at) + l * sine * r * np.cos(at) / (l * np.sqrt(1.0 - sine * sine))
+        assert travel == pytest.approx(float(abs(slope)), rel=1e-7)
+
+
+def test_a_distance_that_no_stroke_reaches_is_named_where_no_design_has_a_value() -> None:
+    job = {
+        "name": "far",
+        "mechanism": {"speed": "60 rpm", "slider": {"mass": "1 kg", "touch_distance": "9 m"}},
+        "variables": {"crank": ["20 mm", "60 mm"], "rod": ["100 mm", "400 mm"], "offset": ["0 mm", "50 mm"]},
+        "objectives": {"touch_speed": "minimise"},
+    }
+    found = solve(parse_job(job))
+    assert not len(found.dimensions)
+    assert "touch speed has no value" in found.message
+    assert "its stroke is not longer than the distance from the dead centre; change the ranges" in found.message

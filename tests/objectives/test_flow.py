@@ -149,3 +149,21 @@ def test_ripple_needs_a_pump_of_a_liquid() -> None:
     assert FLOW_RIPPLE.evaluate(mixed, DESIGNS).values == pytest.approx(
         FLOW_RIPPLE.evaluate(Mechanism(loads=(PUMP,)), DESIGNS).values, rel=1e-14
     )
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-16, -1e-15, 1e-12])
+def test_without_offset_a_tip_at_angle_zero_moves_with_it(offset: float) -> None:
+    """A dead centre lies where the cycle begins there, and is no fixed place for that."""
+    chance, step = np.random.default_rng(37), 1e-6
+    for _ in range(30):
+        phases = tuple(np.sort(chance.uniform(0.0, TURN, chance.integers(2, 6))).tolist())
+        machine = Mechanism(speed=10.0, arrangement=Arrangement(phases=(0.0, *phases[1:])), loads=(PUMP,))
+        design = np.array([0.04, chance.uniform(0.15, 0.3), offset])
+        found = FLOW_RIPPLE.evaluate(machine, design[None], gradients=True).gradients
+        assert found is not None
+        beside = design + step * np.array([[0.0, 0.0, side] for side in (-1.0, 0.0, 1.0)])
+        low, here, high = FLOW_RIPPLE.evaluate(machine, beside).values
+        below, above = (here - low) / step, (high - here) / step
+        if abs(above - below) > 1e-3 * max(1.0, abs(above)):
+            continue  # a kink: two tips are equally high
+        assert found[0, 2] == pytest.approx(0.5 * (below + above), rel=1e-4, abs=1e-4)

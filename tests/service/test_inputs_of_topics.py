@@ -70,6 +70,23 @@ def test_a_topic_that_the_machine_lacks_is_refused_with_its_input_too(client: ht
     assert "the topic motor is asked with nothing else; got limit; leave limit out" in answer.text
 
 
+@pytest.mark.parametrize(
+    ("path", "given", "sentence"),
+    [
+        ("topics/press", {"touch_distance": 12.0}, 'got "touch_distance"; did you mean touch_distance_mm?'),
+        ("topics/motor", {"foo": 1.0}, 'got "foo"; leave "foo" out'),
+        ("inverse", {"slider_position": 200.0, "slider_position_mm": 200.0}, "did you mean slider_position_mm?"),
+        ("swing", {"start_degree": 3.0}, "did you mean start_deg?"),
+    ],
+)
+def test_a_word_that_no_query_takes_is_refused(
+    client: httpx.Client, solved: Solved, path: str, given: dict[str, float], sentence: str
+) -> None:
+    answer = client.get(f"{solved.path}/designs/2/{path}", params=given)
+    assert answer.status_code == 422
+    assert sentence in answer.json()["detail"]
+
+
 def test_the_list_of_topics_has_what_each_is_asked_with(client: httpx.Client) -> None:
     listed = {one["name"]: one["inputs"] for one in client.get(f"{API}/topics").json()["topics"]}
     assert listed["motor"] == []
@@ -89,6 +106,7 @@ LIMIT = Input("limit", LENGTH, "Limit", "A limit.", "2 mm", sign="positive", bel
         (True, "limit must be a length; got true"),
         ([1.0], "limit must be a length"),
         ("3 m", 'limit must be less than 1000 mm; got "3 m"; write it like 2 mm'),
+        ("0 mm", 'limit must be positive; got "0 mm"; write it like "2 mm"'),
     ],
 )
 def test_a_value_that_is_none_is_refused_in_a_sentence(given: object, sentence: str) -> None:

@@ -117,8 +117,8 @@ class AngleTable(Load):
             at, forces = at[:-1], forces[:-1]
         else:  # both sides of the step at the seam, exactly at one angle
             at, forces = np.r_[at[0], at[:-1]], np.r_[forces[-1], forces[:-1]]
-        at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1)])
-        forces = np.tile(forces, 3)
+        at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1, 2)])  # also where one turn has no knot
+        forces = np.tile(forces, 4)
         inside = (at > _ROUNDING) & (at < _TURN - _ROUNDING)
         low, high = (int(np.searchsorted(at, end)) for end in (_ROUNDING, _TURN - _ROUNDING))
         first = forces[low - 1] if at[low - 1] >= -_ROUNDING else np.interp(0.0, at, forces)

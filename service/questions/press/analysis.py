@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.dead_centre import DWELL_ANGLE
+from ....objectives.dead_centre import DWELL_ANGLE, before_dead_centre
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.sheets import Line, Panel, Sheet
@@ -95,21 +95,8 @@ def _before(
     mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it."""
-    outer = mechanism.slider.dead_centre == "outer"
-    inner_x, outer_x = (float(at.slider_position) for at in map(linkage.at, linkage.dead_centre_angles))
-    _require_stroke(distances[-1], abs(outer_x - inner_x))
-    dead, other = (outer_x, inner_x) if outer else (inner_x, outer_x)
-    end = float(linkage.dead_centre_angles[int(outer)])
-    # Strokes are named as for a crank that turns counter-clockwise.
-    stroke = "outward" if outer == (mechanism.direction > 0.0) else "inward"
-    angles = np.array(
-        [
-            next(found.crank_angle for found in linkage.from_slider(at) if found.stroke in (stroke, None))
-            for at in dead + math.copysign(1.0, other - dead) * distances
-        ]
-    )
-    before = np.mod(mechanism.direction * (end - angles), 2.0 * math.pi)
-    return before, np.abs(linkage.at(angles, speed=1.0).slider_velocity)
+    _require_stroke(distances[-1], float(linkage.stroke))
+    return before_dead_centre(mechanism, row_of(linkage)[0], distances)
 
 
 def _dwell(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:
@@ -171,7 +158,7 @@ def figure(
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
     speed = _speed(mechanism)
     if speed:
-        speeds = Line("", distances, speed * travels)
+        speeds = Line("", distances[shown], (speed * travels)[shown])
         panels.append(Panel("slider speed", _CAPTION, (speeds,), SPEED, LENGTH))
     subtitle = f"before the {mechanism.slider.dead_centre} dead centre, static, without friction"
     return Sheet("Press", subtitle, tuple(panels), width=6.4, height=2.6)

@@ -71,7 +71,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the numbers for people."""
     remarks = {
         "flow_L_min": "mean over a turn; gas counts at suction pressure",
-        "flow_ripple": "greatest less least flow over the mean",
+        "flow_ripple": "greatest less least flow of the liquid over its mean",
         "mean_torque_Nm": "of the pressures alone",
         "peak_torque_Nm": "of the pressures alone",
     }
@@ -88,7 +88,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     if _is_even(mechanism):
         each = _flows(shaft, linkage, theta)
         single = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(each) if len(each) > 1]
-        panels.append(over_turn("flow", *single, Line("together", degrees, np.sum(each, axis=0)), kind=VOLUME_FLOW))
+        together = Line("together", degrees, np.sum(each, axis=0))
+        panels.append(over_turn("flow of the liquid", *single, together, kind=VOLUME_FLOW))
     torque = whole_curves(alone, linkage, theta).torque
     panels.append(over_turn("torque of the pressures", Line("", degrees, torque), kind=TORQUE))
     return Sheet("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)
