@@ -10,8 +10,6 @@ from typing import Annotated, Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field, create_model
 
-from ...model.linkage.linkage import Linkage
-from ...model.machine.mechanism import Mechanism
 from ..designs.measured_file import read_measured
 from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
@@ -32,14 +30,9 @@ router = APIRouter(
 
 
 def _add(name: str, says: Command) -> None:
-    """Add the endpoint of a question that is a command. Its example is computed once the API is described."""
+    """Add the endpoint of a question that is a command."""
     question = QUESTIONS[name]
-
-    def exemplify(schema: dict[str, Any]) -> None:
-        given = {one.name: one.example for one in question.inputs if one.name in says.example}
-        schema["examples"] = [says.sized or question.answer(Mechanism(), Linkage(0.06, 0.23, 0.07), None, given)]
-
-    answer: Any = (dict[str, Any], Field(json_schema_extra=exemplify))
+    answer: Any = (dict[str, Any], Field(examples=[dict(says.part)]))
     told = f"What `slidercrank {says.called or name} --json` prints of a design of a front."
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **{name: answer})
 
@@ -55,7 +48,7 @@ def _add(name: str, says: Command) -> None:
         f"/{name}",
         endpoint,
         response_model=model,
-        route_class_override=QuickRoute if says.sized is None else LongRoute,
+        route_class_override=LongRoute if says.sizes else QuickRoute,
     )
 
 

@@ -31,18 +31,19 @@ class Command:
     help on JOB, and on what holds without. example: inputs of the example. curves: what the command can write and draw,
     by functions `curves` and `figure` that take what `numbers` takes and `units`.
 
-    sized: a part of an answer, as an example, if the question sizes a part of a machine that turns: it needs a job,
-    libraries that are not always there, and seconds. called: name of such a command, if it is not the question's.
-    figure: name of the file that it draws by a function `figure`, and what that shows.
+    part: of the answer to the example, metric. sizes: whether the question sizes a part of a machine that turns: it
+    needs a job, libraries that are not always there, and seconds. called: name of such a command, if it is not the
+    question's. figure: name of the file that it draws by a function `figure`, and what that shows.
     """
 
     help: str
     endpoint: str
     job: str
+    part: Mapping[str, Any]
     alone: str = ""
     example: tuple[str, ...] = ()
     curves: str = ""
-    sized: Mapping[str, Any] | None = None
+    sizes: bool = False
     called: str = ""
     figure: tuple[str, str] | None = None
 
@@ -93,7 +94,7 @@ class Question:
             require_turning(swing, f"the topic {self.name}")
             return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words))
         of: dict[str, object] = {"swing": swing}
-        if self.command.sized is not None:
+        if self.command.sizes:
             require_turning(swing, self.command.called or self.name)
             of = {"problem": problem}
         return self.of(mechanism, linkage, {**of, "words": words, **read_inputs(self.inputs, inputs, self.name, words)})

@@ -43,9 +43,9 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
             front_section(subject),
             design_section(subject),
             *([] if swing is None else [swing.section()]),
-            sensitivity_section(subject),
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
+            sensitivity_section(subject),
             numbers_section(subject),
         ),
     )

@@ -16,15 +16,16 @@ from ..render.numerals import length, rounded
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 
+_MOST = 24
+"""Quantities in the figure of a page."""
+
 
 def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
     design = subject.design
     rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
-    return Section(
-        "Sensitivity",
-        (Picture("Change of quantities with the dimensions", partial(tornado_figure, rows, subject.system)),),
-    )
+    draw = partial(tornado_figure, rows, subject.system, width=7.4, most=_MOST)
+    return Section("Sensitivity", (Picture("Change of quantities with the dimensions", draw),))
 
 
 def tolerance_section(subject: Subject) -> Section | None:

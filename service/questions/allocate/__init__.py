@@ -32,7 +32,8 @@ QUESTION = Question(
     tolerance, and takes its part of the limit; so do the clearances.""",
         endpoint="allocate_tolerances",
         job="A job file with [costs].",
-        sized={"kind": "worst case", "limit_mm": 0.3, "cost": 25.52, "error_mm": 0.3, "converged": True},
+        sizes=True,
+        part={"kind": "worst case", "limit_mm": 0.3, "cost": 25.52, "error_mm": 0.3, "converged": True},
         figure=("allocation", "error and costs"),
     ),
 )

@@ -38,7 +38,8 @@ QUESTION = Question(
     Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.""",
         endpoint="balance_by_counterweight",
         job="A job file: speed and masses come from it.",
-        sized={
+        sizes=True,
+        part={
             "measure": "peak",
             "counterweight_moment_kg_m": 0.1468,
             "counterweight_angle_deg": 165.2,

@@ -13,7 +13,8 @@ QUESTION = Question(
     need not be repeated.""",
         endpoint="size_sections",
         job="A job file with a table [sections].",
-        sized={
+        sizes=True,
+        part={
             "crank_width_mm": 20.72,
             "crank_depth_mm": 3.0,
             "rod_width_mm": 12.95,

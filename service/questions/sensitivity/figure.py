@@ -40,26 +40,29 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
     return rows.loc[most.index].reset_index(drop=True)
 
 
-def tornado_figure(rows: pd.DataFrame, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: a panel for each dimension, a bar for each quantity."""
+def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: float = 10.6, most: int = 1000) -> Figure:
+    """Return the figure in a system of units: a panel for each dimension, a bar for each quantity.
+
+    width: inches. most: quantities that are drawn, of those that change the most.
+    """
+    left_out, rows = len(rows) - most, rows.head(most)
     step, millimetres = _STEPS[system]
     if rows.attrs.get("offset per mm", False):
         rows = rows.assign(**{name: millimetres * rows[name] for name in ("offset_percent", "offset_percent_below")})
     count = max(1, len(rows))
     height = 1.55 + 0.24 * count
-    figure = new_figure(10.6, height)
-    note = (
-        "change in % for 1 % more of each dimension (of the offset: of its size); bars to the right grow with it; "
-        "at a kink the derivatives below and above"
-    )
+    figure = new_figure(width, height)
+    note = "change in % for 1 % more of each dimension (of the offset: of its size); "
+    note += f"{left_out} others change less" if left_out > 0 else "at a kink the derivatives below and above"
     heading(figure, "Sensitivity", note)
+    each = (width - 2.56) / len(DIMENSIONS)
     columns = [f"{name}_percent" for name in DIMENSIONS]
     both = [*columns, *(f"{column}_below" for column in columns)]
     reach = 1.5 * float(np.nanmax(np.abs(rows[both].to_numpy()))) if len(rows) else 1.0
     reach = reach or 1.0
     places = np.arange(count)[::-1]
     for n, (name, column) in enumerate(zip(DIMENSIONS, columns, strict=True)):
-        panel = place(figure, 2.55 + 2.68 * n, 0.55, 2.5, height - 1.5)
+        panel = place(figure, 2.55 + each * n, 0.55, each - 0.18, height - 1.5)
         dress(panel)
         panel.grid(False, axis="y")
         panel.set_xlim(-reach, reach)

@@ -120,7 +120,7 @@ def test_functions_of_a_job_run_only_if_the_operator_allows_them(serve: Serve) -
     assert "only functions that the operator allows" in refused(serve().post("/jobs", json=asking("os:remove")), 422)
     permitting = serve(allowed_quantities=frozenset({allowed}))
     sentence = refused(permitting.post("/jobs", json=asking("os:remove")), 422)
-    assert f'got "os:remove"; choose from {allowed}, have it allowed (serve or worker with --allow-' in sentence
+    assert f'got "os:remove"; choose from {allowed}, have it allowed (serve, worker or mcp with --allow-' in sentence
     assert permitting.post("/jobs", json=asking(allowed)).status_code == 201
 
 
