@@ -6,7 +6,7 @@ from typing import Annotated
 
 from ...model.machine.strength import Criterion, Material, Strength
 from ...objectives.kinds import PRESSURE
-from ..sizing.section_limits import SectionLimits
+from ..problem.section_limits import SectionLimits
 from .values import (
     Checked,
     Density,

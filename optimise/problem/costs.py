@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.tolerance.sources import limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,3 +80,11 @@ class Costs:
 
 NAMES = (*DIMENSIONS, "crank_angle")
 """Sources whose tolerance can be chosen, in the order of `model.tolerance.sources.SOURCES`."""
+
+
+def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
+    """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
+    reach = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
+    if not all(reach[name] > 0.0 for name in costs.given):
+        return None
+    return {name: cost.of(float(reach[name])) for name, cost in costs.given.items()}

@@ -32,12 +32,12 @@ from ...objectives.tables.swinging import (
     swing_quantities,
     why_not,
 )
-from ..sizing.section_limits import SectionLimits
 from .costs import Costs
 from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
 from .questions import question_named
 from .requirements import Constraint, Objective, Range, Word, merged
+from .section_limits import SectionLimits
 from .table_columns import choice_field, least_amount_field, least_field, note_field, require_own_columns
 
 if TYPE_CHECKING:

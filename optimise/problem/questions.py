@@ -17,7 +17,6 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
-    from .problem import Problem
 
 GROUP = "slidercrank.questions"
 
@@ -26,11 +25,11 @@ class Question(Protocol):
     """What a design can be asked."""
 
     def answer(
-        self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
+        self, mechanism: Mechanism, linkage: Linkage, problem: Any, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
         """Return the answer as JSON has it, in metric units that its keys end with.
 
-        mechanism, linkage: of the design, which need not turn fully. problem: that it answers, if any.
+        mechanism, linkage: of the design, which need not turn fully. problem: the `Problem` that it answers, if any.
         inputs: by name, in SI or as text with a unit; None for usual ones. Raises `InputError` for what the
         design does not have, and for inputs that the question does not take.
         """

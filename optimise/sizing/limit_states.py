@@ -49,7 +49,7 @@ from typing import Any
 
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.strength import Material
-from .section_limits import SectionLimits
+from ..problem.section_limits import SectionLimits
 from .section_loads import JointLoads, Range, Whip
 
 AMPLIFICATION = "amplification"

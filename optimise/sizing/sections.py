@@ -28,8 +28,8 @@ from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import require_plain
 from ...model.machine.strength import Material
+from ..problem.section_limits import SectionLimits
 from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_states, rod_loads, same
-from .section_limits import SectionLimits
 from .section_loads import Whip, joint_loads, whip_of
 
 _ITERATIONS = 60

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 from fastapi import Depends, Query, Request
 
 from ...model.errors import InputError
-from ...objectives.units import closest, shown
 from ..questions.inputs import Input
 
 _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
@@ -41,17 +40,13 @@ def _limits(one: Input) -> dict[str, Any]:
 def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Parameter]) -> Any:
     """Return the dependency that gives inputs of an address by name, as text with their units.
 
-    It raises `InputError` for a word in the query that is neither one of them nor `units`.
+    It raises `InputError` for one of them without its unit, which else would be lost.
     """
-    parameters = list(parameters)
-    known = [*(one.name for one in parameters), "units"]
 
     def named(request: Request, **given: float | str | None) -> dict[str, str]:
-        for word in request.query_params:
-            if word not in known:
-                near = closest(word, known)
-                remedy = f"did you mean {near}?" if near else f"leave {shown(word)} out"
-                raise InputError(f"this query takes {', '.join(known)}; got {shown(word)}; {remedy}")
+        for one in inputs:
+            if one.name != one.key and one.name in request.query_params:
+                raise InputError(f"{one.name} has its unit in its name here; got {one.name}; call it {one.key}")
         typed = ((one, given[one.key]) for one in inputs)
         return {one.name: one.typed(value) for one, value in typed if value is not None}
 

@@ -13,9 +13,8 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
-from ....model.tolerance.sources import limits
 from ....objectives.kinds import ANGLE, LENGTH, face
-from ....optimise.problem.costs import NAMES, Costs
+from ....optimise.problem.costs import Costs, costs_before
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
 from ....optimise.sizing.words import Kind
@@ -109,14 +108,6 @@ def figure(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Cos
     from .figure import allocation_curves, allocation_figure
 
     return allocation_figure(allocation_curves(found, linkage, costs, before), units)
-
-
-def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
-    """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
-    reach = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
-    if not all(reach[name] > 0.0 for name in costs.given):
-        return None
-    return {name: cost.of(float(reach[name])) for name, cost in costs.given.items()}
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:

@@ -14,11 +14,10 @@ from ....model.machine.mechanism import Mechanism
 from ....model.tolerance.first_order import FirstOrder, first_order
 from ....model.tolerance.sources import SOURCES, counted_angles
 from ....objectives.kinds import LENGTH, System
-from ....optimise.problem.costs import Costs
+from ....optimise.problem.costs import Costs, costs_before
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
 from ...render.numerals import shown, with_unit
-from .analysis import costs_before
 
 Array = NDArray[np.float64]
 

@@ -43,8 +43,8 @@ QUESTION = Question(
             "slider_position_mm": 240.0,
             "slider_velocity_m_s": -1.0,
             "solutions": [
-                {"crank_angle_deg": 312.364, "stroke": "outward", "crank_speed_rpm": -141.481},
-                {"crank_angle_deg": 80.1563, "stroke": "inward", "crank_speed_rpm": 162.872},
+                {"crank_angle_deg": 312.364, "crank_speed_rpm": -141.481},
+                {"crank_angle_deg": 80.1563, "crank_speed_rpm": 162.872},
             ],
         },
     ),

@@ -22,8 +22,8 @@ from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.strength import Material
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
+from slidercrank.optimise.problem.section_limits import SectionLimits
 from slidercrank.optimise.sizing.limit_states import joint_terms, rod_loads
-from slidercrank.optimise.sizing.section_limits import SectionLimits
 from slidercrank.optimise.sizing.section_loads import joint_loads, whip_of
 from slidercrank.optimise.sizing.sections import Sections, size_sections
 
