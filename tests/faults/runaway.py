@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import signal
@@ -182,12 +183,12 @@ def _latest(folder: Path, before: set[Path]) -> Path:
 
 def _is_open(file: Path) -> bool:
     """Whether a process has a file open."""
-    for link in Path("/proc").glob("[0-9]*/fd/*"):
-        try:
-            if link.readlink() == file:
-                return True
-        except OSError:  # it has just been closed
-            continue
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it has just ended
+            for link in (process / "fd").iterdir():
+                with contextlib.suppress(OSError):  # it has just been closed
+                    if link.readlink() == file:
+                        return True
     return False
 
 

@@ -26,7 +26,8 @@ class Stopwatch:
 def _waits(process: int) -> dict[str, float]:
     """Return how long each thread of a process has waited for a processor since it began, s."""
     found = {}
-    for schedule in Path("/proc").glob(f"{process}/task/*/schedstat"):
-        with contextlib.suppress(OSError):  # it has just ended
-            found[schedule.parent.name] = int(schedule.read_text().split()[1]) * 1e-9
+    with contextlib.suppress(OSError):  # it has just ended
+        for thread in Path(f"/proc/{process}/task").iterdir():
+            with contextlib.suppress(OSError):
+                found[thread.name] = int((thread / "schedstat").read_text().split()[1]) * 1e-9
     return found
