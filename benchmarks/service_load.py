@@ -95,11 +95,13 @@ async def reads(
         end = time.monotonic() + seconds
         async with _client(url) as client:
             while time.monotonic() < end:
-                design = chance.randint(1, 20)
+                design = chance.randint(1, designs)
                 answer = await client.get(chance.choice(_COMPUTED).format(done=done, design=design))
                 if answer.status_code != 200:
                     errors[f"{answer.request.url.path}: {answer.status_code}"] += 1
 
+    async with _client(url) as client:
+        designs = len((await client.get(f"jobs/{done}/designs?limit=20")).json()["designs"])
     await asyncio.gather(*(read(number) for number in range(clients)), *(ask(number) for number in range(asking)))
     return times, errors
 
