@@ -21,7 +21,7 @@ _BAR = face("bar", 1e-5)  # of suction and discharge, beside the unit of other p
 _FACES.append(_BAR)
 _CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
-_TO_INCH[_BAR.suffix] = next((kind.inch.suffix, kind.inch.factor / _BAR.factor) for kind in [PRESSURE] if kind.inch)
+_TO_INCH[_BAR.suffix] = PRESSURE.face("inch").suffix, PRESSURE.face("inch").factor / _BAR.factor
 
 
 def split_unit(key: str) -> tuple[str, str, float]:

@@ -119,10 +119,12 @@ def keep(file: Path, found: MachineCode) -> bool:
     """Keep machine code, and of earlier ones the last few; whether it is kept. Where there is no room, say so."""
     head = found._asdict() | {"code": None, "sha256": sha256(found.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
+    kept = False
     with contextlib.suppress(OSError):
         try:
             unfinished.write_bytes(json.dumps(head).encode() + b"\n" + found.code)
             unfinished.replace(file)
+            kept = True
         except OSError as error:
             _tell_unkept(file.parent, error.strerror or str(error))
         finally:
@@ -130,7 +132,7 @@ def keep(file: Path, found: MachineCode) -> bool:
         earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda other: other.stat().st_mtime)
         for other in earlier[:-_STATES]:
             other.unlink(missing_ok=True)
-    return read(file) is not None
+    return kept
 
 
 @cache

@@ -29,7 +29,7 @@ from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.render.blocks import Table, Text, Unit, Value, column, heading, words
 from slidercrank.service.render.formatting import PlainBlock, format_text, format_value, plain_blocks
 from slidercrank.service.render.numerals import shown
-from tests.service import fronts
+from tests.service import fronts, sized
 from tests.service.conftest import Command
 
 LBF_IN = 4.4482216152605 * 0.0254
@@ -231,43 +231,6 @@ def test_the_command_line_tells_a_topic_in_the_units_that_are_asked_for(tmp_path
     assert re.search(r"peak torque +[\d.]+ +N m +at ", command(*given).stdout)
 
 
-SIZING = """
-name = "Press"
-[mechanism]
-speed = "120 rpm"
-crank = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
-rod = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }
-slider = { mass = "3 kg" }
-[[load]]
-force = "2 kN"
-opposes = "outward stroke"
-[tolerances]
-crank = "0.05 mm"
-rod = "0.1 mm"
-crank_angle = "0.1 deg"
-[costs]
-crank = { cost = 8.0, at = "0.05 mm" }
-rod = { cost = 6.0, at = "0.1 mm", max = "0.04 mm" }
-crank_angle = { cost = 5.0, at = "0.1 deg" }
-[variables]
-crank = "50 mm"
-rod = ["100 mm", "400 mm"]
-offset = "10 mm"
-[objectives]
-peak_torque = "minimise"
-[sections]
-pins = { crank_pivot = "15 mm", crank_pin = "12 mm", slider_pin = "10 mm" }
-static_safety = 2.5
-[sections.material]
-density = "7850 kg/m^3"
-elasticity = "207 GPa"
-yield_strength = "350 MPa"
-ultimate_strength = "520 MPa"
-endurance = "150 MPa"
-bearing_pressure = "20 MPa"
-"""
-
-
 @pytest.mark.parametrize(
     "asked",
     [
@@ -282,13 +245,14 @@ bearing_pressure = "20 MPa"
 def test_what_sizes_one_design_says_in_inches_the_metric_numbers(
     asked: tuple[str, ...], command: Command, tmp_path: Path
 ) -> None:
-    job = tmp_path / "press.toml"
-    job.write_text(SIZING)
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps(sized.TABLES))
     name, *options = asked
+    lengths = ("--crank", "60 mm", "--rod", "230 mm", "--offset", "70 mm")
     figures = () if name == "sections" else ("--figures", tmp_path / "figures")
 
     def said(*more: object) -> str:
-        done = command(name, job, "--rod", "200 mm", *options, *more)
+        done = command(name, job, *lengths, *options, *more)
         assert done.exit_code == 0, done.output
         return done.stdout
 
