@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from typer.testing import CliRunner
 
+from docs.site import hooks
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job, with_files
@@ -59,7 +60,8 @@ def test_relative_links_of_the_pages_lead_to_files(pages: dict[Path, str]) -> No
             path = target.partition("#")[0]
             if path and "://" not in target:
                 found += 1
-                broken += [] if (file.parent / path).exists() else [f"{file.name}: {target}"]
+                generated = file.parent.name == "docs" and path in hooks.pages()
+                broken += [] if generated or (file.parent / path).exists() else [f"{file.name}: {target}"]
     assert found > 40
     assert broken == []
 
