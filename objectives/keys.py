@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from .kinds import PRESSURE, RATIO, SHOWN, Face, Kind, System, face, kind_in
 
@@ -21,6 +22,7 @@ _BAR = face("bar", 1e-5)  # of suction and discharge, beside the unit of other p
 _FACES.append(_BAR)
 _CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
+_KINDS[_BAR.suffix] = replace(PRESSURE, metric=_BAR)
 _TO_INCH[_BAR.suffix] = PRESSURE.face("inch").suffix, PRESSURE.face("inch").factor / _BAR.factor
 
 

@@ -24,6 +24,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
+from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
 from .answer import Answer
@@ -144,8 +145,19 @@ class ParetoFront:
         """Return the machine of a design: with the choices and the varying numbers that it has."""
         return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
 
-    def ask(self, question: str, row: int, /, **inputs: object) -> dict[str, Any]:
-        """Return the answer of a design to a question, as `Problem.ask` does: `front.ask("press", front.knee())`."""
+    def ask(self, question: str, row: int | None = None, /, **inputs: object) -> dict[str, Any]:
+        """Return the answer of the front to a question, or of the design in a row, as `Problem.ask` gives it.
+
+        "certify" and "wish" are asked of a front, as the commands are: `front.ask("certify", epsilon=0.02)`,
+        `front.ask("wish", at={"peak_torque": "110 N m"})`, with a row that "improve" and "keep" speak of; all others of
+        a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question, row or input, and
+        for what the front does not have.
+        """
+        if subject_of(question) == "front":
+            answer: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
+            return answer
+        if row is None:
+            raise InputError(f"the question {question} is of one design; got none; name the row of one of the front")
         return self.part(row).ask(question, self.dimensions[row], **inputs)
 
     @property

@@ -35,7 +35,7 @@ from ...objectives.tables.swinging import (
 from .costs import Costs
 from .design_analysis import Analysis, analysed, one_design
 from .discrete import Discrete, require_known
-from .questions import question_named
+from .questions import question_to
 from .requirements import Constraint, Objective, Range, Word, merged
 from .section_limits import SectionLimits
 from .table_columns import choice_field, least_amount_field, least_field, note_field, require_own_columns
@@ -309,7 +309,8 @@ class Problem:
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        return question_named(question).answer(machine, linkage, self, inputs)
+        answer: dict[str, Any] = question_to("design", question).answer(machine, linkage, self, inputs)
+        return answer
 
     def swing(
         self,

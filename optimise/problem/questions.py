@@ -1,4 +1,4 @@
-"""Questions that one design is asked by their names; installed packages announce them, this one for `service`.
+"""Questions, asked by their names; installed packages announce them, this one for `service`.
 
 What interfaces ask stands above the problem, which therefore cannot import it. The entry points of the group
 `slidercrank.questions` invert that, as those of `slidercrank.quantities` do for quantities: each is a mapping from
@@ -19,10 +19,16 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
 
 GROUP = "slidercrank.questions"
+_REMEDIES = {
+    "design": "name one: problem.ask(question, design) or front.ask(question, row)",
+    "front": "write it like front.ask(question)",
+    "job": "write it like problem.ask(question)",
+    "runs": "compare them by the command",
+}
 
 
 class Question(Protocol):
-    """What a design can be asked."""
+    """What a design can be asked. One with a `subject`, "front" or "job", is a `WiderQuestion`."""
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Any, inputs: Mapping[str, object]
@@ -35,12 +41,23 @@ class Question(Protocol):
         """
 
 
+class WiderQuestion(Protocol):
+    """What a front or a job can be asked."""
+
+    def answer_of(self, subject: Any, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
+        """Return the answer as JSON has it, in metric units that its keys end with.
+
+        subject: the `ParetoFront` or the `Problem`. row: of a design of the front that the question is about, if any.
+        inputs: by name; None for usual ones. Raises `InputError` as `Question.answer` does.
+        """
+
+
 @cache
-def questions() -> dict[str, Question]:
+def questions() -> dict[str, Any]:
     """Return the questions of all installed packages by name. Raises `InputError` if two have one of the same name."""
     from importlib.metadata import entry_points
 
-    found: dict[str, Question] = {}
+    found: dict[str, Any] = {}
     for entry in entry_points(group=GROUP):
         more = entry.load()
         both = sorted(found.keys() & more.keys())
@@ -50,12 +67,22 @@ def questions() -> dict[str, Question]:
     return found
 
 
-def question_named(name: str) -> Question:
-    """Return a question. Raises `InputError` with the nearest name, or all, for one that there is not."""
+def subject_of(name: str) -> str:
+    """Return what a question is asked of: "design", "front", "runs" or "job".
+
+    Raises `InputError` with the nearest name, or all, for a question that there is not.
+    """
     known = questions()
     if name not in known:
         near = difflib.get_close_matches(str(name), known, n=1)
         every = f"choose from {', '.join(known)}" if known else "no installed package has one; install slidercrank anew"
         hint = f"did you mean {near[0]}?" if near else every
-        raise InputError(f"a design is asked a question by its name; got {name!r}; {hint}")
-    return known[name]
+        raise InputError(f"a question is asked by its name; got {name!r}; {hint}")
+    return getattr(known[name], "subject", "design")
+
+
+def question_to(subject: str, name: str) -> Any:
+    """Return a question to a design, a front or a job. Raises `InputError` as `subject_of`, and for one to others."""
+    if (of := subject_of(name)) != subject:
+        raise InputError(f"the question {name} is asked of a {of}; got a {subject}; {_REMEDIES[of]}")
+    return questions()[name]

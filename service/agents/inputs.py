@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from pydantic import Field
 
 from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.units import shown
 from ...optimise.job.model import Job as JobModel
 from ..designs.columns import find_column
 from ..designs.picking_options import require_alone
-from ..designs.stored_designs import stored_design
+from ..designs.stored_designs import front_of, stored_design
 from ..presets.jobs import shipped_jobs
-from ..questions.discovery import ALL, COMMANDS, QUESTIONS, TOPICS, chosen_topics
+from ..questions.discovery import ALL, COMMANDS, OF_DESIGNS, QUESTIONS, TOPICS, WIDER, chosen_topics
 from ..questions.inputs import read_inputs
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
@@ -23,16 +25,17 @@ from .call import Call, Job, tables_of
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...optimise.front.front import ParetoFront
     from ...optimise.problem.problem import Problem
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
 _SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in COMMANDS.items()]
+_SHOWN += [f"{name} ({one.help.partition('.')[0]}; alone, of a {one.subject})" for name, one in WIDER.items()]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
     for _one in _topic.inputs:
-        _words = {"enum": list(get_args(_one.words))} if _one.words else {}
-        _said = _INPUTS.setdefault(_one.name, {"type": "string", "description": "", **_words})
+        _said = _INPUTS.setdefault(_one.name, {"description": "", **_one.schema})
         _said["description"] += f"{_topic.name}: {_one.remark}  "
 
 JobInput = Annotated[
@@ -52,9 +55,9 @@ Topics = Annotated[
     list[str], Field(description=f"Analyses of the design, {ALL} for all of a full turn: {'; '.join(_SHOWN)}.")
 ]
 TopicInputs = Annotated[
-    dict[str, str],
+    dict[str, Any],
     Field(
-        description="What the topics are asked with, each a text with its unit.",
+        description="What the topics are asked with: a value is a text with its unit.",
         json_schema_extra={"properties": dict(_INPUTS), "additionalProperties": False},
     ),
 ]
@@ -107,23 +110,39 @@ class Design:
         if (self.run is None) == (self.job is None):
             got = "both" if self.run else "neither"
             raise InputError(f"a design is of a run or of a job; got {got}; give one of them")
-        lengths = {"crank": self.crank, "rod": self.rod, "offset": self.offset}
-        return self._of_job(call, lengths) if self.run is None else self._of_run(call, self.run, lengths)
+        return self._of_job(call) if self.run is None else self._of_run(call, self.run)
 
-    def _of_run(self, call: Call, run: str, lengths: Mapping[str, str | None]) -> Machine:
-        besides = [name for name, value in lengths.items() if value is not None]
+    def front(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
+        """Return the folder of the run, its front and the row of the design. Raises `InputError` for no run."""
+        if self.run is None or self.job is not None:
+            got = "a job" if self.job is not None else "none"
+            raise InputError(f"a front is of a run; got {got}; name a run, without a job")
+        self._require_no_lengths()
+        folder, result = call.run(self.run)
+        row = None
+        if self.design is not None:
+            require_alone(self.design, result, self.run, others=False)
+            row = self.design - 1
+        return folder, front_of(call.problem_of_run(folder, result), result), row
+
+    def _require_no_lengths(self) -> None:
+        besides = [name for name in DIMENSIONS if getattr(self, name) is not None]
         if besides:
             raise InputError(
                 f"a design of a run has its dimensions; got run and {besides[0]}; leave out one of the two"
             )
+
+    def _of_run(self, call: Call, run: str) -> Machine:
+        self._require_no_lengths()
         folder, result = call.front(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
         require_alone(number, result, run, others=False)
         of = stored_design(call.problem_of_run(folder, result), result, number)
         return Machine(of.mechanism, of.linkage, of.part)
 
-    def _of_job(self, call: Call, lengths: Mapping[str, str | None]) -> Machine:
+    def _of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
+        lengths = {name: getattr(self, name) for name in DIMENSIONS}
         return Machine(problem.mechanism.nominal, Dimensions(**lengths).linkage(problem), problem)
 
 
@@ -141,6 +160,8 @@ class Asked:
             chosen_topics(self.topics, job=True)
         elif len(self.topics) > 1:
             raise InputError(f"{self.alone} is asked alone; got {', '.join(self.topics)}; ask the others without it")
+        if self.alone in WIDER:
+            return
         taken = [one.name for name in self.names for one in QUESTIONS[name].inputs]
         for name in self.inputs:
             if name not in taken and name in _INPUTS:
@@ -148,11 +169,13 @@ class Asked:
                 raise InputError(f"{name} is an input of {topic.name}; got it without; add that topic")
             if name not in taken:
                 raise InputError(f"inputs are {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
+            if _INPUTS[name]["type"] == "string" and not isinstance(self.inputs[name], str):
+                raise InputError(f"inputs.{name} must be a text; got {shown(self.inputs[name])}; correct it")
 
     @property
     def alone(self) -> str | None:
         """The topic that is a command of its own, None without one."""
-        return next((name for name in self.topics if name in COMMANDS), None)
+        return next((name for name in self.topics if name in COMMANDS or name in WIDER), None)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -161,6 +184,6 @@ class Asked:
 
     def options(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""
-        takes = {name: QUESTIONS[name].inputs for name in self.names}
+        takes = {name: OF_DESIGNS[name].inputs for name in self.names}
         given = {name: {one.name: self.inputs.get(one.name) for one in inputs} for name, inputs in takes.items()}
         return {name: read_inputs(takes[name], given[name], f"the topic {name}") for name in takes}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field
 
 from ...model.errors import InputError, NotFound, RunError
+from ...model.file_names import path_text
 from ...objectives.units import closest
 from ...optimise.job.messages import nodes_at, toml
 from ...optimise.job.model import Job
@@ -21,8 +22,9 @@ from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
 from ..jobs.submission import ending_own
 from ..presets.jobs import shipped_jobs
-from ..questions.discovery import ALL, QUESTIONS
+from ..questions.discovery import ALL, OF_DESIGNS, QUESTIONS, WIDER
 from ..questions.question import Question
+from ..questions.wider import Watch, WiderQuestion
 from .call import Answer, Call, tables_of, text_of
 from .inputs import Asked, Design, Files, JobInput
 
@@ -35,7 +37,7 @@ _OF_KEY = ("description", "examples", "default", "enum")
 
 
 def list_known(call: Call) -> Answer:
-    """List what there is: jobs that ship, quantities, topics of designs with their inputs, and the latest runs.
+    """List what there is: jobs that ship, quantities, topics with their inputs, and the latest runs.
 
     `describe` explains each. Start from a job that ships and is near to the task.
     """
@@ -49,7 +51,7 @@ def list_known(call: Call) -> Answer:
     topics, runs = list(map(_topic, QUESTIONS.values())), list(_runs(call))
     lines = [
         *("Jobs that ship:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
-        *("Topics of a design:", *(f"  {topic['name']}: {topic['shows'].partition(chr(10))[0]}" for topic in topics)),
+        *("Topics:", *(f"  {one['name']}, of a {one['of']}: {one['shows'].partition(chr(10))[0]}" for one in topics)),
         *("Quantities:", f"  {', '.join(facts['name'] for facts in quantities)}"),
         *("Runs, the latest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
     ]
@@ -98,8 +100,11 @@ def describe(
 def ask(call: Call, *, subject: Design, question: Asked) -> Answer:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
-    The design is one of a run, its knee if none is named, or has lengths of your own for a job.
+    The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics, such as
+    wish, are of the front of a run.
     """
+    if question.alone in WIDER:
+        return _wider(call, subject, question, WIDER[question.alone])
     options = question.options()
     of = subject.found(call)
     with ending_own(of.problem):
@@ -163,16 +168,30 @@ def _alone(name: str, of: Machine, question: Asked) -> Answer:
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks
 
-    asked = QUESTIONS[name].asked(of.mechanism, of.linkage, of.problem, question.inputs)
+    asked = OF_DESIGNS[name].asked(of.mechanism, of.linkage, of.problem, question.inputs)
     record = asked.numbers(lambda: False)
     text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
     return Answer(record_in(record, question.units), "\n".join((text, *asked.notes(record))))
 
 
-def _topic(of: Question) -> dict[str, Any]:
+def _wider(call: Call, subject: Design, question: Asked, of: WiderQuestion) -> Answer:
+    """Ask the front of a run."""
+    from ..render.terminal import print_blocks
+
+    folder, front, row = subject.front(call)
+    with ending_own(front.problem):
+        answer = of.ask(front, question.inputs, row=row, watch=Watch(cancelled=call.cancelled))
+    text = text_of(lambda screen: print_blocks(screen, answer.blocks, question.units))
+    record = {"run": path_text(folder)} | answer.record(question.units)
+    return Answer(record, "\n".join((text, *answer.notes)), is_error=not answer.met)
+
+
+def _topic(of: Question | WiderQuestion) -> dict[str, Any]:
     inputs = [{key: getattr(one, key) for key in _OF_TOPIC} for one in of.inputs]
+    if isinstance(of, WiderQuestion):
+        return {"name": of.name, "of": of.subject, "shows": inspect.cleandoc(of.help), "inputs": inputs}
     shows = of.shows if of.command is None else inspect.cleandoc(of.command.help)
-    return {"name": of.name, "shows": shows, "inputs": inputs}
+    return {"name": of.name, "of": "design", "shows": shows, "inputs": inputs}
 
 
 def _runs(call: Call) -> Iterator[dict[str, Any]]:

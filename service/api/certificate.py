@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
-from ..designs.proof import certificate_record, infeasible_record, sentences_of, sizes_of
-from ..runs.result import json_ready, rows_of
+from ..questions.discovery import WIDER
+from ..render.formatting import plain_blocks
+from ..runs.result import json_ready
 from .computing import LongRoute
+from .input_parameters import inputs_in_address, parameter_of
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
@@ -18,7 +21,12 @@ router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_res
 
 LONGEST_PROOF = 20.0
 """s, for the search of a proof."""
-
+QUESTION = WIDER["certify"]
+_LIMITED = [
+    replace(one, usual="10.0", limits={**one.limits, "le": LONGEST_PROOF}) if one.name == "seconds" else one
+    for one in QUESTION.inputs
+]
+Given = Annotated[dict[str, Any], inputs_in_address(_LIMITED, map(parameter_of, _LIMITED))]
 _EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
 
@@ -36,35 +44,22 @@ class CertificateModel(BaseModel):
 
 
 @router.get("/jobs/{number}/certificate", response_model=CertificateModel)
-def certify_front(
-    found: FrontDep,
-    epsilon: Annotated[
-        float, Query(gt=0.0, lt=1.0, description="distance to be proven, as a share of each objective's range")
-    ] = 0.01,
-    seconds: Annotated[
-        float, Query(gt=0.0, le=LONGEST_PROOF, description="stop after so long with what is proven by then")
-    ] = 10.0,
-) -> Response:
+def certify_front(found: FrontDep, given: Given) -> Response:
     """Prove how far a front can be from the true one; without designs, that nothing is feasible."""
-    name = f"{epsilon!r} {seconds!r}"
+    name = " ".join(map(repr, given.values()))
 
     def make() -> tuple[tuple[str], bytes]:
-        return (name,), to_json(_proof(found, epsilon, seconds))
+        return (name,), to_json(_proof(found, given))
 
     return Response(found.made(name, "certificate", make), media_type="application/json")
 
 
-def _proof(found: StoredFront, epsilon: float, seconds: float) -> CertificateModel:
-    result, problem, job = found.result, found.problem, found.job.id
-    if not result.designs:
-        from ...optimise.certificate.infeasible import prove_infeasible
-
-        proven = prove_infeasible(problem, seconds=seconds)
-        record = infeasible_record(result, proven=proven)
-        return CertificateModel(job=job, proven=proven, sentences=[record["message"]], certificate=record)
-    from ...optimise.certificate.certify import certify_designs
-
-    proof = certify_designs(problem, sizes_of(result), epsilon=epsilon, seconds=seconds)
-    rows = rows_of(proof.table.to_dict("list")) if len(proof.table) else []
-    record = json_ready(certificate_record(proof, problem, result.run, rows))
-    return CertificateModel(job=job, proven=proof.proven, sentences=sentences_of(proof, result), certificate=record)
+def _proof(found: StoredFront, given: dict[str, Any]) -> CertificateModel:
+    answer = QUESTION.ask(found.front, given)
+    sentences = [block.sentence for block in plain_blocks(answer.blocks)]
+    return CertificateModel(
+        job=found.job.id,
+        proven=answer.met,
+        sentences=sentences if found.result.designs else [answer.message],
+        certificate=json_ready({"run": found.result.run} | answer.record("metric")),
+    )

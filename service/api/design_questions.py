@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field, create_model
 from ..designs.measured_file import read_measured
 from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
-from ..questions.discovery import COMMANDS, QUESTIONS
+from ..questions.discovery import COMMANDS, OF_DESIGNS
 from ..questions.measured import MEASURED
 from ..questions.question import Command
 from ..runs.result import json_ready
@@ -31,7 +31,7 @@ router = APIRouter(
 
 def _add(name: str, says: Command) -> None:
     """Add the endpoint of a question that is a command."""
-    question = QUESTIONS[name]
+    question = OF_DESIGNS[name]
     answer: Any = (dict[str, Any], Field(examples=[dict(says.part)]))
     told = f"What `slidercrank {says.called or name} --json` prints of a design of a front."
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **{name: answer})

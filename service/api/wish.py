@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..designs.wishing import told_wishes, wished_record
+from ..jobs.made_wishes import told_wishes
+from ..questions.discovery import WIDER
+from ..questions.wish.analysis import answered
 from ..store.wishes import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
+from .input_parameters import body_of
 from .models import UnitsAsked
 from .problems import problem_responses
 from .settings import StoreDep
@@ -19,19 +22,9 @@ from .stored_fronts import FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
-_NAME = Annotated[str, Field(max_length=500)]
-_TEXT = Annotated[str, Field(max_length=200)]
-
-
-class WishesGiven(BaseModel, extra="forbid", strict=True):
-    """Wishes for the objectives of a front; those that are not named are free.
-
-    at: by objective a value, "110 N m", which is no bound, or "improve", "keep", "may worsen to 120 N m" or "free".
-    design: that improve, keep and worsen speak of, by its number; null where none does.
-    """
-
-    at: dict[_NAME, _TEXT] = Field(max_length=100, examples=[{"time_ratio": "1.2", "transmission_angle": "45 deg"}])
-    design: int | None = Field(None, ge=1, le=2**31)
+QUESTION = WIDER["wish"]
+_DESIGN = Field(None, ge=1, le=2**31, description="that improve, keep and worsen speak of, by its number")
+WishesGiven = body_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
 
 class WishModel(BaseModel):
@@ -95,19 +88,22 @@ class WishedModel(BaseModel):
     design: Cells | None = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1.2}])
 
 
-@router.post("/jobs/{number}/wish")
-def make_wish(found: FrontDep, given: WishesGiven, store: StoreDep, units: UnitsAsked = "metric") -> WishedModel:
+def make_wish(found: FrontDep, given: Any, store: StoreDep, units: UnitsAsked = "metric") -> WishedModel:
     """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked.
 
     The wish is noted among those of the job.
     """
     if given.design is not None:
         found.row(given.design)
-    answer = found.wishes.wish(given.at, row=None if given.design is None else given.design - 1)
-    record: dict[str, Any] = wished_record(answer, units)
-    note_wish(store, found.job.id, told_wishes(found.front, answer.wishes), given.design)
+    answer = answered(found.wishes.wish(given.at, row=None if given.design is None else given.design - 1), given.at)
+    record: dict[str, Any] = answer.record(units)
+    note_wish(store, found.job.id, told_wishes(found.front, answer.found.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=found.job.id, columns=columns, **record)
+
+
+make_wish.__annotations__["given"] = WishesGiven
+router.add_api_route("/jobs/{number}/wish", make_wish, methods=["POST"])
 
 
 @router.get("/jobs/{number}/wishes")

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..questions.discovery import COMMANDS
+from ..questions.discovery import COMMANDS, WIDER
 from .connection import Connection, Record, given
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from ..questions.wider import WiderQuestion
 
 
 class Designs:
@@ -26,11 +29,16 @@ class Designs:
         """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
         return self._asked(number, design, "analysis", {"show": list(show)})
 
-    def ask(self, number: int, design: int, question: str, /, **inputs: object) -> Record:
-        """Return the answer of a design to a question as `--json` prints it: a topic of `analyse --show`, or a command.
+    def ask(self, number: int, design: int | None, question: str, /, **inputs: object) -> Record:
+        """Return the answer to a question as `--json` prints it: a topic of `analyse --show`, or a command.
 
-        inputs: those of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
+        design: that is asked; None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`. inputs: those
+        of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
         """
+        if question in WIDER:
+            return self._ask_wider(WIDER[question], number, design, inputs)
+        if design is None:
+            raise InputError(f"{question} is of one design; got none; give its number")
         if question in COMMANDS:
             return self._asked(number, design, question, given(**inputs))
         path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"
@@ -63,7 +71,7 @@ class Designs:
         at: by objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design: that these
         speak of, by its number.
         """
-        return self._connection.post(f"jobs/{number}/wish", {"at": dict(at), "design": design})
+        return self.ask(number, design, "wish", at=dict(at))
 
     def wishes(self, number: int) -> list[Record]:
         """Return the wishes made of the front of a job, the latest first, with design and time."""
@@ -134,6 +142,13 @@ class Designs:
 
         found = self._asked(number, design, "curves", {"angles": angles})
         return pd.DataFrame(found).set_index("crank_angle_deg")
+
+    def _ask_wider(self, of: WiderQuestion, number: int, design: int | None, inputs: Record) -> Record:
+        """Return the answer of a front, or of what it knows of one of its designs."""
+        asked = of.read(inputs, design) | (given(design=design) if of.row == "may" else {})
+        path = of.path.format(number=number, design=design)
+        found = self._connection.ask(path, *((None, asked) if of.posted else (asked,)))
+        return found[of.key] if of.key else found
 
     def _asked(
         self, number: int, design: int, what: str, query: Record | None = None, body: Record | None = None

@@ -16,6 +16,7 @@ from ..designs.selection import Condition, parse_condition
 from ..designs.shown_units import record_in, result_in, row_in
 from ..render.terminal import print_table, table
 from ..runs.result import Result, Row, json_text, rows_of
+from ..runs.stored_runs import read_run
 from ..text.options import Json, Number, Run, Runs, Units
 from ..text.screen import answer, give, waiting
 from .ending import end_without_design
@@ -52,7 +53,8 @@ def like(
     from ...optimise.decisions.like import distance, nearest
     from ...optimise.front.hypervolume import scaling
 
-    folder, result, front = front_of_run(run, runs, number)
+    folder, front = front_of_run(run, runs, number)
+    result = read_run(folder)
     problem = replace(front.problem, name=result.name)
     row = result.designs[number - 1]
     constraints, ranges = _added(where, row, problem)

@@ -11,7 +11,7 @@ import typer
 
 from ...objectives.kinds import System
 from ..designs.shown_units import record_in
-from ..questions.discovery import COMMANDS, QUESTIONS
+from ..questions.discovery import COMMANDS, OF_DESIGNS
 from ..questions.question import QuestionOfDesign
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
@@ -23,7 +23,7 @@ from .job_or_run import machine_of, turning_problem
 
 def command_of(name: str) -> Callable[..., None]:
     """Return the command of a question, for `for_typer`."""
-    question, says = QUESTIONS[name], COMMANDS[name]
+    question, says = OF_DESIGNS[name], COMMANDS[name]
 
     def command(
         job: JobOrRun = None,
@@ -64,7 +64,7 @@ def command_of(name: str) -> Callable[..., None]:
 
 def sizing_of(name: str) -> Callable[..., None]:
     """Return the command of a question that sizes, for `for_typer`."""
-    question, says = QUESTIONS[name], COMMANDS[name]
+    question, says = OF_DESIGNS[name], COMMANDS[name]
 
     def command(
         job: JobFile,

@@ -51,7 +51,7 @@ def round(
     little and lose clearly less follow. Where none meets all, the nearest are listed, each with what it misses and by
     how much; the exit code is then 3. Ctrl-C ends the search.
     """
-    folder, result, front = front_of_run(run, runs, number)
+    folder, front = front_of_run(run, runs, number)
     steps = steps_of(to, front.part(number - 1), key="--to")
     allowed = allowed_of(allow or (), key="--allow")
     from ...optimise.front.progress import standing
@@ -67,7 +67,7 @@ def round(
     if json:
         give(json_text(record))
     elif len(found):
-        _show(f"{result.name}: design {number}", record, found, units)
+        _show(f"{front.problem.name}: design {number}", record, found, units)
     if not found.met:
         end_without_design(record["message"] + _remedy(record["designs"]))
 

@@ -32,19 +32,21 @@ def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
     return folder, read_run(folder)
 
 
-def front_of_run(name: str, runs: Path | None, number: int | None) -> tuple[Path, Result, ParetoFront]:
-    """Return the folder, the result and the front of a run.
+def front_of_run(
+    name: str, runs: Path | None, number: int | None = None, *, empty: bool = False
+) -> tuple[Path, ParetoFront]:
+    """Return the folder and the front of a run. empty: whether it may lack designs.
 
     Raises `InputError` if it has no design with this number, `NoDesigns` if it has none at all.
     """
     from ..designs.stored_designs import front_of
 
     folder, result = run_of(name, runs)
-    if not result.designs:
+    if not (result.designs or empty):
         raise NoDesigns(result)
     if number is not None:
         require_alone(number, result, name, others=False)
-    return folder, result, front_of(problem_of(folder, result), result)
+    return folder, front_of(problem_of(folder, result), result)
 
 
 def shown_result(result: Result, units: System, folder: Path | None) -> Result:

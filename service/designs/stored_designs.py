@@ -78,7 +78,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
     return ParetoFront(
         problem=problem,
-        status="done",
+        status="done" if rows else "infeasible",
         message=result.message,
         columns={name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())},
         dimensions=exact.dimensions,
@@ -101,7 +101,7 @@ def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
     variants = [_variant(problem, *of) for of in zip(rows, dimensions, strict=True)]
     nothing = np.zeros((0, 0))
     return Exact(
-        np.array(dimensions).reshape(len(dimensions), -1),
+        np.array(dimensions).reshape(len(dimensions), len(sizes)),
         tuple(variants) if problem.variants else (),
         ((np.zeros(0), nothing),) * len(rows),
         (nothing,) * len(rows),

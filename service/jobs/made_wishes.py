@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +10,30 @@ from typing import TYPE_CHECKING
 from .stores import has_store, open_store
 
 if TYPE_CHECKING:
+    from ...optimise.decisions.wishes import Wish
+    from ...optimise.front.front import ParetoFront
     from ..store import Store
     from ..store.wishes import MadeWish, Wished
+
+
+def told_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
+    """Return wishes by their objectives, free ones left out, with values in the metric units of these."""
+    told: dict[str, tuple[str, float | None]] = {}
+    for objective, wish in zip(front.objectives, wishes, strict=True):
+        factor = front.problem.quantity(objective.quantity).unit.factor
+        if wish.kind != "free":
+            told[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
+    return told
+
+
+def words_of(front: ParetoFront, told: Wished) -> dict[str, str]:
+    """Return wishes of `told_wishes` as they are asked for: "110 N m", "improve", "may worsen to 40 deg"."""
+    words = {}
+    for name, (kind, value) in told.items():
+        unit = front.problem.quantity(name).unit.symbol
+        number = "" if value is None else f"{value!r} {unit}".rstrip()
+        words[name] = {"value": number, "limit": f"may worsen to {number}"}.get(kind, kind)
+    return words
 
 
 def made_wishes(folder: Path) -> list[MadeWish]:

@@ -8,11 +8,12 @@ from pkgutil import iter_modules
 
 from ...model.errors import InputError
 from .question import Question
+from .wider import WiderQuestion
 
 ALL = "all"
 
 
-def _found() -> dict[str, Question]:
+def _found() -> dict[str, Question | WiderQuestion]:
     package = __name__.rpartition(".")[0]
     folders = [item.name for item in iter_modules(import_module(package).__path__) if item.ispkg]
     declared = [getattr(import_module(f"{package}.{folder}"), "QUESTION", None) for folder in folders]
@@ -20,10 +21,14 @@ def _found() -> dict[str, Question]:
 
 
 QUESTIONS = _found()
+"""All questions, by name."""
+OF_DESIGNS = {name: one for name, one in QUESTIONS.items() if isinstance(one, Question)}
 """All that one design can be asked, by name."""
-COMMANDS = {name: one.command for name, one in QUESTIONS.items() if one.command is not None}
+WIDER = {name: one for name, one in QUESTIONS.items() if isinstance(one, WiderQuestion)}
+"""All that a front, several runs or a job can be asked, by name."""
+COMMANDS = {name: one.command for name, one in OF_DESIGNS.items() if one.command is not None}
 """Those that are commands of their own."""
-TOPICS = {name: one for name, one in QUESTIONS.items() if name not in COMMANDS}
+TOPICS = {name: one for name, one in OF_DESIGNS.items() if name not in COMMANDS}
 """Those that `analyse --show` adds, in their order."""
 TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
 """Columns that topics show; the table of a design leaves them out."""

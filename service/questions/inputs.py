@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from ...model.errors import InputError
 from ...objectives.kinds import Face, Kind
@@ -58,6 +58,11 @@ class Input:
     def default(self) -> float:
         """The default in SI."""
         return float(self.read(self.usual, self.name))
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """JSON Schema of what an agent gives: a text with its unit, or a word."""
+        return {"type": "string", **({"enum": list(get_args(self.words))} if self.words else {})}
 
     @property
     def remark(self) -> str:

@@ -40,17 +40,26 @@ class Unit:
     kind: Kind
 
 
-Part = str | Value | Unit
+@dataclass(frozen=True)
+class Phrase:
+    """Words that choose their units themselves, as a search writes them: in each system."""
+
+    metric: str
+    inch: str
+
+
+Part = str | Value | Unit | Phrase
 Text = Part | tuple[Part, ...]
 """Text whose values have their units. In a cell, a value by itself has none: the head or the row says it."""
 
 
 @dataclass(frozen=True)
 class Sentence:
-    """A sentence. style: a heading, plain text, or a note on what precedes it."""
+    """A sentence. style: a heading, plain text, or a note on what precedes it. apart: whether a space precedes it."""
 
     text: Text
     style: Literal["heading", "plain", "note"] = "plain"
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,7 +75,7 @@ class Column:
 class Table:
     """A table. rows: cells by column. ruled: with a line below the heads. dim: positions of columns with remarks.
 
-    indented: below its heading.
+    indented: below its heading. apart: whether a space precedes it, and columns are wide. bold: positions of rows.
     """
 
     columns: tuple[Column, ...]
@@ -74,6 +83,8 @@ class Table:
     ruled: bool = False
     indented: bool = False
     dim: tuple[int, ...] = ()
+    apart: bool = False
+    bold: tuple[int, ...] = ()
 
 
 Block = Sentence | Table

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...objectives.kinds import System, unit_text
-from .blocks import Block, Sentence, Table, Text, Unit, Value
+from .blocks import Block, Phrase, Sentence, Table, Text, Unit, Value
 from .numerals import shown
 
 _LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756 in
@@ -52,6 +52,8 @@ def format_text(text: Text, system: System = "metric", *, bare: bool = False, pr
         return text
     if isinstance(text, Value):
         return format_value(text, system, bare=bare, printed=printed)
+    if isinstance(text, Phrase):
+        return text.metric if system == "metric" else text.inch
     if isinstance(text, Unit):
         return unit_text(text.kind.face(system).symbol)
     return "".join(format_text(part, system, printed=printed) for part in text)

@@ -19,7 +19,7 @@ _STYLES = {"heading": "bold", "plain": None, "note": "dim"}
 def print_blocks(screen: Console, blocks: Sequence[Block], system: System = "metric") -> None:
     """Write blocks in a system of units; what follows a table and the notes on it stands apart."""
     for before, block in zip((None, *blocks), blocks, strict=False):
-        if (isinstance(before, Table) or _is_note(before)) and not _is_note(block):
+        if block.apart or ((isinstance(before, Table) or _is_note(before)) and not _is_note(block)):
             screen.print()
         if isinstance(block, Sentence):
             screen.print(format_text(block.text, system), style=_STYLES[block.style], soft_wrap=True, markup=False)
@@ -36,11 +36,12 @@ def _print_table(screen: Console, block: Table, system: System) -> None:
     rows = table(
         *(f"{'>' if column.right else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
         ruled=block.ruled,
+        **({"padding": (0, 2, 0, 0), "pad_edge": True} if block.apart else {}),
     )
     for place in block.dim:
         rows.columns[place].style = "dim"
-    for first, *rest in cells(block, system):
-        rows.add_row(f"  {first}" if block.indented else first, *rest)
+    for place, (first, *rest) in enumerate(cells(block, system)):
+        rows.add_row(f"  {first}" if block.indented else first, *rest, style="bold" if place in block.bold else "")
     print_table(screen, rows)
 
 

@@ -21,7 +21,7 @@ from slidercrank.optimise.problem import questions as announced
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.questions.discovery import COMMANDS, QUESTIONS, TOPICS
+from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
 from slidercrank.service.questions.inputs import Input
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
@@ -175,7 +175,7 @@ def some_input(one: Input, random: np.random.Generator) -> float | str:
 @pytest.mark.parametrize("name", SIZING)
 def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, Path], name: str) -> None:
     (client, number, job), random = sizes, np.random.default_rng(10)
-    front, question = sc.solve(sc.load_job(job)), QUESTIONS[name]
+    front, question = sc.solve(sc.load_job(job)), OF_DESIGNS[name]
     for row in random.choice(len(front), 3, replace=False).tolist():
         given = {one: some_input(one, random) for one in question.inputs}
         expected = client.ask(number, row + 1, name, **{one.key: value for one, value in given.items()})
@@ -267,7 +267,7 @@ def test_a_swing_of_a_job_is_asked_in_python_as_on_the_command_line() -> None:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_example_of_an_endpoint_is_the_answer_of_its_linkage(address: str, name: str) -> None:
-    topic = QUESTIONS[name]
+    topic = OF_DESIGNS[name]
     if name not in SIZING:
         given = {one.name: one.example for one in topic.inputs if one.name in COMMANDS[name].example}
         answer = topic.answer(sc.Mechanism(), sc.Linkage(0.06, 0.23, 0.07), None, given)
@@ -290,11 +290,11 @@ def example_of(address: str, name: str) -> Any:
 
 
 WRONG: list[tuple[str, dict[str, object], str]] = [
-    ("pres", {}, "a design is asked a question by its name; got 'pres'; did you mean press?"),
+    ("pres", {}, "a question is asked by its name; got 'pres'; did you mean press?"),
     (
         "weather",
         {},
-        "a design is asked a question by its name; got 'weather'; choose from inverse, swing, ",
+        "a question is asked by its name; got 'weather'; choose from inverse, swing, ",
     ),
     ("press", {"touch": 1.0}, "press is asked with touch_distance, dwell_distance, rated_torque; got touch; leave"),
     ("motor", {"limit": 1.0}, "the topic motor is asked with nothing else; got limit; leave limit out"),

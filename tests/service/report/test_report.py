@@ -295,9 +295,9 @@ def test_json_of_the_certificate_is_what_certify_writes(tmp_path: Path) -> None:
     """The names that the report reads are those of the file of `slidercrank certify`."""
     import inspect
 
-    from slidercrank.service.designs import proof
+    from slidercrank.service.questions.certify import analysis
 
-    source = inspect.getsource(proof.certificate_record)
+    source = inspect.getsource(analysis)
     assert all(f'"{key}"' in source for key in CERTIFICATE)
     assert json.loads(json.dumps(CERTIFICATE)) == CERTIFICATE
 

@@ -1,0 +1,14 @@
+"""Tables of designs, a row for each quantity, as questions to a front answer with them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from ...objectives.keys import kind_of_key
+from ..designs.columns import find_column
+from ..render.blocks import Text, Unit
+
+
+def title_and_unit(key: str, keys: Collection[str]) -> tuple[Text, Text]:
+    """Return the title of a metric column, and its unit."""
+    return find_column(key, keys).title, Unit(kind_of_key(key)[1])

@@ -1,0 +1,83 @@
+"""Numbers and texts without a kind, which questions to a front, to runs or to a job are asked with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, Any, get_origin
+
+from ...model.errors import InputError
+from .inputs import Input
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plain(Input):
+    """An input without a kind.
+
+    type: a number, `str`, a `list` of texts, or a `dict` of texts by name, of which a door of texts writes "name=text".
+    least: of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name, "a
+    requirement, =, and by how much it may be missed". metavar: of the option. sent: an example in a body.
+    """
+
+    type: Any = float
+    least: float | None = None
+    limits: Mapping[str, Any] = field(default_factory=dict)
+    form: str = ""
+    metavar: str | None = None
+    sent: Any = None
+
+    @property
+    def value(self) -> Any:
+        """The default; None for texts."""
+        return self.type(self.usual) if self.usual else None
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """JSON Schema of what an agent gives."""
+        return dict(self._adapter.json_schema())
+
+    @property
+    def _adapter(self) -> Any:
+        from pydantic import Field, TypeAdapter
+
+        kind: Any = self.type if self.least is None else Annotated[self.type, Field(ge=self.least)]
+        return TypeAdapter(kind)
+
+    def typed(self, number: Any) -> Any:
+        """Return what the API was given, as it is."""
+        return number
+
+    def read(self, given: object, word: str) -> Any:
+        """Return the number, the texts, or the texts by name. Raises `InputError` that begins with the word."""
+        from pydantic import ValidationError
+
+        from ...objectives.units import shown
+        from ...optimise.job.messages import rule_of
+
+        form = get_origin(self.type)
+        value: Any = [given] if isinstance(given, str) and form in (list, dict) else given
+        if form is dict and isinstance(value, list | tuple):
+            value = texts_by_name(value, word, self.form, self.example)
+        try:
+            return self._adapter.validate_python(value, strict=True)
+        except ValidationError as error:
+            rule, got = rule_of(error.errors(include_url=False)[0]), shown(given)
+            raise InputError(f"{word} {rule}; got {got}; write it like {self.usual or self.example}") from None
+
+
+def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -> dict[str, str]:
+    """Return texts such as "stroke=0.1 mm" by their names. word: that messages begin with.
+
+    Raises `InputError` for what is not of the form, and for a name that comes twice.
+    """
+    from ...objectives.units import shown
+
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = (piece.strip() for piece in str(text).rpartition("="))
+        if not (equals and name and value):
+            raise InputError(f"{word} is {form}; got {shown(text)}; write it like {example}")
+        if name in found:
+            raise InputError(f"{word} gives each name once; got {name} twice; leave out one")
+        found[name] = value
+    return found

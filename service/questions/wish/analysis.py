@@ -1,0 +1,98 @@
+"""Answer to a wish: the design, and for each objective what was wished and what is reached."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ....objectives.kinds import System, shown_in
+from ....optimise.decisions.wish import Wishes
+from ...designs.shown_units import row_in
+from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, recorded, words
+from ...runs.result import json_ready, rows_of
+from ..design_table import title_and_unit
+from ..wider import Answer
+
+if TYPE_CHECKING:
+    from ....optimise.decisions.wished import Outcome, Wished
+    from ....optimise.front.front import ParetoFront
+
+
+def answer(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:
+    """Return the answer to wishes by objective. row: of the design that improve, keep and worsen speak of.
+
+    Raises as `optimise.decisions.wish.wish` does.
+    """
+    return answered(Wishes(front).wish(at, row=row), at)
+
+
+def answered(found: Wished, at: Mapping[str, object]) -> Answer:
+    """Return a solved wish as an answer. at: by objective, as it was asked for.
+
+    Of its numbers: possible, whether everything wished is reached. sentences: the answer in words. achievement: value
+    of the achievement function. objectives: of each, wish and outcome, in its unit. design: the row of a front's table,
+    null where no design stays within what is allowed.
+    """
+    rows = rows_of(found.found.columns) if len(found) else []
+
+    def record(units: System) -> dict[str, Any]:
+        return {
+            "number": None if found.row is None else found.row + 1,
+            "possible": found.possible,
+            "sentences": found.sentences(units),
+            "achievement": json_ready(found.value),
+            "objectives": [_outcome(outcome, units) for outcome in found.outcomes],
+            "design": json_ready(row_in(rows[0], units)) if rows else None,
+        }
+
+    told = told_wish(at, found.row)
+    title = heading("{name}: wished {told}", name=found.found.problem.name, told=told)
+    return Answer(
+        record=record,
+        blocks=[title, *(_blocks(found, rows[0]) if rows else [])],
+        met=bool(rows),
+        message=found.message,
+        found=found,
+        asked=dict(at),
+    )
+
+
+def told_wish(at: Mapping[str, object], row: int | None) -> str:
+    """Return a wish in words: "time_ratio improve, peak_torque 110 N m, from design 3"."""
+    design = [] if row is None else [f"from design {row + 1}"]
+    return ", ".join([*(f"{name} {value}" for name, value in at.items()), *design])
+
+
+def sentences(found: Wished) -> list[Phrase]:
+    """Return whether a wish can be had, then wish and outcome of each objective, for people."""
+    return [Phrase(*both) for both in zip(found.sentences("metric"), found.sentences("inch"), strict=True)]
+
+
+def _blocks(found: Wished, row: Mapping[str, Any]) -> list[Block]:
+    """Return the answer in words, then the design as a table."""
+    head, *outcomes = sentences(found)
+    begin = f"{head.metric[0].upper()}{head.metric[1:]}:"
+    objectives = {outcome.quantity.title for outcome in found.outcomes}
+    rows: list[tuple[Text, ...]] = []
+    for key, value in row.items():
+        undefined = isinstance(value, float) and not math.isfinite(value)
+        if not undefined and not key.startswith("slack_") and key not in ("residual", "status"):
+            shown = recorded(row, key) if isinstance(value, float) else str(value)
+            rows.append((*title_and_unit(key, row), shown))
+    bold = tuple(place for place, (title, *_) in enumerate(rows) if title in objectives)
+    columns = (column("quantity", left=True), column("unit", left=True), column("value"))
+    return [
+        Sentence(begin, apart=True),
+        *(Sentence(words("  {outcome}", outcome=outcome)) for outcome in outcomes),
+        Table(columns, tuple(rows), ruled=True, apart=True, bold=bold),
+        Sentence(f"{row['status']}: residual {row['residual']:.1e}"),
+    ]
+
+
+def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
+    of = outcome.quantity
+    unit, factor = shown_in(of.unit.symbol, units)
+    numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}
+    told = {name: None if value is None else value * of.unit.factor * factor for name, value in numbers.items()}
+    return {"quantity": of.name, "title": of.title, "unit": unit, "wish": outcome.kind, "met": outcome.met, **told}

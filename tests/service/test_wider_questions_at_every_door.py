@@ -1,0 +1,241 @@
+"""Questions to a front: the same answers and refusals in Python, by commands, in the API, its client and for agents."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import slidercrank as sc
+from slidercrank.model.errors import InputError
+from slidercrank.service.agents.call import Answer, Call
+from slidercrank.service.agents.server import TOOLS
+from slidercrank.service.cli import app as command_line
+from slidercrank.service.client import Client
+from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.jobs.submission import submit
+from slidercrank.service.questions.discovery import WIDER
+from slidercrank.service.runs.result import json_ready
+from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.store import Store
+from slidercrank.service.workers.worker import work
+from tests.service import fronts
+from tests.service.alike import assert_same
+from tests.service.api.fixed_front import Solved, served
+
+(ASK,) = (tool for tool in TOOLS if tool.name == "ask")
+SECONDS = {"seconds": 20.0}
+"""No proof of these tests takes as long: all doors get to its end."""
+
+
+@dataclass(frozen=True)
+class Doors:
+    """A run at every door: its folder, the front in Python, a client and the number of its job."""
+
+    folder: Path
+    client: Client
+    number: int
+    front: sc.ParetoFront
+
+    def command(self, name: str, row: int | None, given: Mapping[str, Any], *more: str) -> Any:
+        """Return what a command ends with."""
+        design = [] if row is None else [str(row + 1)]
+        return CliRunner().invoke(command_line, [name, str(self.folder), *design, *options(name, given), *more])
+
+    def printed(self, name: str, row: int | None, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a command prints as JSON, without the names of the run and of what was asked."""
+        done = self.command(name, row, given, "--json")
+        assert done.exit_code == 0, done.stderr
+        return {key: value for key, value in json.loads(done.stdout).items() if key not in ("run", "wishes")}
+
+    def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> Answer:
+        """Return the answer to an agent."""
+        design = {} if row is None else {"design": row + 1}
+        return ASK.answer(
+            call_in(self.folder.parent), {"run": self.folder.name, "topics": [name], **design, "inputs": given}
+        )
+
+    def refusals(self, name: str, row: int | None, given: Mapping[str, Any]) -> list[str]:
+        """Return the sentences of Python, the client and agents."""
+        asked: list[Callable[[], object]] = [
+            lambda: self.front.ask(name, row, **given),
+            lambda: self.client.ask(self.number, None if row is None else row + 1, name, **given),
+            lambda: self.agent(name, row, given),
+        ]
+        return [refusal(ask) for ask in asked]
+
+
+def call_in(runs: Path) -> Call:
+    return Call(runs, frozenset(), lambda: False, lambda _: None)
+
+
+def options(name: str, given: Mapping[str, Any]) -> list[str]:
+    """Return inputs as a command line has them."""
+    flags, words = WIDER[name].flags, list[str]()
+    for key, value in given.items():
+        texts = [f"{of}={text}" for of, text in value.items()] if isinstance(value, dict) else value
+        for text in texts if isinstance(texts, list) else [texts]:
+            words += [flags[key], str(text)]
+    return words
+
+
+def refusal(ask: Callable[[], object]) -> str:
+    with pytest.raises(InputError) as refused:
+        ask()
+    return str(refused.value)
+
+
+def doors_of(solved: Solved, client: Client) -> Doors:
+    result = read_run(solved.folder)
+    return Doors(solved.folder, client, solved.number, front_of(problem_of(solved.folder, result), result))
+
+
+@pytest.fixture(scope="module")
+def doors(solved: Solved) -> Iterator[Doors]:
+    with served(solved.store) as address, Client(address) as client:
+        yield doors_of(solved, client)
+
+
+@pytest.fixture(scope="module", params=["nothing feasible", "a swing"])
+def other(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Doors]:
+    """Yield a run without designs, and one of a crank that swings."""
+    place = tmp_path_factory.mktemp("other")
+    if request.param == "a swing":
+        text = Path("runs/support.toml").read_text(encoding="utf-8").replace("designs = ", "designs = 4 #")
+    else:
+        text = fronts.JOB.replace('"40 deg"', '"80 deg"')
+    (place / "job.toml").write_text(text, encoding="utf-8")
+    done = CliRunner().invoke(
+        command_line, ["optimise", str(place / "job.toml"), "--runs", str(place / "runs"), "--no-figures"]
+    )
+    assert done.exit_code in (0, 3), done.stderr
+    (folder,) = (path.parent for path in place.glob("runs/*/front.json"))
+    with Store(place / "store.db") as store:
+        number = submit(store, tomllib.loads(text)).id
+        work(store, drain=True)
+        result = read_run(folder)
+        with served(store) as address, Client(address) as client:
+            yield Doors(folder, client, number, front_of(problem_of(folder, result), result))
+
+
+def assert_alike(doors: Doors, name: str, row: int | None, given: dict[str, Any]) -> dict[str, Any]:
+    """Compare the answers of all doors; return that of Python."""
+    answer = doors.front.ask(name, row, **given)
+    timed = {"seconds"}
+    expected = {key: value for key, value in answer.items() if key not in timed}
+    sent = doors.client.ask(doors.number, None if row is None else row + 1, name, **given)
+    for found in (sent, doors.printed(name, row, given), json_ready(doors.agent(name, row, given).record)):
+        assert_same({key: found[key] for key in expected}, expected)
+        assert found.keys() - expected.keys() <= timed | {"run", "job", "columns"}
+    return answer
+
+
+def test_random_wishes_have_the_same_design_at_every_door(doors: Doors) -> None:
+    front, random = doors.front, np.random.default_rng(31)
+    for _ in range(3):
+        row = int(random.integers(len(front)))
+        ratio = float(random.uniform(*np.sort(-front.values[[0, -1], 0])))
+        angle = float(np.degrees(random.uniform(*np.sort(-front.values[[0, -1], 1]))))
+        free = assert_alike(
+            doors, "wish", None, {"at": {"time_ratio": f"{ratio!r}", "transmission_angle": f"{angle!r} deg"}}
+        )
+        assert free["number"] is None
+        assert free["design"]["status"] == "stationary"
+        better = assert_alike(
+            doors, "wish", row, {"at": {"time_ratio": "free", "transmission_angle": f"{angle!r} deg"}}
+        )
+        assert better["number"] == row + 1
+        reached = {one["quantity"]: one["reached"] for one in better["objectives"]}
+        assert reached["transmission_angle"] == pytest.approx(better["design"]["least_transmission_angle_deg"])
+
+
+def test_a_wish_in_texts_is_one_by_name(doors: Doors) -> None:
+    by_name, texts = (
+        {"time_ratio": "1.3", "transmission_angle": "50 deg"},
+        ["time_ratio = 1.3", "transmission_angle=50 deg"],
+    )
+    assert doors.front.ask("wish", at=texts) == doors.front.ask("wish", at=by_name)
+
+
+def test_a_random_proof_is_the_same_at_every_door(doors: Doors) -> None:
+    epsilon = float(np.random.default_rng(32).uniform(0.1, 0.3))
+    proof = assert_alike(doors, "certify", None, {"epsilon": epsilon, **SECONDS})
+    assert proof["status"] == "proven"
+    assert proof["epsilon"] <= epsilon
+    assert all(row["stroke_mm"] == pytest.approx(280.0) for row in proof["added"])
+
+
+def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> None:
+    given = {"at": {"time_ratio": "1.3"}}
+    for units, unit, key in (("metric", "mm", "crank_mm"), ("inch", "in", "crank_in")):
+        done = doors.command("wish", None, given, "--units", units)
+        asked = {"run": doors.folder.name, "topics": ["wish"], "inputs": given, "units": units}
+        answer = ASK.answer(call_in(doors.folder.parent), asked)
+        assert answer.text.splitlines() == done.stdout.strip().splitlines()
+        (line,) = (line for line in answer.text.splitlines() if line.startswith("crank  "))
+        assert line.split() == ["crank", unit, f"{answer.record['design'][key]:.6g}"]
+
+
+def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: Doors) -> None:
+    if len(other.front):
+        (sentence,) = set(other.refusals("certify", None, {}))
+        assert sentence.startswith("a certificate is of a crank that turns through; got a swing")
+        done = other.command("certify", None, {})
+        assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {sentence}")
+        force = float(np.median(other.front.values[:, 0]))
+        assert_alike(other, "wish", None, {"at": {"peak_actuator_force": f"{force!r} N"}})
+    else:
+        assert assert_alike(other, "certify", None, {})["infeasible"]
+        (sentence,) = set(other.refusals("wish", None, {"at": {"time_ratio": "1.2"}}))
+        assert sentence.startswith("a wish needs the designs of a front; got none: ")
+        assert other.command("wish", None, {"at": {"time_ratio": "1.2"}}).exit_code == 3
+
+
+WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
+    ("wish", None, {}, "wish needs at; got none; give it like "),
+    ("wish", None, {"at": {"time_ratio": "1.3"}, "of": 3}, "wish is asked with at; got of; leave of out"),
+    ("wish", None, {"at": 3}, "at must be a table of keys; got 3; write it like "),
+    ("wish", None, {"at": ["time_ratio"]}, 'at is an objective, =, and a value or a class; got "time_ratio"; write'),
+    ("wish", None, {"at": {"nothing": "1"}}, "a wish is for one of the objectives "),
+    ("wish", 1, {"at": {"time_ratio": "keep", "transmission_angle": "keep"}}, "nothing is wished; give one of "),
+    ("certify", None, {"epsilon": "a little"}, 'epsilon must be a number; got "a little"; write it like 0.01'),
+    ("certify", None, {"epsilon": True}, "epsilon must be a number; got true; write it like 0.01"),
+    ("certify", None, {"delta": 0.1}, "certify is asked with epsilon, seconds; got delta; leave delta out"),
+    ("certify", 0, {}, "certify is of a whole front; got one design; leave it out"),
+]
+
+
+@pytest.mark.parametrize(("name", "row", "given", "sentence"), WRONG)
+def test_what_is_wrong_is_refused_in_the_same_sentence(
+    doors: Doors, name: str, row: int | None, given: dict[str, Any], sentence: str
+) -> None:
+    (said,) = set(doors.refusals(name, row, given))
+    assert said.startswith(sentence)
+    assert "\n" not in said
+
+
+def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
+    front = doors.front
+    assert refusal(lambda: front.ask("press")) == (
+        "the question press is of one design; got none; name the row of one of the front"
+    )
+    assert refusal(lambda: front.problem.ask("certify", front.dimensions[0])) == (
+        "the question certify is asked of a front; got a design; write it like front.ask(question)"
+    )
+    assert refusal(lambda: front.ask("whish", at={})).endswith("did you mean wish?")
+    assert refusal(lambda: doors.client.ask(doors.number, None, "press")).startswith("press is of one design; got none")
+    for subject, sentence in (
+        ({"job": fronts.JOB}, "a front is of a run; got a job; name a run, without a job"),
+        ({"run": doors.folder.name, "crank": "40 mm"}, "a design of a run has its dimensions; got run and crank"),
+        ({"run": doors.folder.name, "design": 99}, "the run has designs 1 to "),
+    ):
+        inputs = {"topics": ["certify"], **subject}
+        assert refusal(partial(ASK.answer, call_in(doors.folder.parent), inputs)).startswith(sentence)
