@@ -5,7 +5,9 @@ On a quiet machine: a run's time is on the pictures of the page, and the courses
 
 from __future__ import annotations
 
+import contextlib
 import math
+import re
 import shutil
 import sys
 import tempfile
@@ -31,9 +33,11 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 
+from .moving_picture import exploring_front
 from .service_process import service
 
-FOLDER = Path(__file__).parents[1] / "docs"
+README = Path(__file__).parents[1] / "README.md"
+FOLDER = README.parent / "docs"
 MOST_SECONDS = 5.0
 """Time of the feeder's search that is shown at most: on a quiet machine it takes about one."""
 _JOB = Path(__file__).parents[1] / "runs" / "feeder.toml"
@@ -57,6 +61,21 @@ def knee(name: str, folder: Path) -> None:
         front = solve(load_job(_JOB.with_name(f"{name}.toml")))
         (file,) = (file for file in draw_front(front, Path(place)) if file.stem == "knee")
         shutil.copyfile(file, folder / f"{name}_knee.png")
+
+
+def exploring(folder: Path) -> None:
+    """Let the linkages of the feeder's front turn."""
+    exploring_front(solve(load_job(_JOB)), folder / "exploring_front.gif")
+
+
+def python_example(folder: Path) -> None:
+    """Draw what the Python of the README draws."""
+    import matplotlib.pyplot as plt
+
+    (code,) = re.findall(r"^```python\n(.*?)^```$", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    plt.switch_backend("agg")
+    with contextlib.chdir(README.parent), plt.rc_context({"figure.figsize": (7.0, 3.2), "figure.autolayout": True}):
+        exec(code.replace('"torque.png"', repr(str(folder / "torque.png"))), {})
 
 
 def page(folder: Path) -> None:
@@ -83,10 +102,12 @@ def methods(folder: Path) -> None:
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {
+    "exploring_front.gif": exploring,
     "feeder_knee.png": partial(knee, "feeder"),
     "press_knee.png": partial(knee, "press"),
     "compressor_indicator.png": compressor,
     "compressor_cylinders.png": compressor,
+    "torque.png": python_example,
     "page_front.png": page,
     "page_design.png": page,
     "methods.png": methods,

@@ -15,6 +15,7 @@ from mkdocs.structure.files import File, Files
 from docs.site.api_reference import api_reference
 from docs.site.job_reference import job_reference
 from docs.site.python_reference import folder_reference, front_door_reference
+from docs.site.quantity_reference import quantity_reference
 
 ROOT = Path(__file__).resolve().parents[2]
 _MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
@@ -28,6 +29,7 @@ def pages() -> dict[str, Callable[[], str]]:
     """Return what makes each page that is not in docs/, by its place in the site."""
     return {
         **{place: partial(_at_the_top, name) for name, place in _MOVED.items()},
+        "reference/quantities.md": quantity_reference,
         "reference/job-file.md": job_reference,
         "reference/http-api.md": api_reference,
         "reference/python.md": front_door_reference,
@@ -72,6 +74,8 @@ def _inside(found: re.Match[str]) -> str:
     if not target.startswith("../"):
         return found[0]
     name = target.removeprefix("../")
+    if (ROOT / "docs" / name).is_file():  # from a page of the reference
+        return found[0]
     if name in _MOVED:
         return f"[{text}]({_MOVED[name]}{place or ''})"
     if name.endswith(".py") and name.split("/")[0] in _FOLDERS:

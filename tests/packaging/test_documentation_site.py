@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from typing import Any
 
 import pytest
@@ -13,7 +15,9 @@ from docs.site.api_reference import api_reference
 from docs.site.doctests import with_code
 from docs.site.job_reference import job_reference
 from docs.site.python_reference import folder_reference, front_door_reference
+from docs.site.quantity_reference import quantity_reference, requirement, section
 from docs.site.schema_tables import kind
+from slidercrank.objectives.registry import FACTS
 from slidercrank.optimise.job import job_schema
 
 
@@ -36,6 +40,36 @@ def test_reference_of_jobs_names_every_table_and_key() -> None:
     schema, page = job_schema(), job_reference()
     names = {*schema["properties"], *(key for part in schema["$defs"].values() for key in part.get("properties", ()))}
     assert [name for name in sorted(names) if f"| `{name}` |" not in page] == []
+
+
+def test_reference_of_quantities_has_a_section_and_a_row_for_each() -> None:
+    page = quantity_reference()
+    headings = re.findall(r"^### (\w+)$", page, re.MULTILINE)
+    assert sorted(headings) == sorted(FACTS)
+    assert sorted(re.findall(r"^\| \[`(\w+)`\]\(#\1\) \|", page, re.MULTILINE)) == sorted(FACTS)
+    theory = (hooks.ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    assert {of.section for of in FACTS.values()} <= set(re.findall(r"^## (.+)$", theory, re.MULTILINE))
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_a_section_of_a_quantity_defines_it(name: str) -> None:
+    of, text = FACTS[name], section(FACTS[name])
+    for fact in (
+        of.sentence,
+        of.advice,
+        of.formula,
+        of.field,
+        of.kind.metric.symbol,
+        *(need.rule for need in of.needs),
+    ):
+        assert fact in text
+    assert ("may be negative" in text) == of.signed
+    assert text.count("`") % 2 == 0
+    assert "{instead}" not in text
+    assert "got " not in text
+    (limits,) = tomllib.loads(requirement(of)).values()
+    assert list(limits.values()) == [of.usual]
+    assert list(limits) == [{"low": "max", "high": "min", "": "equals"}[of.better]]
 
 
 def test_reference_of_the_api_names_every_operation() -> None:
@@ -77,6 +111,11 @@ def test_links_stay_within_the_site_or_lose_their_target() -> None:
     assert hooks.on_page_markdown(text) == (
         "[a][slidercrank.model.linkage.linkage], [b](index.md#start), c, [d](jobs.md), [e](https://e.org)"
     )
+
+
+def test_links_of_the_reference_into_the_guide_stay() -> None:
+    text = "[a](../theory.md#2-closed-forms), ![b](../sketch.svg)"
+    assert hooks.on_page_markdown(text) == text
 
 
 def test_examples_of_docstrings_are_code() -> None:

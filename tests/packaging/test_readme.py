@@ -1,0 +1,131 @@
+"""README, docs/start.md and docs/commands.md: short, true, and everything in them runs."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import shlex
+import shutil
+import tomllib
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from benchmarks.moving_picture import visits
+from slidercrank.service.cli import app
+from tests.optimise.problems import shipped_front
+
+PICTURE = "exploring_front.gif"
+
+
+@pytest.fixture(scope="module")
+def root(pytestconfig: pytest.Config) -> Path:
+    return pytestconfig.rootpath
+
+
+@pytest.fixture(scope="module")
+def readme(root: Path) -> str:
+    return (root / "README.md").read_text(encoding="utf-8")
+
+
+def page(root: Path, name: str) -> str:
+    return (root / "docs" / name).read_text(encoding="utf-8")
+
+
+def blocks(text: str, kind: str) -> list[str]:
+    return re.findall(rf"^```{kind}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def commands(text: str) -> list[str]:
+    """Return the lines of shells that call slidercrank, without their comments."""
+    lines = (line.split("  #")[0].strip() for block in blocks(text, "sh") for line in block.splitlines())
+    return [line.partition("slidercrank ")[2] for line in lines if "slidercrank " in line]
+
+
+def test_the_readme_is_one_screen_and_begins_with_a_moving_picture(readme: str, root: Path) -> None:
+    assert len(readme.split()) <= 900
+    before, picture, _ = readme.partition(f"](docs/{PICTURE})")
+    assert picture
+    assert len(before.splitlines()) < 10
+    assert "|" not in before
+    assert (root / "docs" / PICTURE).stat().st_size < 1.5e6
+    with Image.open(root / "docs" / PICTURE) as moving:
+        assert getattr(moving, "n_frames", 1) == len(visits(100, 56))
+
+
+def test_the_picture_visits_every_stretch_of_the_front_and_rests_at_its_knee() -> None:
+    shown = visits(100, 56)
+    assert {0, 56, 99} < set(shown)
+    assert max(abs(a - b) for a, b in zip(shown, shown[1:] + shown[:1], strict=True)) <= 6
+    assert max(set(shown), key=shown.count) == 56
+
+
+@pytest.mark.slow
+def test_the_python_of_the_readme_draws_its_figure(readme: str, root: Path, tmp_path: Path) -> None:
+    (code,) = blocks(readme, "python")
+    shutil.copytree(root / "runs", tmp_path / "runs")
+    plt.switch_backend("agg")
+    with contextlib.chdir(tmp_path):
+        exec(code, {})
+    texts = plt.gca().get_legend()
+    assert texts is not None
+    ratios = shipped_front("feeder").columns["time_ratio"][[0, shipped_front("feeder").knee(), -1]]
+    assert [text.get_text() for text in texts.get_texts()] == [f"time ratio {ratio:.2f}" for ratio in ratios]
+    plt.close("all")
+    assert (tmp_path / "torque.png").stat().st_size > 10_000
+
+
+def test_windows_types_what_the_workflow_runs(readme: str, root: Path) -> None:
+    (typed,) = blocks(readme, "powershell")
+    assert blocks(page(root, "start.md"), "powershell") == [typed]
+    workflow = (root / ".github/workflows/checks.yml").read_text(encoding="utf-8")
+    lines = [line.strip() for line in workflow.splitlines()]
+    begin = lines.index(typed.splitlines()[0])
+    assert lines[begin : begin + len(typed.splitlines())] == typed.splitlines()
+
+
+def test_the_table_of_extras_has_each_one_for_users(root: Path) -> None:
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    listed = {
+        name for row in re.findall(r"^\| (`.*?) \|", page(root, "start.md"), re.MULTILINE) for name in row.split(", ")
+    }
+    listed = {name.strip("`") for name in listed}
+    (every,) = project["optional-dependencies"]["all"]
+    named = set(every.partition("[")[2].rstrip("]").split(","))
+    assert {*named, "all"} == {name for name in listed if name in project["optional-dependencies"]}
+
+
+@pytest.mark.slow
+def test_the_front_of_the_first_page_is_that_of_the_feeder(root: Path) -> None:
+    front, text = shipped_front("feeder"), page(root, "start.md")
+    rows = re.findall(r"^ *(\d+) +([\d.* ]+?)(?: knee)? *$", text, re.MULTILINE)
+    assert len(rows) == 6
+    names = "crank_mm rod_mm offset_mm time_ratio peak_torque_Nm least_transmission_angle_deg position_error_mm"
+    for number, cells in rows:
+        for key, cell in zip(names.split(), cells.replace("*", " ").split(), strict=True):
+            last = 10.0 ** -len(cell.partition(".")[2])
+            assert abs(front.columns[key][int(number) - 1] - float(cell)) <= 0.501 * last, (number, key)
+    assert f"\n {front.knee() + 1} " in text
+    for sentence in front.trade_offs(front.knee())[:2]:
+        assert sentence in text
+
+
+def test_the_readme_quotes_a_trade_off_of_the_knee(readme: str) -> None:
+    front = shipped_front("feeder")
+    quoted = re.search(r'"(1 deg more [^"]+)\."', readme)
+    assert quoted is not None
+    assert quoted[1] in front.trade_offs(front.knee())
+
+
+@pytest.mark.slow
+def test_every_command_of_the_page_runs(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(root / "runs", tmp_path / "runs")
+    monkeypatch.chdir(tmp_path)
+    listed = commands(page(root, "commands.md"))
+    assert len(listed) > 12
+    for line in listed:
+        done = CliRunner().invoke(app, shlex.split(line))
+        assert done.exit_code == 0, f"{line}: {done.output}"
