@@ -33,6 +33,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 
+from . import load_pictures
 from .moving_picture import exploring_front
 from .service_process import service
 
@@ -111,6 +112,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "page_front.png": page,
     "page_design.png": page,
     "methods.png": methods,
+    **dict.fromkeys(load_pictures.names(), load_pictures.draw),
 }
 
 

@@ -54,7 +54,7 @@ def section(quantity: Quantity) -> str:
         "Unit": f"{units(quantity)}; column `{quantity.field}`",
         "Sign": "may be negative" if quantity.signed else "",
         "Good side": {"low": "low", "high": "high", "": "none"}[quantity.better],
-        "Needs": f"\n{required}" if required else "",
+        "Needs": required,
         "Default": _floor(quantity),
         "Allowable": f"the {quantity.allowed_by}" if quantity.allowed_by else "",
         "Example": f"`{requirement(quantity)}`",
