@@ -74,7 +74,7 @@ def peaks_of_shaft(
             values[begin:end, place], angles[begin:end, place] = found[:2]
             if len(group) == 1 and count > 1:
                 angles[begin:end, place] = np.mod(found[1] + cylinders_of(mechanism)[place].lead, shaft.period)
-            if slopes is not None and found[2] is not None:
+            if slopes is not None:
                 slopes[begin:end, place] = found[2]
 
     in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))

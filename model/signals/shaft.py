@@ -21,8 +21,9 @@ from ..machine.members import alone, cylinders_of
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves
+from .cycle_segments import Segments
 from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, Found, Items, cut_rates, follow_kernel
-from .shaft_segments import CONTACT, FIXED, Breaks, Segments, joined, panels, segments_of
+from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
 from .signals import Signal
 from .watch import inputs_of, watch_of
 
@@ -228,7 +229,7 @@ class Shaft:
     def _contacts(self, breaks: Breaks) -> Breaks:
         """Return where the force of a guide changes sides, between neighbouring samples."""
         segments = segments_of(breaks, self.period)
-        row, inside, low, width, _ = panels(segments, np.full(len(self.drives), _CONTACTS))
+        row, inside, low, width, _ = segments.panels(np.full(len(self.drives), _CONTACTS))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         parts = []
         for member in self.members:

@@ -12,10 +12,11 @@ import numpy as np
 
 from ..arrays import Array, Mask, Whole
 from ..machine.speed_profile import time_per_angle
+from .cycle_segments import Segments
 from .panels import resolved_tail
 from .shaft import Shaft
 from .shaft_peaks import NOTHING
-from .shaft_segments import Segments, panels, segments_of
+from .shaft_segments import segments_of
 
 MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
 """Rows of `Means`: mean and mean square over the crank angle, mean square over time."""
@@ -40,7 +41,7 @@ class Means:
 def shaft_means(shaft: Shaft, count: int) -> Means:
     """Return the means of n designs."""
     segments = segments_of(shaft.breaks, shaft.period)
-    row, inside, low, width, _ = panels(segments, shaft.fineness)
+    row, inside, low, width, _ = segments.panels(shaft.fineness)
     rows = 2 if shaft.profile is None else 3
     sums, slopes, sizes = np.zeros((rows, count)), np.zeros((rows, count, shaft.numbers)), np.zeros((2, count))
     for depth in range(_DEEPEST + 1):

@@ -1,41 +1,18 @@
-"""Breakpoints of many crankshafts in flat lists, and the segments and panels between them."""
+"""Breakpoints of many crankshafts in flat lists, and the segments between them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ..arrays import Array, Whole
-from ..dynamics.segments import within
 from ..machine.two_turns import TURN
+from .cycle_segments import Segments
 
 FIXED, CONTACT = -1, -2
 """Codes of a breakpoint that no design moves, and of one where a guide's force changes sides."""
 _THIN = 1e-13  # rad: breakpoints closer than this are one
-
-
-@dataclass(frozen=True)
-class Segments:
-    """The cycles of n designs between breakpoints: s segments in order of design and angle, with smooth curves.
-
-    row: design. low, high: rad. inside: an angle that tells the pieces. cut: the breakpoint at its start. after: the
-    segment behind, of a cycle that repeats.
-    """
-
-    row: Whole
-    low: Array
-    high: Array
-    cut: Whole
-    after: Whole
-
-    @property
-    def inside(self) -> Array:
-        """A crank angle in each that tells strokes and pieces."""
-        low: Any = self.low
-        high: Any = self.high
-        return np.asarray(within(low, high))
 
 
 @dataclass(frozen=True)
@@ -80,14 +57,4 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     behind = np.where(behind > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), behind)
     moves = (breaks.code[cut[behind]] == FIXED) & (breaks.code[thin] != FIXED)
     cut[behind[moves]] = thin[moves]
-    return Segments(row, low, high, cut, after)
-
-
-def panels(segments: Segments, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
-    """Return design, entering angle, start, width and segment of panels, at least `fineness` (n,) a turn."""
-    width = segments.high - segments.low
-    count = np.maximum(1, np.ceil(width / TURN * fineness[segments.row])).astype(np.int64)
-    segment = np.repeat(np.arange(len(width)), count)
-    place = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
-    own = (width / count)[segment]
-    return segments.row[segment], segments.inside[segment], segments.low[segment] + place * own, own, segment
+    return Segments(row, low, high, cut, after, TURN)

@@ -101,6 +101,7 @@ def swing_curves(
     """Return the curves of a linkage that `require_swing` has let pass, at shares (n,) of the time of one way."""
     share = np.atleast_1d(np.asarray(share, dtype=np.float64))
     s, s_1, s_2 = way_of(swing.law, share, swing.table)
+    s_1 = np.maximum(s_1, 0.0)  # at rest rounding may give a speed of the other sense, and turn friction over
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
     first, last = driver_ends(linkage, swing)
     # Exact at the ends, where rounding might lie beyond a dead point or the reach of the rod.

@@ -1,15 +1,14 @@
 """Peaks of a curve over a swing for many designs, to machine precision, with exact derivatives.
 
-Each piece is sampled; tops between samples are refined on the slope over the time, which the complex step gives
-exactly. The derivative of a peak by a design's number is the partial one at its share of the time (envelope theorem);
-a peak on a cut moves with it.
+The pieces of both ways are the segments that `peak_search` looks through; slopes over the time and derivatives by the
+design's numbers are by the complex step.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,8 @@ from ..arrays import Array, Whole
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
+from ..signals.cycle_segments import Segments
+from ..signals.peak_search import Maxima, find_maxima
 from .closure import passes
 from .many import Many, Pieces
 from .points import DRIVE, ERROR
@@ -24,10 +25,7 @@ from .swing import Swing
 
 KEPT = 6
 """Peaks kept of a design, highest first."""
-_LEAST, _ALL = 9, 41  # samples of a piece, and of a way in one piece
-_NEAR = 0.1  # tops this much below the highest sample, relative, cannot be the highest peak
-_ITERATIONS = 60
-_SAME = 1e-9
+_PANELS = 2.0  # of a way, to begin with
 _CHUNK = 128
 
 
@@ -46,15 +44,61 @@ class SwingPeaks:
 
 
 @dataclass(frozen=True)
-class _Tops:
-    """Candidates (p,) of many designs: where they are, and between which shares."""
+class _Curve:
+    """A state over both ways, or over one: places are shares of the time, 1 more on the way back.
 
-    design: Whole
-    piece: Whole
-    cut: Whole
-    share: Array
-    low: Array
-    high: Array
+    toward: the sign (n,) that it is judged by; None for its size.
+    """
+
+    many: Many
+    ways: tuple[Pieces, ...]
+    state: int
+    numbers: int
+    toward: Array | None = None
+
+    def segments(self) -> Segments:
+        """Return the pieces of the ways, each way back after one forth."""
+        parts = []
+        for way, own in enumerate(self.ways):
+            design, piece = np.nonzero(own.live)
+            low, high = own.cuts[design, piece], own.cuts[design, piece + 1]
+            parts.append((design, low + own.back, high + own.back, self._numbered(way, design, piece)))
+        row, low, high, cut = (np.concatenate(part) for part in zip(*parts, strict=True))
+        order = np.lexsort((low, row))
+        row, low, high, cut = row[order], low[order], high[order], cut[order]
+        after = np.append(np.arange(1, len(row)), 0)
+        first = np.searchsorted(row, row, side="left")
+        last = row[after] != row
+        after[last] = first[last] if len(self.ways) > 1 else -1
+        return Segments(row, low, high, cut, after)
+
+    def at(
+        self, row: Whole, inside: Array, place: Array, *, rate: Array | None = None, wanted: bool = False
+    ) -> tuple[Array, Array]:
+        """Return value, slope and derivatives; see `peak_search.Curve`."""
+        back = np.floor(inside)[:, None]
+        points = row[:, None], place - back, inside[:, None] - back, back
+        found = self.many.states(*points, STEP)[..., self.state]
+        curve = np.stack([found.real, found.imag / STEP], axis=-1)
+        if wanted:
+            slips = np.zeros((len(row), self.numbers)) if rate is None else rate
+            own = [self.many.states(*points, STEP * slips[:, v : v + 1], v) for v in range(self.numbers)]
+            curve = np.concatenate([curve, *(each[..., self.state, None].imag / STEP for each in own)], axis=-1)
+        if self.toward is not None:
+            curve = self.toward[row][:, None, None] * curve
+        return curve, np.nan_to_num(np.abs(found.real))
+
+    def rates(self, cuts: Whole, inside: Array) -> Array:
+        """Return the derivatives of cuts; see `peak_search.Curve`."""
+        found = np.zeros((len(cuts), self.numbers))
+        for way, own in enumerate(self.ways):
+            rows = np.flatnonzero(cuts % len(self.ways) == way)
+            design, cut = np.divmod(cuts[rows] // len(self.ways), own.cuts.shape[1])
+            found[rows] = self.many.moved(own, design, cut, inside[rows] - own.back)
+        return found
+
+    def _numbered(self, way: int, design: Whole, cut: Whole) -> Whole:
+        return np.asarray((design * self.ways[way].cuts.shape[1] + cut) * len(self.ways) + way)
 
 
 def swing_peaks(
@@ -76,11 +120,10 @@ def least_drives(
     Where the least one is below zero, loads push the linkage on, and the drive holds it back.
     """
 
-    def found(many: Many) -> tuple[Array, Array, Array]:
+    def found(many: Many) -> Maxima:
         first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
-        own = many.pieces(back=back)
-        return _of_way(many, own, DRIVE, kept, gradients, toward)
+        return _maxima(many, (many.pieces(back=back),), DRIVE, kept, gradients, toward)
 
     return _gathered(mechanism, swing, designs, kept, gradients, found, slow=True)
 
@@ -101,7 +144,7 @@ def _gathered(
     designs: Array,
     kept: int,
     gradients: bool,
-    of: Any,
+    of: Callable[[Many], Maxima],
     *,
     slow: bool = False,
     free: bool = False,
@@ -123,141 +166,32 @@ def _gathered(
             own = own[~stuck]
             many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
         if len(own):
-            values[own], places[own], found = of(many)
+            found = of(many)
+            values[own], places[own] = found.values, found.places
             if gradients:
-                slopes[own] = many.numbers.chain(found)
+                slopes[own] = many.numbers.chain(found.slopes)
 
     in_chunks(len(rows), work, size=_CHUNK)
     return SwingPeaks(values, places, slopes if gradients else None)
 
 
-def _peaks(many: Many, state: int, kept: int, gradients: bool) -> tuple[Array, Array, Array]:
+def _peaks(many: Many, state: int, kept: int, gradients: bool) -> Maxima:
     # A force on the slider has the guide's friction by its size: without slopes its kink needs no cut.
     contacts = gradients or many.swing.driver == "crank"
-    cut = partial(many.pieces, forces=state != ERROR, contacts=contacts)
-    ways = many.ways() if state != ERROR else (False,)
-    parts = [_of_way(many, cut(back=back), state, kept, gradients) for back in ways]
-    values, places, slopes = (np.concatenate(each, axis=1) for each in zip(*parts, strict=True))
-    order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
-    first, where = np.take_along_axis(values, order, axis=1), np.take_along_axis(places, order, axis=1)
-    return first, where, np.take_along_axis(slopes, order[:, :, None], axis=1)
+    forces = state != ERROR
+    ways = many.ways() if forces else (False,)
+    cut = tuple(many.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
+    return _maxima(many, cut, state, kept, gradients)
 
 
-def _of_way(
-    many: Many, own: Pieces, state: int, kept: int, gradients: bool, toward: Array | None = None
-) -> tuple[Array, Array, Array]:
-    """Return the peaks of one way. toward: the sign (n,) that a state is judged by; None for its size."""
-    n, back = many.count, float(own.back)
-    tops = _tops(many, own, state, kept, gradients, toward)
-    inside = own.inside[tops.design, tops.piece]
-    share, cut = _refined(many, tops, inside, back, state, toward)
-    found = many.states(tops.design, share, inside, back)[:, state].real
-    sides = np.where(found < 0.0, -1.0, 1.0) if toward is None else toward[tops.design]
-    values, places = np.full((n, kept), -np.inf), np.full((n, kept), np.nan)
-    slopes = np.zeros((n, kept, many.columns if gradients else 0))
-    order = np.lexsort((-sides * found, tops.design))
-    design, rank = tops.design[order], _ranks(tops.design[order])
-    fits = rank < kept
-    order, design, rank = order[fits], design[fits], rank[fits]
-    values[design, rank], places[design, rank] = (sides * found)[order], share[order] + back
-    if gradients:
-        sign = sides[order]
-        slips = _slips(many, own, tops.design[order], cut[order], inside[order])
-        for v in range(many.columns):
-            stepped = many.states(tops.design[order], share[order], inside[order], back, STEP * slips[:, v], v)
-            slopes[design, rank, v] = sign * stepped[:, state].imag / STEP
-    return values, places, slopes
+def _maxima(
+    many: Many, ways: tuple[Pieces, ...], state: int, kept: int, gradients: bool, toward: Array | None = None
+) -> Maxima:
+    curve = _Curve(many, ways, state, many.columns if gradients else 0, toward)
+    return find_maxima(curve, curve.segments(), np.full(many.count, _PANELS), kept=kept, signed=toward is not None)
 
 
-def _slips(many: Many, own: Pieces, design: Whole, cut: Whole, inside: Array) -> Array:
-    slips = np.zeros((len(design), many.columns))
-    on = np.flatnonzero(cut >= 0)
-    if len(on):
-        slips[on] = many.moved(own, design[on], cut[on], inside[on])
-    return slips
-
-
-def _tops(many: Many, own: Pieces, state: int, kept: int, gradients: bool, toward: Array | None) -> _Tops:
-    """Return the highest samples that no neighbour exceeds, a few of each design."""
-    live, pieces = own.live, own.cuts.shape[1] - 1
-    count = _ALL if pieces == 1 else max(_LEAST, _ALL // pieces)
-    u = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, count))
-    share = own.cuts[:, :-1, None] * (1.0 - u) + own.cuts[:, 1:, None] * u
-    design, piece = np.nonzero(live)
-    inside = np.broadcast_to(own.inside[design, piece][:, None], (len(design), count))
-    values = np.full(share.shape, -np.inf)
-    rows = np.broadcast_to(design[:, None], inside.shape)
-    found = many.states(rows, share[design, piece], inside, float(own.back))[..., state].real
-    values[design, piece] = np.abs(found) if toward is None else toward[design][:, None] * found
-    values = np.where(np.isnan(values), -np.inf, values)
-    padded = np.pad(values, ((0, 0), (0, 0), (1, 1)), constant_values=-np.inf)
-    top = (values >= padded[:, :, :-2]) & (values > padded[:, :, 2:])
-    highest = values.max(axis=(1, 2), keepdims=True)
-    near = 2.0 * _NEAR if gradients else _NEAR
-    if toward is None:
-        top &= values >= (1.0 - near) * highest
-    else:
-        size = np.abs(np.where(np.isfinite(values), values, 0.0)).max(axis=(1, 2), keepdims=True)
-        top &= values >= highest - near * size
-    flat = np.where(top, values, -np.inf).reshape(many.count, -1)
-    best = np.argsort(-flat, axis=1, kind="stable")[:, : 2 * kept]
-    at, rank = np.nonzero(np.isfinite(np.take_along_axis(flat, best, axis=1)))
-    place = best[at, rank]
-    piece, i = place // count, place % count
-    return _Tops(
-        at,
-        piece,
-        np.where(i == 0, piece, np.where(i == count - 1, piece + 1, -1)),
-        share[at, piece, i],
-        share[at, piece, np.maximum(i - 1, 0)],
-        share[at, piece, np.minimum(i + 1, count - 1)],
-    )
-
-
-def _refined(
-    many: Many, tops: _Tops, inside: Array, back: float, state: int, toward: Array | None
-) -> tuple[Array, Whole]:
-    """Return the shares of tops, roots of the slope by bracketed secants, and the cut of each, -1 for none."""
-    share, cut = tops.share.copy(), tops.cut.copy()
-
-    def slope(rows: Whole) -> Array:
-        found = many.states(tops.design[rows], share[rows], inside[rows], back, STEP)[:, state]
-        side = np.where(found.real < 0.0, -1.0, 1.0) if toward is None else toward[tops.design[rows]]
-        return np.asarray(side * found.imag / STEP)
-
-    low, high = tops.low.copy(), tops.high.copy()
-    rows = np.arange(len(share))
-    now = slope(rows)
-    # At an end of a piece the slope tells whether the top is there or further inside.
-    first, last = cut == tops.piece, cut == tops.piece + 1
-    stays = (first & (now <= 0.0)) | (last & (now >= 0.0))
-    cut[~stays] = -1
-    rows = rows[~stays & (now != 0.0)]
-    now = now[rows]
-    before, old = share[rows].copy(), now.copy()
-    for i in range(_ITERATIONS):
-        if not len(rows):
-            break
-        low[rows], high[rows] = (
-            np.where(now > 0.0, share[rows], low[rows]),
-            np.where(now > 0.0, high[rows], share[rows]),
-        )
-        middle = 0.5 * (low[rows] + high[rows])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            secant = share[rows] - now * (share[rows] - before) / (now - old)
-        good = (secant > low[rows]) & (secant < high[rows]) & (i > 0) & (i % 4 != 3)
-        trial = np.where(good, secant, middle)
-        done = (np.abs(trial - share[rows]) < 2e-16) | (high[rows] - low[rows] < 4e-16)
-        before, old = share[rows].copy(), now
-        share[rows] = np.where(done, share[rows], trial)
-        rows, before, old = rows[~done], before[~done], old[~done]
-        now = slope(rows)
-        flat = now == 0.0
-        rows, before, old, now = rows[~flat], before[~flat], old[~flat], now[~flat]
-    return share, cut
-
-
-def _at_ends(many: Many, gradients: bool) -> tuple[Array, Array, Array]:
+def _at_ends(many: Many, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
     for back in many.ways():
         for share in (0.0, 1.0):
@@ -274,10 +208,5 @@ def _at_ends(many: Many, gradients: bool) -> tuple[Array, Array, Array]:
     order = np.argsort(-np.stack(values, axis=1), axis=1, kind="stable")
     first = np.take_along_axis(np.stack(values, axis=1), order, axis=1)
     where = np.take_along_axis(np.stack(places, axis=1), order, axis=1)
-    return first, where, np.take_along_axis(np.stack(slopes, axis=1), order[:, :, None], axis=1)
-
-
-def _ranks(design: Whole) -> Whole:
-    """Return the rank of each of sorted rows within its design."""
-    start = np.searchsorted(design, design, side="left")
-    return np.asarray(np.arange(len(design)) - start, dtype=np.int64)
+    found_slopes = np.take_along_axis(np.stack(slopes, axis=1), order[:, :, None], axis=1)
+    return Maxima(first, where, found_slopes, first[:, 0])

@@ -85,7 +85,7 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
 @pytest.mark.parametrize("friction", [False, True])
 def test_peaks_are_not_below_a_dense_sweep(friction: bool) -> None:
     share = np.linspace(0.0, 1.0, 20_001)
-    for machine, linkage, swing in cases(4, seed=72, friction=friction):
+    for machine, linkage, swing in cases(20, seed=72, friction=friction):
         found = values(machine, swing, design_of(linkage))
         peak = found["peak_actuator_force" if swing.driver == "slider" else "peak_actuator_torque"]
         curves = [swing_curves(machine, linkage, swing, share, back=back) for back in (False, True)]

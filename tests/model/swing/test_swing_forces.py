@@ -32,6 +32,16 @@ def moving(machine: Mechanism, curves: SwingCurves, i: int, way: float) -> Mecha
 
 
 @pytest.mark.parametrize("back", [False, True])
+def test_the_drive_at_rest_is_the_limit_of_that_on_the_way(back: bool) -> None:
+    """Loads and friction that oppose the motion do so to the very ends, of tables of the motion too."""
+    at, beside = np.array([0.0, 1.0]), np.array([1e-9, 1.0 - 1e-9])
+    for machine, linkage, swing in random_swings(100, seed=6, friction=True):
+        own = require_swing(machine, linkage, swing)
+        found, near = (swing_curves(machine, own, swing, share, back=back).drive for share in (at, beside))
+        assert found == pytest.approx(near, rel=1e-6, abs=1e-6 * float(np.nanmax(np.abs(near))), nan_ok=True)
+
+
+@pytest.mark.parametrize("back", [False, True])
 def test_the_drive_does_the_virtual_work(back: bool) -> None:
     """On 300 machines, each at six places: T from energies, and P = T / x'."""
     seen = set()

@@ -1,0 +1,43 @@
+"""Segments of the cycles of many designs, in flat lists, and the panels of these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, Whole
+from ..dynamics.segments import within
+
+
+@dataclass(frozen=True)
+class Segments:
+    """The cycles of n designs between breakpoints: s segments in order of design and place, with smooth curves.
+
+    row: design. low, high: places, of the crank angle or of the time. cut: the breakpoint at its start. after: the
+    segment behind, -1 where nothing follows. unit: of the place, which panels are counted in.
+    """
+
+    row: Whole
+    low: Array
+    high: Array
+    cut: Whole
+    after: Whole
+    unit: float = 1.0
+
+    @property
+    def inside(self) -> Array:
+        """A place in each that tells strokes and pieces."""
+        low: Any = self.low
+        high: Any = self.high
+        return np.asarray(within(low, high))
+
+    def panels(self, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
+        """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) a unit."""
+        width = self.high - self.low
+        count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)
+        segment = np.repeat(np.arange(len(width)), count)
+        place = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
+        own = (width / count)[segment]
+        return self.row[segment], self.inside[segment], self.low[segment] + place * own, own, segment
