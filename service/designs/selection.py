@@ -141,8 +141,9 @@ def value_of(key: str, given: object, kind: Kind, *, sign: Any = "any") -> float
 
 def _number(match: re.Match[str], column: Column) -> float:
     """Return the value in the column's unit; without a unit only where the column's name has it."""
+    from ...objectives.amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
-    from ...objectives.units import kind_for, to_si
+    from ...objectives.units import to_si
 
     name, comparison, value = match.groups()
     if is_formula(value):
@@ -152,7 +153,7 @@ def _number(match: re.Match[str], column: Column) -> float:
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain
     try:
-        return to_si(value, kind_for(column.unit), plain=False) * column.factor
+        return to_si(value, kind_of_amount(column.unit), plain=False) * column.factor
     except InputError as error:
         raise InputError(f"the value in {match[0].strip()!r} {error}") from None
 

@@ -21,6 +21,7 @@ ROWS: list[Row] = [
         "peak_slider_acceleration_m_s2": 100.0,
         "slack_peak_torque_Nm": 5.0,
         "residual": 1e-9,
+        "price_EUR": 10.0 * torque,
     }
     for angle, torque, ratio in ((39.0, 20.0, 3.2), (40.0 - 1e-8, 30.0, math.inf), (41.0, 40.0, math.nan))
 ]
@@ -49,12 +50,21 @@ ROWS: list[Row] = [
         ("peak_slider_acceleration < 90 m/s^2", []),
         ("slack_peak_torque > 4 N m", [0, 1, 2]),
         ("residual <= 1e-6", [0, 1, 2]),
+        ("price <= 300 EUR", [0, 1]),
+        ("price_EUR > 200", [1, 2]),
         ("slow_stroke = inward", [0, 1, 2]),
         ("slow_stroke != 'inward'", []),
     ],
 )
 def test_a_condition_selects(text: str, expected: list[int]) -> None:
     assert select(ROWS, [text]) == expected
+
+
+@pytest.mark.parametrize(("given", "unit"), [("300", "with its unit"), ("300 USD", "in EUR")])
+def test_an_amount_of_a_catalogue_needs_its_own_unit(given: str, unit: str) -> None:
+    with pytest.raises(InputError, match=rf"an amount in EUR.*got \"{given}\"; write it like \"100 EUR\"") as refused:
+        select(ROWS, [f"price <= {given}"])
+    assert unit in str(refused.value)
 
 
 def test_conditions_add_up() -> None:
