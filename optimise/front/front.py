@@ -148,10 +148,10 @@ class ParetoFront:
     def ask(self, question: str, row: int | None = None, /, **inputs: object) -> dict[str, Any]:
         """Return the answer of the front to a question, or of the design in a row, as `Problem.ask` gives it.
 
-        "certify" and "wish" are asked of a front, as the commands are: `front.ask("certify", epsilon=0.02)`,
-        `front.ask("wish", at={"peak_torque": "110 N m"})`, with a row that "improve" and "keep" speak of; all others of
-        a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question, row or input, and
-        for what the front does not have.
+        "certify", "wish", "like" and "round" are asked of a front, as the commands are: `front.ask("certify",
+        epsilon=0.02)`, `front.ask("wish", at={"peak_torque": "110 N m"})`, with a row that "improve" and "keep" speak
+        of, `front.ask("round", 3, to="0.5 mm")`; all others of a design: `front.ask("press", front.knee())`. Raises
+        `InputError` for an unknown question, row or input, and for what the front does not have.
         """
         if subject_of(question) == "front":
             answer: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)

@@ -38,6 +38,7 @@ _PARTS = (
     *(
         "analysis",
         "design_questions",
+        "like",
         "rounding",
         "topics",
         "certificate",

@@ -45,7 +45,8 @@ _TYPES: dict[Any, Any] = {list: list[_Text], dict: dict[_Text, _Value]}
 
 def _field(one: Plain) -> tuple[Any, Any]:
     """Return type and field of an input in a body."""
-    default, examples = ... if one.required else one.value, None if one.sent is None else [one.sent]
+    default = ... if one.required else one.value if get_origin(one.type) is None else []
+    examples = None if one.sent is None else [one.sent]
     field = Field(default, description=one.help, examples=examples, **_limits(one))
     return _TYPES.get(get_origin(one.type), one.type), field
 

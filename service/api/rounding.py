@@ -6,26 +6,28 @@ import contextlib
 import itertools
 import json
 from collections.abc import AsyncIterator, Generator
-from typing import Annotated, Any
+from typing import Any
 
 from anyio.to_thread import run_sync
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 from fastapi.sse import format_sse_event
-from pydantic import BaseModel, Field
+from pydantic import Field
 
-from ..designs.rounding import allowed_of, rounded_record, rounded_record_in, steps_of
+from ..questions.discovery import WIDER
+from ..questions.wider import Answer
 from ..runs.result import json_ready
 from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
+from .input_parameters import body_of
 from .models import UnitsAsked
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
-_MOST_STEPS, _MOST_TOLD = 50, 100
+QUESTION = WIDER["round"]
 _ROUNDED_EXAMPLE = {
     "met": True,
     "message": "311 of 2016 rounded designs within 16 steps keep every requirement within 0.1 mm of stroke",
@@ -68,20 +70,6 @@ _ROUNDED_STREAM = (
 _Event = tuple[str, str]
 """Kind and data of an event."""
 _Events = Generator[_Event, None, None]
-_Texts = Annotated[list[Annotated[str, Field(max_length=500)]], Field(max_length=_MOST_STEPS)]
-
-
-class Steps(BaseModel, extra="forbid", strict=True):
-    """Steps that a design is to be rounded to, and by how much it may miss requirements."""
-
-    to: Annotated[_Texts, Field(min_length=1)] = Field(
-        description='step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one number: "rod=1 mm"',
-        examples=[["0.5 mm", "rod=1 mm"]],
-    )
-    allow: _Texts = Field(
-        [], description="requirement, =, and by how much designs may miss it", examples=[["stroke=0.1 mm"]]
-    )
-    count: int = Field(5, ge=1, le=_MOST_TOLD, description="designs to list at most", examples=[5])
 
 
 class RoundedModel(OfDesign):
@@ -98,9 +86,8 @@ _ROUNDED_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 
-@router.post("/jobs/{number}/designs/{design}/rounded", response_model=RoundedModel, responses=_ROUNDED_RESPONSES)
 def round_design(
-    request: Request, found: FrontDep, design: DesignNumber, given: Steps, units: UnitsAsked = "metric"
+    request: Request, found: FrontDep, design: DesignNumber, given: Any, units: UnitsAsked = "metric"
 ) -> Response:
     """Find the best designs of round numbers near a design that meet every requirement, and what each costs.
 
@@ -108,18 +95,17 @@ def round_design(
     false. With `Accept: text/event-stream` the progress is streamed; closing the connection then ends the search.
     """
     found.row(design)
-    steps = steps_of(given.to, found.front.part(design - 1), key="to")
-    allowed = allowed_of(given.allow, key="allow")
 
     def search() -> _Events:
         """Yield kind and data of the events."""
-        from ...optimise.front.rounding_search import Stage
+        from ..questions.round.analysis import search
 
-        for at in found.front.rounding(design - 1, steps, count=given.count, allow=allowed):
-            if isinstance(at, Stage):
-                yield "progress", json.dumps(vars(at))
+        words = {one.name: one.name for one in QUESTION.inputs}
+        for at in search(found.front, design - 1, words, **QUESTION.read(given.model_dump(), design)):
+            if isinstance(at, Answer):
+                record = json_ready(at.record(units))
             else:
-                record = json_ready(rounded_record_in(units, rounded_record(at), at))
+                yield "progress", json.dumps(vars(at))
         yield "rounded", RoundedModel(job=found.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()
@@ -128,6 +114,16 @@ def round_design(
         *_, (_, data) = itertools.chain([first], events)
         return Response(data, media_type="application/json")
     return StreamingResponse(_lines(first, events), headers=STREAM_HEADERS, media_type=STREAM)
+
+
+round_design.__annotations__["given"] = body_of(QUESTION, "Steps")
+router.add_api_route(
+    "/jobs/{number}/designs/{design}/rounded",
+    round_design,
+    methods=["POST"],
+    response_model=RoundedModel,
+    responses=_ROUNDED_RESPONSES,
+)
 
 
 async def _lines(first: _Event, events: _Events) -> AsyncIterator[bytes]:

@@ -132,9 +132,7 @@ class Designs:
         to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: by how much designs
         may miss requirements, "stroke=0.1 mm".
         """
-        steps, allowed = ([texts] if isinstance(texts, str) else list(texts) for texts in (to, allow))
-        body = {"to": steps, "allow": allowed, "count": count}
-        return self._asked(number, design, "rounded", {"units": units}, body)
+        return self._ask_wider(WIDER["round"], number, design, {"to": to, "allow": allow, "count": count}, units)
 
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
         """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
@@ -143,11 +141,13 @@ class Designs:
         found = self._asked(number, design, "curves", {"angles": angles})
         return pd.DataFrame(found).set_index("crank_angle_deg")
 
-    def _ask_wider(self, of: WiderQuestion, number: int, design: int | None, inputs: Record) -> Record:
+    def _ask_wider(
+        self, of: WiderQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
+    ) -> Record:
         """Return the answer of a front, or of what it knows of one of its designs."""
         asked = of.read(inputs, design) | (given(design=design) if of.row == "may" else {})
         path = of.path.format(number=number, design=design)
-        found = self._connection.ask(path, *((None, asked) if of.posted else (asked,)))
+        found = self._connection.ask(path, *(({"units": units}, asked) if of.posted else (asked,)))
         return found[of.key] if of.key else found
 
     def _asked(

@@ -56,7 +56,8 @@ class Plain(Input):
 
         form = get_origin(self.type)
         value: Any = [given] if isinstance(given, str) and form in (list, dict) else given
-        if form is dict and isinstance(value, list | tuple):
+        value = list(value) if isinstance(value, tuple) else value
+        if form is dict and isinstance(value, list):
             value = texts_by_name(value, word, self.form, self.example)
         try:
             return self._adapter.validate_python(value, strict=True)

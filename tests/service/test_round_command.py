@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.cli import app
-from slidercrank.service.designs.rounding import steps_of
 from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.questions.round.analysis import steps_of
 from slidercrank.service.runs.stored_runs import problem_of, read_run
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -141,7 +141,7 @@ def test_the_option_that_is_suggested_makes_the_nearest_designs_do(kept: Path, c
 
 
 def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    from slidercrank.service.commands import round as module
+    from slidercrank.service.commands import input_options
 
     shown: list[str] = []
 
@@ -149,7 +149,7 @@ def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch
         def update(self, text: str) -> None:
             shown.append(text)
 
-    monkeypatch.setattr(module, "waiting", lambda _: contextlib.nullcontext(Status()))
+    monkeypatch.setattr(input_options, "waiting", lambda _: contextlib.nullcontext(Status()))
     done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
     assert done.exit_code == 3, done.stderr
     assert shown[0].startswith("screening combinations 0/")
@@ -227,7 +227,7 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
         (["transmission_angle=.5%"], 'must be an angle, not a percentage; got ".5%"; write "0.2 deg"'),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
         (["0.1 mm"], '--allow is a requirement, =, and by how much it may be missed; got "0.1 mm"'),
-        (["stroke=1 mm", "stroke=2 mm"], "--allow gives each requirement once; got stroke twice"),
+        (["stroke=1 mm", "stroke=2 mm"], "--allow gives each name once; got stroke twice"),
         (["stroke_in=1 mm", "stroke=2 mm"], "got two for stroke"),
     ],
 )

@@ -54,7 +54,8 @@ class Doors:
         """Return what a command prints as JSON, without the names of the run and of what was asked."""
         done = self.command(name, row, given, "--json")
         assert done.exit_code == 0, done.stderr
-        return {key: value for key, value in json.loads(done.stdout).items() if key not in ("run", "wishes")}
+        left = ("run", "wishes") if WIDER[name].row != "must" else ("run", "number")
+        return {key: value for key, value in json.loads(done.stdout).items() if key not in left}
 
     def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> Answer:
         """Return the answer to an agent."""
@@ -165,6 +166,49 @@ def test_a_wish_in_texts_is_one_by_name(doors: Doors) -> None:
     assert doors.front.ask("wish", at=texts) == doors.front.ask("wish", at=by_name)
 
 
+def test_random_steps_round_a_design_alike_at_every_door(doors: Doors) -> None:
+    random = np.random.default_rng(33)
+    for row in random.choice(len(doors.front), 2, replace=False).tolist():
+        step, miss, count = (
+            round(float(random.uniform(0.5, 2.0)), 3),
+            float(random.uniform(0.2, 1.0)),
+            int(random.integers(1, 5)),
+        )
+        given = {"to": [f"{step} mm", "rod=5 mm"], "allow": [f"stroke={miss!r} mm"], "count": count}
+        rounded = assert_alike(doors, "round", row, given)
+        assert 1 <= len(rounded["designs"]) <= count
+        for design in rounded["designs"]:
+            assert design["rod_mm"] % 5.0 == pytest.approx(0.0)
+            assert (
+                abs(design["stroke_mm"] - 280.0 if "stroke_mm" in design else design["slack_stroke_mm"]) <= miss + 1e-9
+            )
+
+
+def test_a_random_limit_gives_a_like_design_at_every_door(doors: Doors) -> None:
+    random = np.random.default_rng(34)
+    for row in random.choice(len(doors.front), 2, replace=False).tolist():
+        rod = float(1e3 * doors.front.dimensions[row, 1] * random.uniform(0.8, 0.97))
+        like = assert_alike(doors, "like", row, {"where": [f"rod <= {rod!r} mm"]})
+        assert like["design"]["rod_mm"] <= rod * (1.0 + 1e-9)
+        moved = like["design"]["rod_mm"] - doors.front.designs["rod_mm"].iloc[row]
+        assert like["moved"]["rod_mm"] == pytest.approx(moved)
+
+
+def test_what_no_design_meets_is_an_answer_at_every_door(doors: Doors) -> None:
+    impossible = {"where": ["transmission_angle >= 89 deg"]}
+    answer = doors.front.ask("like", 1, **impossible)
+    assert (answer["status"], list(answer)) == ("infeasible", ["status", "message"])
+    assert doors.client.ask(doors.number, 2, "like", **impossible) == answer
+    done = doors.command("like", 1, impossible)
+    assert (done.exit_code, done.stderr.strip()) == (3, f"slidercrank: {answer['message']}")
+    assert doors.agent("like", 1, impossible).is_error
+    coarse = {"to": "100 mm"}
+    rounded, done = doors.front.ask("round", 1, **coarse), doors.command("round", 1, coarse)
+    assert not rounded["met"]
+    assert done.exit_code == 3
+    assert done.stderr.strip().startswith(f"slidercrank: {rounded['message']}")
+
+
 def test_a_random_proof_is_the_same_at_every_door(doors: Doors) -> None:
     epsilon = float(np.random.default_rng(32).uniform(0.1, 0.3))
     proof = assert_alike(doors, "certify", None, {"epsilon": epsilon, **SECONDS})
@@ -209,6 +253,25 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
     ("certify", None, {"epsilon": "a little"}, 'epsilon must be a number; got "a little"; write it like 0.01'),
     ("certify", None, {"epsilon": True}, "epsilon must be a number; got true; write it like 0.01"),
     ("certify", None, {"delta": 0.1}, "certify is asked with epsilon, seconds; got delta; leave delta out"),
+    ("round", 1, {}, 'round needs to; got none; give it like "0.5 mm"'),
+    ("round", None, {"to": "1 mm"}, "round is of one design; got none; name it"),
+    ("round", 1, {"to": "1 kg"}, 'to must be a length; got "1 kg", which is a mass; write it like '),
+    ("round", 1, {"to": ["1 mm", 2]}, "to must be text in quotes; got "),
+    ("round", 1, {"to": "1 mm", "count": 0}, "count must be at least 1; got 0; write it like 5"),
+    (
+        "round",
+        1,
+        {"to": "1 mm", "allow": "stroke"},
+        'allow is a requirement, =, and by how much it may be missed; got "st',
+    ),
+    ("like", 1, {"where": ["nothing <= 2"]}, "no quantity or column is called 'nothing'; "),
+    (
+        "like",
+        1,
+        {"where": ["rod != 2 mm"]},
+        "a design is asked for with >=, <= or =; got 'rod != 2 mm'; write it like ",
+    ),
+    ("like", None, {"where": "rod <= 2 mm"}, "like is of one design; got none; name it"),
     ("certify", 0, {}, "certify is of a whole front; got one design; leave it out"),
 ]
 

@@ -1,0 +1,120 @@
+"""A design like one of a front, but with something else: by how much every number changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....model.errors import InputError
+from ....model.linkage.dimensions import DIMENSIONS
+from ....optimise.decisions.like import Ends, common, distance, nearest
+from ....optimise.front.hypervolume import scaling
+from ....optimise.problem.requirements import Constraint
+from ...designs.requirements import names_of
+from ...designs.selection import Condition, parse_condition
+from ...designs.shown_units import record_in
+from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, recorded
+from ...runs.result import Row, rows_of
+from ..design_table import title_and_unit
+from ..wider import Answer
+from . import QUESTION
+
+if TYPE_CHECKING:
+    from ....optimise.front.front import ParetoFront
+    from ....optimise.problem.problem import Problem
+
+_EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
+
+
+def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
+    """Return the nearest design that meets the conditions. Raises as `optimise.decisions.like.nearest` does."""
+    front.part(row)  # refuses what is no row
+    before = rows_of(front.columns)[row]
+    constraints, ranges = _added(where, before, front.problem)
+    given, span = front.values[row], scaling(front.values)[1]
+    found = nearest(front.problem, before, given, span, constraints, ranges)
+    record: dict[str, Any] = {"status": found.status, "message": found.message}
+    if not len(found):
+        return Answer(record=lambda _: record, blocks=[Sentence(found.message)], met=False, message=found.message)
+    after = rows_of(found.columns)[0]
+    record |= {"distance": float(distance(found.values, given, span)[0]), "design": after, "before": before}
+    record["moved"] = {key: value for key in after if (value := _moved(before, after, key)) is not None}
+    title = heading(
+        f"{{name}}: like design {row % len(front) + 1}, with {{where}}",
+        name=front.problem.name,
+        where=" and ".join(text.strip() for text in where),
+    )
+    return Answer(
+        record=lambda units: record_in(record, units),
+        blocks=[title, *_blocks(front, record, row)],
+        message=found.message,
+    )
+
+
+def _added(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
+    """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
+    names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
+    found: dict[str, Ends] = {}
+    for text in where:
+        condition = parse_condition(text, list(row), row)
+        formula = condition.formula
+        name = names.get(condition.column.key) if formula is None else formula.text
+        if name is None or isinstance(condition.value, str):
+            raise InputError(
+                "a design can be asked for by quantities, dimensions and formulas of these; "
+                f"got {text!r}; write it like {_EXAMPLE}"
+            )
+        factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
+        ends = common(found.get(name, (None, None)), _ends(condition, factor, text))
+        if ends is None:
+            raise InputError(f"the conditions on {name} contradict each other; got {text!r} last; leave out one")
+        found[name] = ends
+    ranges = {name: ends for name, ends in found.items() if name in DIMENSIONS}
+    constraints = [
+        Constraint(quantity=name, lower=lower, upper=upper)
+        for name, (lower, upper) in found.items()
+        if name not in DIMENSIONS
+    ]
+    return constraints, ranges
+
+
+def _ends(condition: Condition, factor: float, text: str) -> Ends:
+    """Return the ends that a condition gives, SI. factor: what one SI unit is in the column's."""
+    assert not isinstance(condition.value, str)
+    value = condition.value / factor
+    ends = {">=": (value, None), "<=": (None, value), "==": (value, value)}.get(condition.comparison)
+    if ends is None:
+        raise InputError(f"a design is asked for with >=, <= or =; got {text!r}; write it like {_EXAMPLE}")
+    return ends
+
+
+def _moved(before: Row, after: Row, key: str) -> float | None:
+    """Return by how much a number changed; None for what is no quantity or has no finite change."""
+    old, new = before.get(key), after[key]
+    if key == "residual" or not isinstance(old, float) or not isinstance(new, float):
+        return None
+    change = new - old
+    return change if math.isfinite(change) else None
+
+
+def _blocks(front: ParetoFront, record: Mapping[str, Any], row: int) -> list[Block]:
+    before, after, moved = record["before"], record["design"], record["moved"]
+    objectives = {front.problem.quantity(item.quantity).field for item in front.objectives}
+    keys = [key for key in moved if not key.startswith("slack_")]
+    rows: list[tuple[Text, ...]] = []
+    for key in keys:
+        span = float(np.ptp(front.columns[key])) if key in objectives else 0.0
+        share: Text = Value(100.0 * moved[key] / span, decimals=2, sign=True) if span else ""
+        change = recorded(moved, key, digits=3, sign=True)
+        rows.append((*title_and_unit(key, after), recorded(before, key), recorded(after, key), change, share))
+    heads = (f"design {row % len(front) + 1}", "now", "change", "% of range")
+    columns = (column("quantity", left=True), column("unit", left=True), *map(column, heads))
+    bold = tuple(place for place, key in enumerate(keys) if key in objectives)
+    apart = f"distance {record['distance']:.4g} of the objectives' ranges"
+    return [
+        Table(columns, tuple(rows), ruled=True, apart=True, bold=bold),
+        Sentence(f"{after['status']}: residual {after['residual']:.1e}; {apart}"),
+    ]

@@ -1,0 +1,218 @@
+"""Rounded neighbours of a design of a front: what each costs and misses, and the steps as people write them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any
+
+from ....model.errors import InputError
+from ....model.linkage.dimensions import DIMENSIONS
+from ....objectives.keys import key_in, metric_key, split_unit
+from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
+from ....objectives.units import shown
+from ....optimise.front.progress import standing
+from ....optimise.front.rounded import Rounded, written
+from ...designs.columns import find_column
+from ...designs.selection import value_of
+from ...designs.shown_units import record_in
+from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, joined, recorded, words
+from ..design_table import title_and_unit
+from ..plain_input import texts_by_name
+from ..wider import Answer, Watch
+from . import QUESTION
+
+if TYPE_CHECKING:
+    from ....optimise.front.front import ParetoFront
+    from ....optimise.front.rounding_search import Stage
+    from ....optimise.problem.problem import Problem
+
+_TO, _ALLOW, _ = QUESTION.inputs
+
+
+def answer(front: ParetoFront, *, row: int, watch: Watch, words: Mapping[str, str], **inputs: Any) -> Answer:
+    """Return the rounded neighbours of a design. Raises as `search` does."""
+    for at in search(front, row, words, **inputs):
+        if isinstance(at, Answer):
+            return at
+        watch.tell(standing(vars(at)))
+    raise AssertionError("the search ends with its answer")
+
+
+def search(
+    front: ParetoFront,
+    row: int,
+    words: Mapping[str, str],
+    *,
+    to: Sequence[str],
+    allow: Sequence[str] = (),
+    count: int = 5,
+) -> Iterator[Stage | Answer]:
+    """Yield where the search is, several times a second, and at last the answer; closing ends it.
+
+    to: steps, "0.5 mm" for all lengths, "rod=1 mm" for one number. allow: requirements that may be missed, each as
+    "stroke=0.1 mm". count: designs at most. words: what the door calls these. Raises `InputError`.
+    """
+    steps = steps_of(to, front.part(row), words["to"])
+    named = texts_by_name(allow, words["allow"], _ALLOW.form, _ALLOW.example)
+    allowed = {metric_key(name): amount for name, amount in named.items()}
+    for at in front.rounding(row, steps, count=count, allow=allowed):
+        yield _answered(at, row) if isinstance(at, Rounded) else at
+
+
+def _answered(found: Rounded, row: int) -> Answer:
+    record = _record(found)
+    return Answer(
+        record=lambda units: _record_in(units, record, found),
+        blocks=_blocks(found, record, row) if len(found) else [],
+        met=found.met,
+        message=found.message,
+        notes=found.notes,
+        found=found,
+    )
+
+
+def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
+    """Return the steps by name, SI. key: what gives them, for messages. Raises `InputError`."""
+    from ....model.machine.numbers import unit_of
+    from ....objectives.tables.varying_column import varying_column
+    from ....objectives.units import kind_of
+
+    kinds = dict.fromkeys(DIMENSIONS, LENGTH)
+    names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
+    for item in part.mechanism.varying:
+        of = varying_column(item)[0]
+        kinds[item.name] = kind_of(unit_of(item.paths[0]))
+        names |= {item.name: item.name, of: item.name, split_unit(of)[0]: item.name}
+    found: dict[str, float] = {}
+    for text in to:
+        name, equals, value = (piece.strip() for piece in text.rpartition("="))
+        name = metric_key(name)
+        if not value:
+            raise InputError(
+                f"{key} is a step, or a name, = and a step; got {shown(text)}; write it like {_TO.example}"
+            )
+        if equals and name not in names:
+            raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
+        one = names[name] if equals else ""
+        if one in found:
+            raise InputError(f"{key} gives each step once; got {one or 'that of all lengths'} twice; leave out one")
+        found[one] = _step(value, kinds[one] if one else LENGTH, key)
+    every = found.pop("", None)
+    return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
+
+
+def _step(text: str, kind: Kind, key: str) -> float:
+    """Return a step, SI, read as in a job."""
+    from ....optimise.job.grids import step_of
+
+    small = SMALL_LENGTH if kind is LENGTH else kind
+    return step_of(text, lambda given: value_of(key, str(given), small, sign="positive"))
+
+
+def _record(found: Rounded) -> dict[str, Any]:
+    """Return the answer as JSON has it, metric."""
+    part = found.problem
+    given: dict[str, Any] = {
+        name: factor * value for (name, factor), value in zip(found.names.values(), found.given.tolist(), strict=True)
+    }
+    for wanted, value in zip(part.objectives, found.before.tolist(), strict=True):
+        of = part.quantity(wanted.quantity)
+        given[of.field] = value * of.unit.factor
+    allowed = {part.quantity(name): value for name, value in found.allowed.items()}
+    rows = [
+        {name: values[row].item() for name, values in found.columns.items()}
+        | {
+            "tightest": found.tightest(row),
+            "missed": found.missed(row),
+            "misses": [dict(vars(miss)) for miss in found.misses(row)],
+        }
+        for row in range(len(found))
+    ]
+    return {
+        "met": found.met,
+        "message": found.message,
+        "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
+        "allowed": {of.field: written(value * of.unit.factor) for of, value in allowed.items()},
+        "within_steps": found.reach,
+        "judged": found.judged,
+        "kept": found.kept,
+        "given": given,
+        "designs": rows,
+        "notes": list(found.notes),
+    }
+
+
+def _record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
+    """Return the answer in a system of units, its round numbers as they are written there."""
+    told: dict[str, Any] = record_in(deepcopy(record), units) | {"message": found.message_in(units)}
+    keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
+    for row in (told["steps"], *told["designs"]):
+        row.update({key: written(row[key]) for key in keys})
+    told["allowed"] = {key: written(value) for key, value in told["allowed"].items()}
+    for miss in (miss for row in told["designs"] for miss in row["misses"]):
+        miss["unit"], factor = shown_in(miss["unit"], units)
+        miss.update(amount=factor * miss["amount"], allowed=written(factor * miss["allowed"]))
+    return told
+
+
+def _blocks(found: Rounded, record: dict[str, Any], row: int) -> list[Block]:
+    """Return the designs as the columns of a table, and what each misses or nearly does."""
+    given, designs, steps = record["given"], record["designs"], record["steps"]
+    told = [
+        words("{title} {step}", title=find_column(key, given).title, step=recorded(steps, key, digits=4))
+        for key in steps
+    ]
+    objectives = {(of := found.problem.quantity(item.quantity)).field: of for item in found.problem.objectives}
+    rows: list[tuple[Text, ...]] = []
+    for key in given:
+        title, unit = title_and_unit(key, given)
+        if key in objectives:
+            title = objectives[key].title  # of a formula as it is written
+        rows.append((title, unit, recorded(given, key), *(recorded(design, key) for design in designs)))
+        if key in objectives:
+            stem = objectives[key].stem
+            changes = (recorded(design, f"change_{key}", digits=3, sign=True) for design in designs)
+            rows.append(("  change", unit, "", *changes))
+            rows.append(("", "%", "", *(_percent(design[f"change_{stem}_percent"]) for design in designs)))
+    range_ = "% of range" if len(objectives) > 1 else "% of value"
+    rows.append(("greatest loss", range_, "", *(_percent(design["loss_percent"]) for design in designs)))
+    heads = (column("quantity", left=True), column("unit", left=True), column("given"))
+    numbers = tuple(column(str(number)) for number in range(1, len(designs) + 1))
+    name = found.problem.name
+    return [
+        heading(f"{{name}}: design {row + 1}, rounded: {{steps}}", name=name, steps=joined(told)),
+        Table((*heads, *numbers), tuple(rows), ruled=True, apart=True),
+        *(
+            Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, found)))
+            for number, design in enumerate(designs, 1)
+        ),
+        *([Sentence(Phrase(found.message, found.message_in("inch")), apart=True)] if found.met else []),
+    ]
+
+
+def _percent(value: float) -> Value:
+    return Value(value if math.isfinite(value) else None, digits=2, sign=True, missing="-")
+
+
+def _requirements(design: Mapping[str, Any], found: Rounded) -> Text:
+    """Return in words what a design misses, or which requirement is tightest."""
+    if design["misses"]:
+        missed = joined([_missed(miss, found.problem) for miss in design["misses"]], " and ")
+        return words("misses {missed}", missed=missed)
+    if design["tightest"] is None:
+        return "keeps every requirement"
+    of = found.problem.quantity(design["tightest"])
+    if any(item.equality for item in found.constraints if item.quantity == design["tightest"]):
+        return f"tightest is {of.title}, which is required exactly"
+    slack = recorded(design, f"slack_{of.field}", digits=4)
+    return words("tightest is {title}, slack {slack}", title=of.title, slack=slack)
+
+
+def _missed(miss: Mapping[str, Any], problem: Problem) -> Text:
+    of = problem.quantity(miss["quantity"])
+    amount, most = (Value(miss[name] / of.unit.factor, of.kind, 4) for name in ("amount", "allowed"))
+    allowed = words("; {most} is allowed", most=most) if miss["allowed"] else ""
+    side = miss["side"]
+    return words("{title} by {amount} ({side}{allowed})", title=of.title, amount=amount, side=side, allowed=allowed)
