@@ -441,7 +441,7 @@ def test_schemas_follow_from_what_is_declared(agent: Agent) -> None:
 def test_the_page_names_every_tool_and_how_many_designs_an_answer_has(pytestconfig: pytest.Config) -> None:
     page = (pytestconfig.rootpath / "docs/agents.md").read_text(encoding="utf-8")
     assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE) == [tool.name for tool in TOOLS]
-    assert f"give {ROWS} designs" in page
+    assert f"return {ROWS} designs" in page
 
 
 def test_only_the_protocol_is_on_standard_output(agent: Agent) -> None:
