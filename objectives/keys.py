@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from .kinds import PRESSURE, RATIO, SHOWN, Face, Kind, System, face, kind_in
+from .kinds import INERTIA, LENGTH, PRESSURE, RATIO, SHOWN, Face, Kind, System, face, kind_in
 
 # How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
 _FACES = sorted(
@@ -18,12 +18,18 @@ _TO_INCH = {
     for kind in SHOWN
     if kind.inch is not None
 }
-_BAR = face("bar", 1e-5)  # of suction and discharge, beside the unit of other pressures
-_FACES.append(_BAR)
+_BESIDE = {
+    face("bar", 1e-5): PRESSURE,  # of suction and discharge
+    face("um", 1e6): LENGTH,  # of small steps, such as saving_per_um
+    Face("kg m^2", "_kgm2"): INERTIA,  # of flywheels
+}
+"""Units of keys beside those of their kinds."""
+_FACES += _BESIDE
 _CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
-_KINDS[_BAR.suffix] = replace(PRESSURE, metric=_BAR)
-_TO_INCH[_BAR.suffix] = PRESSURE.face("inch").suffix, PRESSURE.face("inch").factor / _BAR.factor
+for _unit, _kind in _BESIDE.items():
+    _KINDS[_unit.suffix] = replace(_kind, metric=_unit)
+    _TO_INCH[_unit.suffix] = _kind.face("inch").suffix, _kind.face("inch").factor / _unit.factor
 
 
 def split_unit(key: str) -> tuple[str, str, float]:

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 LEAST, MOST = 4, 100_000
 _RATES = SPEED, ACCELERATION, JERK
 _RATES_PER_ANGLE = PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE
+KINDS = (ANGLE, LENGTH, *_RATES, TORQUE, POWER, FORCE)
+"""Kinds of the curves of a machine with a crank speed."""
 _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
 
 

@@ -22,6 +22,7 @@ from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
 from ..jobs.submission import ending_own
 from ..presets.jobs import shipped_jobs
+from ..questions.answers import schema_of as schema_of_answer
 from ..questions.discovery import ALL, OF_DESIGNS, QUESTIONS, WIDER
 from ..questions.question import Question
 from ..questions.wider import Watch, WiderQuestion
@@ -83,6 +84,9 @@ def describe(
         record["topic"] = topic = _topic(QUESTIONS[word])
         asked = "".join(f"\n  {one.name}: {one.remark}" for one in QUESTIONS[word].inputs)
         lines.append(f"topic {word}: {topic['shows']}{asked}")
+    if word in OF_DESIGNS:
+        topic["answer"] = answer = schema_of_answer(OF_DESIGNS[word].answer_type)
+        lines.append(f"  answer, whose keys end otherwise in inches: {', '.join(answer['properties'])}")
     if word in shipped_jobs():
         text = job_toml(shipped_jobs()[word])
         record["job"] = {"tables": shipped_jobs()[word], "toml": text}

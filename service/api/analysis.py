@@ -16,6 +16,7 @@ from ...objectives.quantity import Quantity
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
 from ..designs.violations import violated_by
+from ..questions.answers import Answering
 from ..questions.design_analysis import analysis_of, numbers_of, numbers_of_swing
 from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..runs.result import json_ready
@@ -35,7 +36,7 @@ Show = Annotated[
     list[Annotated[str, Field(max_length=500)]],
     Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
-_EXAMPLE = {"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1.7, "slow_stroke": "inward"}
+_TOPICS = Answering(lambda: [topic.answer_type for topic in TOPICS.values()], names=TOPICS)
 
 
 class AnalysisModel(BaseModel):
@@ -45,7 +46,7 @@ class AnalysisModel(BaseModel):
     how much the design goes beyond allowable values. notes: what is left out, and why.
     """
 
-    analysis: dict[str, Any] = Field(examples=[_EXAMPLE])
+    analysis: Annotated[dict[str, Any], _TOPICS]
     notes: list[str] = Field(examples=[[]])
 
 

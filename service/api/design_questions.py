@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field, create_model
 from ..designs.measured_file import read_measured
 from ..designs.shown_units import record_in
 from ..designs.turning import require_turning
+from ..questions.answers import Answering
 from ..questions.discovery import COMMANDS, OF_DESIGNS
 from ..questions.measured import MEASURED
 from ..questions.question import Command
@@ -32,7 +33,7 @@ router = APIRouter(
 def _add(name: str, says: Command) -> None:
     """Add the endpoint of a question that is a command."""
     question = OF_DESIGNS[name]
-    answer: Any = (dict[str, Any], Field(examples=[dict(says.part)]))
+    answer: Any = (Annotated[dict[str, Any], Answering(lambda: [question.answer_type])], ...)
     told = f"What `slidercrank {says.called or name} --json` prints of a design of a front."
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **{name: answer})
 
@@ -56,28 +57,6 @@ for _name, _says in COMMANDS.items():
     _add(_name, _says)
 
 
-_MEASURED_EXAMPLE = {
-    "rows": 3,
-    "understood": ("3 rows of crank_angle_deg, slider_position_mm; first 0, 190.5; last 240, 131; separated by commas"),
-    "rows_without_crank_angle": 0,
-    "crank_angle_from_time": False,
-    "left_out": [],
-    "curves": {
-        "slider_position": {
-            "title": "slider position",
-            "samples": 3,
-            "rms_mm": 1.58,
-            "mean_mm": 1.5,
-            "largest_mm": 2.1,
-            "largest_at_crank_angle_deg": 120.0,
-            "best_crank_angle_shift_deg": -0.4,
-            "best_shift_mm": -1.5,
-            "left_rms_mm": 0.05,
-        }
-    },
-}
-
-
 class MeasuredCurves(BaseModel, extra="forbid", strict=True):
     """Measured curves as a CSV file has them. Its first line names the columns, each with its unit."""
 
@@ -94,7 +73,7 @@ class MeasuredModel(OfDesign):
     crank angles and values for the best fit is told, not applied.
     """
 
-    measured: dict[str, Any] = Field(examples=[_MEASURED_EXAMPLE])
+    measured: Annotated[dict[str, Any], Answering(lambda: [MEASURED.answer_type])]
 
 
 @router.post("/measured")

@@ -11,6 +11,7 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
+from ..questions.answers import Answering
 from ..questions.discovery import INPUTS, TOPIC_OF, TOPICS
 from ..questions.question import Question, QuestionOfDesign
 from ..runs.result import json_ready
@@ -48,7 +49,7 @@ class ToldTopic(OfDesign):
     """A topic of a design. numbers: what `analyse --json` has under its name. told: its text."""
 
     name: str = Field(examples=["balance"])
-    numbers: dict[str, Any] = Field(examples=[{"peak_shaking_force_N": 12.5}])
+    numbers: Annotated[dict[str, Any], Answering(lambda: [topic.answer_type for topic in TOPICS.values()])]
     told: list[BlockModel]
 
 

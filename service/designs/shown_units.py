@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
-from ...objectives.keys import key_in
+from ...objectives.keys import key_in, split_unit
 from ...objectives.kinds import System, shown_in
 from ..runs.result import Result, Row, Wanted
 
@@ -82,6 +82,8 @@ def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
 
 
 def _scaled(value: Any, factor: float) -> Any:
+    if isinstance(value, Mapping):  # what names itself without a unit, such as a vertex, has that of its record
+        return {key: item if split_unit(key)[1] else _scaled(item, factor) for key, item in value.items()}
     if isinstance(value, list):
         return [_scaled(item, factor) for item in value]
     number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 from ..designs.turning import require_turning
 from ..runs.result import json_ready
@@ -28,20 +28,18 @@ class Command:
     """What a question says that is a command, with an address of its own, and no topic of `analyse --show`.
 
     help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
-    help on JOB, and on what holds without. example: inputs of the example. curves: what the command can write and draw,
-    by functions `curves` and `figure` that take what `numbers` takes and `units`.
+    help on JOB, and on what holds without. curves: what the command can write and draw, by functions `curves` and
+    `figure` that take what `numbers` takes and `units`.
 
-    part: of the answer to the example, metric. sizes: whether the question sizes a part of a machine that turns: it
-    needs a job, libraries that are not always there, and seconds. called: name of such a command, if it is not the
-    question's. figure: name of the file that it draws by a function `figure`, and what that shows.
+    sizes: whether the question sizes a part of a machine that turns: it needs a job, libraries that are not always
+    there, and seconds. called: name of such a command, if it is not the question's. figure: name of the file that it
+    draws by a function `figure`, and what that shows.
     """
 
     help: str
     endpoint: str
     job: str
-    part: Mapping[str, Any]
     alone: str = ""
-    example: tuple[str, ...] = ()
     curves: str = ""
     sizes: bool = False
     called: str = ""
@@ -51,6 +49,8 @@ class Command:
 @dataclass(frozen=True)
 class Question:
     """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
+
+    What `numbers` returns is the type of the answer (`answers`), from which its JSON Schema follows.
 
     package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
     shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
@@ -70,6 +70,16 @@ class Question:
     tells: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
     command: Command | None = None
+
+    @property
+    def analysis(self) -> Any:
+        """The folder's module with the functions."""
+        return import_module(f"{self.package}.analysis")
+
+    @property
+    def answer_type(self) -> Any:
+        """Type of the numbers, a record of `answers`."""
+        return get_type_hints(self.analysis.numbers, include_extras=True)["return"]
 
     @property
     def name(self) -> str:
@@ -188,4 +198,4 @@ class QuestionOfDesign:
 
     @property
     def _analysis(self) -> Any:
-        return import_module(f"{self.question.package}.analysis")
+        return self.question.analysis

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from ...model.tolerance.sources import limits
 from ...objectives.kinds import System, shown_in
 from ..questions.sensitivity.figure import tornado_figure, tornado_rows
-from ..questions.tolerances.analysis import numbers
+from ..questions.tolerances.analysis import PositionError, numbers
 from ..questions.tolerances.figure import error_bands, tolerances_figure
 from ..render.numerals import length, rounded
 from .document import Block, Facts, Paragraph, Picture, Section, Table
@@ -49,7 +50,7 @@ def tolerance_section(subject: Subject) -> Section | None:
     return Section("Tolerances", blocks)
 
 
-def _facts(found: dict[str, Any], system: System) -> dict[str, list[str]]:
+def _facts(found: Mapping[str, Any], system: System) -> dict[str, list[str]]:
     def at(name: str) -> str:
         size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
         if size is None:
@@ -70,7 +71,7 @@ def _facts(found: dict[str, Any], system: System) -> dict[str, list[str]]:
     }
 
 
-def _sources(found: dict[str, Any], system: System) -> Table:
+def _sources(found: PositionError, system: System) -> Table:
     unit, factor = shown_in("mm", system)
     rows = tuple(
         (

@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-from slidercrank.model.linkage.linkage import Linkage
 from tests.service import fronts
 
 NEEDED: dict[str, Any] = {
@@ -32,11 +31,4 @@ TABLES: dict[str, Any] = {
     **NEEDED,
     "mechanism": {**_SMALL["mechanism"], "crank": _BAR, "rod": _BAR},
     "load": [{"force": "200 N", "opposes": "inward stroke"}],
-}
-LINKAGE = Linkage(0.06, 0.23, 0.07)
-"""Of the examples in the description of the API."""
-EXAMPLES: dict[str, dict[str, Any]] = {
-    "allocate": {"limit": "0.3 mm", "kind": "worst case"},
-    "counterweight": {},
-    "sections": {},
 }

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_static_force_panels_are_those_of_the_model(load: float | None) -> None:
 
 
 def test_static_force_numbers_are_peaks_of_the_curves() -> None:
-    numbers = static_analysis.numbers(MACHINE, LINKAGE, load=-50.0)
+    numbers: Any = static_analysis.numbers(MACHINE, LINKAGE, load=-50.0)
     theta = np.linspace(0.0, 2.0 * math.pi, 200_001)
     at = static_forces(LINKAGE, theta, load=-50.0)
     for key, curve in (
@@ -92,7 +93,7 @@ def test_static_force_numbers_are_peaks_of_the_curves() -> None:
 
 
 def test_static_forces_of_a_dead_centre_have_no_finite_advantage() -> None:
-    numbers = static_analysis.numbers(Mechanism(), Linkage(0.05, 0.15))
+    numbers: Any = static_analysis.numbers(Mechanism(), Linkage(0.05, 0.15))
     assert numbers["mechanical_advantage"][0] is None
     assert numbers["mechanical_advantage"][6] is None
     assert numbers["load"].startswith("-1 N")
@@ -107,7 +108,7 @@ def test_approximation_panels_are_those_of_the_comparison() -> None:
     np.testing.assert_allclose(line(torque, "exact").y, found.torque, rtol=0, atol=1e-9)
     for drawn, name in zip(torque.lines[1:], TORQUE, strict=True):
         np.testing.assert_allclose(drawn.y, found.torques[name], rtol=0, atol=1e-9)
-    numbers = approximations_analysis.numbers(MACHINE, LINKAGE)
+    numbers: Any = approximations_analysis.numbers(MACHINE, LINKAGE)
     for panel, key in ((of_acceleration, "accelerations"), (of_torque, "torques")):
         for drawn, entry in zip(panel.lines, numbers[key], strict=True):
             np.testing.assert_allclose(drawn.y[::6], entry["error_over_offset_percent"], rtol=1e-9)
@@ -116,14 +117,14 @@ def test_approximation_panels_are_those_of_the_comparison() -> None:
 
 def test_errors_of_a_massless_machine_are_not_defined() -> None:
     machine = Mechanism(speed=3.0)
-    numbers = approximations_analysis.numbers(machine, LINKAGE)
+    numbers: Any = approximations_analysis.numbers(machine, LINKAGE)
     assert all(entry["error_percent"] is None for entry in numbers["torques"])
     assert numbers["accelerations"][0]["error_percent"] > 0.0
     assert len(approximations_analysis.figure(machine, LINKAGE).panels) == 3
 
 
 def test_polygon_numbers_are_the_vertices() -> None:
-    numbers = polygons_analysis.numbers(MACHINE, LINKAGE, crank_angle=0.5)
+    numbers: Any = polygons_analysis.numbers(MACHINE, LINKAGE, crank_angle=0.5)
     expected = polygons(LINKAGE, 0.5, speed=MACHINE.speed)
     np.testing.assert_allclose(numbers["open"]["position_mm"]["B"], 1e3 * expected.position[2], rtol=1e-14)
     np.testing.assert_allclose(numbers["open"]["acceleration_m_s2"]["b11"], expected.acceleration[3], rtol=1e-14)
@@ -131,7 +132,7 @@ def test_polygon_numbers_are_the_vertices() -> None:
 
 @pytest.mark.parametrize("analysis", [static_analysis, approximations_analysis, polygons_analysis])
 def test_analyses_are_json_and_short_tables(analysis: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
-    numbers = analysis.numbers(MACHINE, LINKAGE)
+    numbers: Any = analysis.numbers(MACHINE, LINKAGE)
     json_text(numbers)
     print_blocks(console(), analysis.blocks(numbers))
     text = capsys.readouterr().out
@@ -219,5 +220,5 @@ def test_figures_are_written(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("offset", [0.06, -0.06])
 def test_approximations_begin_at_an_offset_of_zero_without_a_sign(offset: float) -> None:
-    first = approximations_analysis.numbers(MACHINE, Linkage(0.14, 0.31, offset))["offset_mm"][0]
+    first: Any = approximations_analysis.numbers(MACHINE, Linkage(0.14, 0.31, offset))["offset_mm"][0]
     assert f"{first:g}" == "0"

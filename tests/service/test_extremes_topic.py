@@ -37,14 +37,14 @@ SIEVE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
 MACHINES = {"loaded": fronts.MACHINE, "locked": LOCKED, "bare": Mechanism(), "moving": Mechanism(speed=-3.0)}
 
 
-def written(numbers: dict[str, Any]) -> str:
+def written(numbers: Any) -> str:
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=140), extremes.blocks(numbers))
     return stream.getvalue()
 
 
 def test_numbers_are_the_extremes_in_the_units_of_the_cycle_table() -> None:
-    curves = extremes.numbers(fronts.MACHINE, LINKAGE)["curves"]
+    curves: Any = extremes.numbers(fronts.MACHINE, LINKAGE)["curves"]
     found = {extreme.name: extreme for extreme in curve_extremes(fronts.MACHINE, LINKAGE)}
     assert list(curves) == list(found)
     assert curves["slider_position"]["greatest_mm"] == 1e3 * found["slider_position"].greatest.value
@@ -56,7 +56,7 @@ def test_numbers_are_the_extremes_in_the_units_of_the_cycle_table() -> None:
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_numbers_are_fit_for_json_and_can_be_shown(name: str) -> None:
-    numbers = extremes.numbers(MACHINES[name], LINKAGE)
+    numbers: Any = extremes.numbers(MACHINES[name], LINKAGE)
     assert json.loads(json_text(numbers)) == numbers
     text = written(numbers)
     assert "nan" not in text
@@ -66,7 +66,7 @@ def test_numbers_are_fit_for_json_and_can_be_shown(name: str) -> None:
 
 
 def test_what_friction_leaves_undetermined_is_none() -> None:
-    curves = extremes.numbers(LOCKED, LINKAGE)["curves"]
+    curves: Any = extremes.numbers(LOCKED, LINKAGE)["curves"]
     assert curves["torque"]["least_Nm"] is None
     assert curves["torque"]["greatest_at_crank_angle_deg"] is None
     assert curves["slider_velocity"]["greatest_m_s"] > 0.0
@@ -77,7 +77,7 @@ def test_strokes_last_as_the_time_ratio_says() -> None:
     for design in random_designs(20, seed=31):
         machine = random_machine(random, loads=False)
         linkage = linkage_of(design, machine.branch)
-        strokes = extremes.numbers(machine, linkage)["strokes"]
+        strokes: Any = extremes.numbers(machine, linkage)["strokes"]
         out, back = strokes["outward"], strokes["inward"]
         assert out["duration_s"] + back["duration_s"] == pytest.approx(2.0 * math.pi / abs(machine.speed), rel=1e-12)
         assert out["crank_angle_deg"] + back["crank_angle_deg"] == pytest.approx(360.0, rel=1e-12)
@@ -94,7 +94,7 @@ def test_greatest_speeds_of_the_strokes_are_those_of_a_sweep() -> None:
         machine = random_machine(random, loads=False)
         linkage = linkage_of(design, machine.branch)
         outward = linkage.sign * linkage.at(theta, speed=machine.speed).slider_velocity
-        strokes = extremes.numbers(machine, linkage)["strokes"]
+        strokes: Any = extremes.numbers(machine, linkage)["strokes"]
         fast, back = (strokes[name]["greatest_speed_m_s"] for name in ("outward", "inward"))
         assert (fast, back) == pytest.approx((outward.max(), -outward.min()), rel=1e-6)
         assert strokes["greatest_speed_ratio"] == pytest.approx(fast / back, rel=1e-12)
@@ -108,14 +108,14 @@ def test_greatest_speeds_of_the_strokes_are_those_of_a_sweep() -> None:
 
 @pytest.mark.parametrize("speed", [-5.0, 5.0])
 def test_strokes_without_offset_are_equal(speed: float) -> None:
-    strokes = extremes.numbers(Mechanism(speed=speed), Linkage(0.05, 0.15))["strokes"]
+    strokes: Any = extremes.numbers(Mechanism(speed=speed), Linkage(0.05, 0.15))["strokes"]
     assert strokes["duration_ratio"] == pytest.approx(1.0, rel=1e-14)
     assert strokes["greatest_speed_ratio"] == pytest.approx(1.0, rel=1e-12)
     assert strokes["greatest_speed_difference_m_s"] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_without_a_speed_strokes_have_no_durations() -> None:
-    strokes = extremes.numbers(Mechanism(), LINKAGE)["strokes"]
+    strokes: Any = extremes.numbers(Mechanism(), LINKAGE)["strokes"]
     assert list(strokes["outward"]) == ["crank_angle_deg"]
     assert list(strokes) == ["outward", "inward", "angle_ratio", "duration_ratio"]
 
@@ -198,7 +198,7 @@ def test_durations_of_strokes_are_those_along_the_speed_profile() -> None:
 
 def test_several_cylinders_along_a_profile_have_no_one_duration() -> None:
     both = Mechanism(speed=5.0, speed_profile=Harmonics(sines=(0.5,)), arrangement=Arrangement(phases=(0.0, 2.0)))
-    numbers = extremes.numbers(both, LINKAGE)
+    numbers: Any = extremes.numbers(both, LINKAGE)
     assert numbers["strokes"]["duration_ratio"] is None
     assert numbers["strokes"]["outward"]["duration_s"] is None
     assert "ratio of durations" not in written(numbers)

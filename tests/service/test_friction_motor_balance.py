@@ -43,7 +43,7 @@ LOCKED = replace(MACHINE, friction=Friction(guide=1.5))
 TOPICS = (friction, motor, balance)
 
 
-def written(topic: ModuleType, numbers: dict[str, Any]) -> str:
+def written(topic: ModuleType, numbers: Any) -> str:
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=140), topic.blocks(numbers))
     return stream.getvalue()
@@ -52,14 +52,14 @@ def written(topic: ModuleType, numbers: dict[str, Any]) -> str:
 @pytest.mark.parametrize("machine", [MACHINE, LOCKED, replace(MACHINE, friction=Friction())])
 @pytest.mark.parametrize("topic", TOPICS)
 def test_numbers_are_fit_for_json_and_can_be_shown(topic: ModuleType, machine: Mechanism) -> None:
-    numbers = topic.numbers(machine, LINKAGE)
+    numbers: Any = topic.numbers(machine, LINKAGE)
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     assert 4 <= len(written(topic, numbers).splitlines()) <= 20
 
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_numbers_under_the_keys_of_quantities_are_those_quantities(topic: ModuleType) -> None:
-    numbers = topic.numbers(MACHINE, LINKAGE)
+    numbers: Any = topic.numbers(MACHINE, LINKAGE)
     design = np.array([[0.04, 0.1, 0.02]])
     shared = [quantity for quantity in QUANTITIES.values() if quantity.field in numbers]
     assert len(shared) >= 4
@@ -69,7 +69,7 @@ def test_numbers_under_the_keys_of_quantities_are_those_quantities(topic: Module
 
 
 def test_friction_says_where_the_work_goes() -> None:
-    numbers = friction.numbers(MACHINE, LINKAGE)
+    numbers: Any = friction.numbers(MACHINE, LINKAGE)
     assert numbers["verdict"] == "drives"
     assert numbers["locked_angles_deg"] == []
     assert numbers["input_work_J"] == pytest.approx(numbers["useful_work_J"] + numbers["friction_heat_J"], rel=1e-10)
@@ -80,7 +80,7 @@ def test_friction_says_where_the_work_goes() -> None:
 
 
 def test_a_linkage_that_locks_has_no_torque_no_work_and_no_efficiency() -> None:
-    numbers = friction.numbers(LOCKED, LINKAGE)
+    numbers: Any = friction.numbers(LOCKED, LINKAGE)
     assert numbers["verdict"] != "drives"
     assert numbers["self_locking_margin_deg"] < 0.0
     ((start, end),) = numbers["locked_angles_deg"]
@@ -97,7 +97,7 @@ def test_a_linkage_that_locks_has_no_torque_no_work_and_no_efficiency() -> None:
 
 
 def test_reflected_inertia_lies_between_its_least_and_greatest() -> None:
-    numbers = motor.numbers(MACHINE, LINKAGE)
+    numbers: Any = motor.numbers(MACHINE, LINKAGE)
     theta = np.linspace(0.0, 2.0 * math.pi, 20_000)
     inertia = shaking_curves(MACHINE, LINKAGE, theta).reflected_inertia
     assert numbers["least_reflected_inertia_kg_m2"] == pytest.approx(inertia.min(), rel=1e-6)
@@ -106,9 +106,9 @@ def test_reflected_inertia_lies_between_its_least_and_greatest() -> None:
 
 
 def test_counterweight_is_compared_with_none() -> None:
-    numbers = balance.numbers(MACHINE, LINKAGE)
+    numbers: Any = balance.numbers(MACHINE, LINKAGE)
     assert numbers["peak_shaking_force_N"] < numbers["peak_shaking_force_without_counterweight_N"]
-    bare = balance.numbers(replace(MACHINE, counterweight=Counterweight(mass=0.0, radius=0.0)), LINKAGE)
+    bare: Any = balance.numbers(replace(MACHINE, counterweight=Counterweight(mass=0.0, radius=0.0)), LINKAGE)
     assert bare["peak_shaking_force_N"] == numbers["peak_shaking_force_without_counterweight_N"]
     assert bare["peak_shaking_force_without_counterweight_N"] is None
 

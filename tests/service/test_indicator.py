@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ LINKAGE = Linkage(0.03, 0.12, 0.0)
 
 def test_numbers_are_those_of_the_textbook() -> None:
     """In line, z = r (1 - cos(theta)) + l - sqrt(l^2 - r^2 sin^2(theta))."""
+    found: Any
     (found,) = analysis.numbers(Mechanism(speed=90.0, loads=(AIR,)), LINKAGE)["cylinders"]
     swept = 1e6 * 0.25 * math.pi * 0.07**2 * 0.06
     assert found["least_volume_cm3"] == pytest.approx(0.05 * swept, rel=1e-9)

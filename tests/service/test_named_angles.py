@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -57,8 +58,8 @@ def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed:
     machine, linkage = even_engine(count, seed)
     size, most, least = (angle_of_greatest(machine, linkage, sign) for sign in (0, 1, -1))
     row = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
-    together = cylinders.numbers(machine, linkage)
-    whole = motor.numbers(machine, linkage)
+    together: Any = cylinders.numbers(machine, linkage)
+    whole: Any = motor.numbers(machine, linkage)
     torque = next(found for found in curve_extremes(machine, linkage) if found.name == "torque")
     named = {
         "table": (row["peak_torque_angle_deg"][0], size),
@@ -106,7 +107,7 @@ def test_no_extreme_of_a_symmetric_machine_is_named_at_the_end_of_its_cycle(seed
     )
     crank = float(random.uniform(0.02, 0.08))
     linkage = Linkage(crank, crank * float(random.uniform(1.2, 5.0)), 0.0)
-    named = dict(motor.numbers(machine, linkage))
+    named: Any = dict(motor.numbers(machine, linkage))
     if profile is not None:
         named |= uneven_speed.numbers(machine, linkage)
     angles = {key: angle for key, angle in named.items() if key.endswith("_angle_deg") and angle is not None}

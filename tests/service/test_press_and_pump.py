@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_force_speed_work_and_dwell_are_those_by_hand(
     for lengths in DESIGNS:
         linkage, slider = linkage_of(lengths, branch), Slider(lengths, branch)
         touch = 0.3 * float(linkage.stroke)
-        found = press.numbers(machine, linkage, touch_distance=touch, rated_torque=80.0)
+        found: Any = press.numbers(machine, linkage, touch_distance=touch, rated_torque=80.0)
         dead, other = slider.dead_centres() if where == "outer" else reversed(slider.dead_centres())
         columns = (found[key] for key in ("distances_mm", "angles_deg", "forces_N", "speeds_m_s"))
         for distance, angle, force, pace in zip(*columns, strict=True):
@@ -100,13 +100,13 @@ def test_force_speed_work_and_dwell_are_those_by_hand(
 def test_a_press_takes_distances_of_its_job_and_the_peak_torque_of_its_design() -> None:
     linkage = Linkage(0.05, 0.3, 0.01)
     machine = Mechanism(speed=5.0, slider_mass=4.0, crank=RigidLink(mass=1.0), slider=SliderDistances(touch=0.012))
-    own = press.numbers(machine, linkage)
-    given = press.numbers(machine, linkage, touch_distance=0.012, rated_torque=own["rated_torque_Nm"])
+    own: Any = press.numbers(machine, linkage)
+    given: Any = press.numbers(machine, linkage, touch_distance=0.012, rated_torque=own["rated_torque_Nm"])
     assert own["torque_is_peak_of_design"]
     assert own == given | {"torque_is_peak_of_design": True}
     speed = TOUCH_SPEED.evaluate(machine, np.array([[0.05, 0.3, 0.01]])).values[0]
     assert own["touch_speed_m_s"] == pytest.approx(speed, rel=1e-12)
-    still = press.numbers(replace(machine, speed=0.0), linkage, rated_torque=1.0)
+    still: Any = press.numbers(replace(machine, speed=0.0), linkage, rated_torque=1.0)
     assert still["touch_speed_m_s"] is still["speeds_m_s"] is still["dwell_angle_deg"] is None
 
 
@@ -148,7 +148,7 @@ def test_flow_and_torque_of_a_pump_are_those_by_hand(phases: tuple[float, ...], 
     )
     for lengths in DESIGNS:
         linkage = linkage_of(lengths, branch)
-        found = pump.numbers(machine, linkage)
+        found: Any = pump.numbers(machine, linkage)
         swept = len(phases) * 0.25 * math.pi * PUMP.bore**2 * float(linkage.stroke)
         assert found["flow_L_min"] == pytest.approx(6e4 * swept * abs(speed) / TURN, rel=1e-9)
         assert abs(found["mean_torque_Nm"]) == pytest.approx((PUMP.high - PUMP.low) * swept / TURN, rel=1e-9)
@@ -161,7 +161,7 @@ def test_flow_and_torque_of_a_pump_are_those_by_hand(phases: tuple[float, ...], 
 
 def test_gas_has_no_ripple_and_a_machine_without_cylinders_no_flow() -> None:
     linkage = Linkage(0.05, 0.2, 0.01)
-    found = pump.numbers(Mechanism(speed=20.0, loads=(AIR,)), linkage)
+    found: Any = pump.numbers(Mechanism(speed=20.0, loads=(AIR,)), linkage)
     assert found["flow_ripple"] is None
     assert len(pump.figure(Mechanism(speed=20.0, loads=(AIR,)), linkage).panels) == 1
     with pytest.raises(InputError, match="it comes from a compressor or pump; got none"):

@@ -49,7 +49,7 @@ TIGHT = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=2e-4)))
 """Of `CLOSE` some linkages within the tolerance do not turn."""
 
 
-def text_of(topic: ModuleType, numbers: dict[str, Any]) -> str:
+def text_of(topic: ModuleType, numbers: Any) -> str:
     console = Console(width=100, file=io.StringIO(), markup=False, highlight=False)
     print_blocks(console, topic.blocks(numbers))
     return console.file.getvalue()  # type: ignore[attr-defined,no-any-return]
@@ -61,7 +61,7 @@ def lines_of(figure: Figure, panel: int) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("mechanism", [PUBLISHED, GAPPED], ids=["case 4", "with clearances"])
 def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) -> None:
-    found = tolerance_analysis.numbers(mechanism, SUPPORT, limit=3e-3, samples=2000, seed=4)
+    found: Any = tolerance_analysis.numbers(mechanism, SUPPORT, limit=3e-3, samples=2000, seed=4)
     json.dumps(found, allow_nan=False)
     design = np.array([[1.4, 1.8, -0.05]])
     for key, signal in (("worst_case", Signal.POSITION_ERROR), ("root_sum_square", Signal.POSITION_ERROR_RSS)):
@@ -93,7 +93,7 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
 
 
 def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
-    found = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
+    found: Any = tolerance_analysis.numbers(GAPPED, SUPPORT, samples=2000)
     text = text_of(tolerance_analysis, found)
     assert len(text.splitlines()) <= 30
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
@@ -104,7 +104,7 @@ def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
 
 
 def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
-    found = tolerance_analysis.numbers(TIGHT, CLOSE, samples=2000)
+    found: Any = tolerance_analysis.numbers(TIGHT, CLOSE, samples=2000)
     json.dumps(found, allow_nan=False)
     assert found["exact_worst_case_mm"] is None
     assert found["monte_carlo"]["stuck"] > 0
@@ -145,7 +145,7 @@ def test_error_bands_are_those_of_the_model() -> None:
 
 
 def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
-    found = sensitivity_analysis.numbers(SMOOTH, SIEVE)
+    found: Any = sensitivity_analysis.numbers(SMOOTH, SIEVE)
     json.dumps(found, allow_nan=False)
     table = sensitivity(SMOOTH, np.array([0.14, 0.31, 0.06]))
     assert [row["quantity"] for row in found["quantities"]] == list(table["quantity"])
@@ -153,7 +153,7 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
         for name in DIMENSIONS:
             slope = expected[f"{name}_per_mm"]
             assert row[f"{name}_per_mm"] == (None if np.isnan(slope) else slope)
-    in_line = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
+    in_line: Any = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
     assert len(text_of(sensitivity_analysis, found).splitlines()) <= 32

@@ -5,22 +5,14 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.friction import Friction
-from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.objectives.keys import key_in
 from slidercrank.objectives.kinds import ANGLE, FORCE, LENGTH, PERCENT, RATIO, SHOWN, TORQUE, Kind, System, unit_text
 from slidercrank.service.designs.shown_units import record_in
 from slidercrank.service.figures.panels import draw_sheet
@@ -36,7 +28,6 @@ LBF_IN = 4.4482216152605 * 0.0254
 METRIC = "|".join(
     sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
 )
-QUICK = [name for name in TOPICS if name not in ("clearance", "start_up", "tolerances")]
 
 
 @pytest.mark.parametrize("kind", [*SHOWN, PERCENT, RATIO], ids=lambda kind: kind.name)
@@ -75,66 +66,6 @@ def test_a_value_alone_in_a_cell_has_no_unit_and_within_a_text_it_has() -> None:
         PlainBlock(heads=("size, in", "", "unit"), right=(True, False, False), rows=(("2", "2 in more", "in"),)),
         PlainBlock("bar 2 in x 2 in", heading=True),
     ]
-
-
-@pytest.mark.parametrize("name", QUICK)
-def test_no_topic_tells_a_metric_unit(name: str) -> None:
-    topic = TOPICS[name].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
-    try:
-        numbers = topic.numbers(lambda: False)
-    except InputError:
-        return  # this machine has none
-    text: list[str] = []
-    for metric, inch in zip(
-        plain_blocks(topic.blocks(numbers)), plain_blocks(topic.blocks(numbers), "inch"), strict=True
-    ):
-        assert len(inch.rows) == len(metric.rows)
-        text += [inch.sentence, *inch.heads, *(cell for row in inch.rows for cell in row)]
-    assert [one for one in text if re.search(rf"(?:^|\s)(?:{METRIC})(?![\w^/²³])", one)] == []
-
-
-def values_of(record: Any, key: str = "") -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a record, each with its key."""
-    if isinstance(record, dict | list):
-        for name, value in record.items() if isinstance(record, dict) else ((key, value) for value in record):
-            yield from values_of(value, name)
-    elif isinstance(record, float):
-        yield key, record
-
-
-MACHINES: dict[str, dict[str, Any]] = {
-    "balance": {"counterweight": Counterweight(mass=1.713, radius=0.0623)},
-    "cylinders": {"arrangement": Arrangement(phases=(0.0, 2.17), places=(-0.0513, 0.0513))},
-    "extremes": {},
-    "friction": {"friction": Friction(guide=0.0837)},
-    "motor": {},
-    "uneven_speed": {"speed_profile": Harmonics(cosines=(0.0, 0.0513))},
-}
-
-
-@pytest.mark.parametrize("name", MACHINES)
-def test_no_topic_writes_a_metric_number_in_inches(name: str) -> None:
-    machine = replace(fronts.MACHINE, **MACHINES[name])
-    topic = TOPICS[name].of(machine, Linkage(0.1237, 0.3519, 0.0811))
-    record = topic.numbers(lambda: False)
-    metric, other = set[str](), set[str]()
-    for key, value in values_of(record):
-        (other if key_in(key, "inch")[1] == 1.0 else metric).update(f"{abs(value):.{n}g}" for n in (4, 5, 6))
-    other |= {f"{abs(value):.{n}g}" for _, value in values_of(record_in(record, "inch")) for n in (4, 5, 6)}
-    blocks = plain_blocks(topic.blocks(record), "inch")
-    text = [*(block.sentence for block in blocks), *(cell for block in blocks for row in block.rows for cell in row)]
-    written = {number for one in text for number in re.findall(r"\d+\.\d+(?:e[-+]\d+)?", one)}
-    assert len(written & other) > 5
-    assert written & (metric - other) == set()
-
-
-def test_a_motor_in_inches_has_the_numbers_of_its_json() -> None:
-    topic = TOPICS["motor"].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
-    numbers = topic.numbers(lambda: False)
-    rows = {row[0]: row for block in plain_blocks(topic.blocks(numbers), "inch") for row in block.rows}
-    assert float(rows["peak torque"][1]) == pytest.approx(numbers["peak_torque_Nm"] / LBF_IN, rel=1e-5)
-    assert rows["peak torque"][2] == "lbf in"
-    assert float(rows["mean power"][1]) == pytest.approx(numbers["mean_power_W"] / 745.69987158227, rel=1e-5)
 
 
 def test_axes_of_a_figure_are_changed_with_all_that_is_drawn() -> None:

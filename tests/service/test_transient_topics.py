@@ -36,7 +36,7 @@ STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
 RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
 
 
-def shown(topic: ModuleType, numbers: dict[str, Any]) -> str:
+def shown(topic: ModuleType, numbers: Any) -> str:
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=100), topic.blocks(numbers))
@@ -45,7 +45,7 @@ def shown(topic: ModuleType, numbers: dict[str, Any]) -> str:
 
 
 def test_the_start_is_told_with_its_steady_running() -> None:
-    numbers = start_up.numbers(MACHINE, LINKAGE)
+    numbers: Any = start_up.numbers(MACHINE, LINKAGE)
     running = steady_running(MACHINE, LINKAGE)
     assert numbers["verdict"] == "steady"
     assert numbers["steady"]["mean_speed_rpm"] == pytest.approx(running.mean_speed * 30.0 / np.pi, rel=1e-12)
@@ -59,19 +59,19 @@ def test_the_start_is_told_with_its_steady_running() -> None:
 
 
 def test_a_motor_that_cannot_start_is_told_as_such() -> None:
-    text = shown(start_up, start_up.numbers(STUCK, LINKAGE))
+    text: Any = shown(start_up, start_up.numbers(STUCK, LINKAGE))
     assert "cannot overcome the load" in text
     assert "No steady running" in text
 
 
 def test_a_start_can_be_cancelled() -> None:
-    numbers = start_up.numbers(MACHINE, LINKAGE, cancelled=lambda: True)
+    numbers: Any = start_up.numbers(MACHINE, LINKAGE, cancelled=lambda: True)
     assert numbers["verdict"] == "cancelled"
 
 
 @pytest.mark.slow
 def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> None:
-    numbers = flywheel.numbers(MACHINE, LINKAGE, fluctuation=0.05)
+    numbers: Any = flywheel.numbers(MACHINE, LINKAGE, fluctuation=0.05)
     assert numbers["flywheel_kgm2"] == design_flywheel(MACHINE, LINKAGE, 0.05).inertia
     assert numbers["steady"]["fluctuation"] == pytest.approx(0.05, rel=1e-9)
     assert numbers["flywheels_kgm2"] == sorted(numbers["flywheels_kgm2"])
@@ -98,7 +98,7 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
         loads=(StrokeForce(outward=-200.0, inward=-200.0),),
     )
     linkage = Linkage(0.05, 0.16, 0.05)
-    numbers = flywheel.numbers(machine, linkage)
+    numbers: Any = flywheel.numbers(machine, linkage)
     assert numbers["fluctuation_without_flywheel"] == pytest.approx(6.3286239 if least else 63.3867047, rel=1e-7)
     assert numbers["least_speed_without_flywheel_rpm"] == pytest.approx(least, rel=1e-7)
     stream = io.StringIO()
@@ -109,7 +109,7 @@ def test_without_a_flywheel_a_crank_that_nearly_stops_has_its_numbers(speed: flo
 @pytest.mark.parametrize("slider", [50.0, 0.0])
 def test_a_machine_without_inertia_has_a_flywheel_and_the_reason_why_it_has_no_speeds_without(slider: float) -> None:
     machine = Mechanism(speed=2.5, slider_mass=slider, loads=(StrokeForce(outward=0.0, inward=900.0),))
-    numbers = flywheel.numbers(machine, Linkage(0.06, 0.3, 0.0), fluctuation=0.4)
+    numbers: Any = flywheel.numbers(machine, Linkage(0.06, 0.3, 0.0), fluctuation=0.4)
     assert numbers["flywheel_kgm2"] == pytest.approx(numbers["classical_estimate_kgm2"], rel=0.1)
     assert numbers["fluctuation_without_flywheel"] is numbers["least_speed_without_flywheel_rpm"] is None
     assert numbers["reason_without_flywheel"].startswith("the crank needs inertia at every angle")
@@ -161,12 +161,12 @@ def test_the_figure_of_the_flywheel_shows_the_model(machine: Mechanism, tmp_path
 
 def test_the_heat_of_friction_is_told_of_a_start_with_friction_alone() -> None:
     rubbing = replace(MACHINE, friction=Friction(guide=0.1, crank_pin=Pin(radius=0.01, coefficient=0.08)))
-    numbers = start_up.numbers(rubbing, LINKAGE, turns=3)
+    numbers: Any = start_up.numbers(rubbing, LINKAGE, turns=3)
     assert numbers["friction_work_J"] > 4.0
     gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
     spent = numbers["load_work_J"] + numbers["friction_work_J"]
     assert gained == pytest.approx(numbers["motor_work_J"] - spent, rel=1e-6)
     assert "heat of friction" in shown(start_up, numbers)
-    smooth = start_up.numbers(MACHINE, LINKAGE, turns=3)
+    smooth: Any = start_up.numbers(MACHINE, LINKAGE, turns=3)
     assert smooth["friction_work_J"] == 0.0
     assert "heat of friction" not in shown(start_up, smooth)

@@ -33,7 +33,6 @@ QUESTION = Question(
         endpoint="allocate_tolerances",
         job="A job file with [costs].",
         sizes=True,
-        part={"kind": "worst case", "limit_mm": 0.3, "cost": 25.52, "error_mm": 0.3, "converged": True},
         figure=("allocation", "error and costs"),
     ),
 )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 
@@ -19,12 +18,62 @@ from ....optimise.problem.problem import Problem
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
 from ....optimise.sizing.words import Kind
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
+from ..answers import Note, Record
 from ..peaks import peak
+
+OfLength = Annotated[float | None, Note("null for the crank angle")]
+OfAngle = Annotated[float | None, Note("of the crank angle; null for lengths")]
+Before = Annotated[float | None, Note("null unless the job has all tolerances that have a cost")]
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ....objectives.kinds import System
+
+
+class Tolerance(Record):
+    """A tolerance: a length, or that of the crank angle."""
+
+    name: str
+    tolerance_mm: OfLength
+    tolerance_deg: OfAngle
+    cost: float
+    share_of_cost_percent: float
+    bound: Annotated[Literal["least", "greatest"] | None, Note("of what is possible, if it is at one; else null")]
+    bound_saving_per_um: OfLength
+    """What moving the bound would save; null for the crank angle."""
+    bound_saving_per_mdeg: OfAngle
+
+
+class ActiveAngle(Record):
+    """A crank angle at which the limit holds."""
+
+    crank_angle_deg: float
+    saving_per_um: float
+
+
+class Tolerances(Record):
+    """Tolerances of least cost within a limit of the position error."""
+
+    kind: Kind
+    """How errors add up."""
+    limit_mm: float
+    cost: float
+    error_mm: float
+    """Greatest over the counted part of the cycle."""
+    exact_worst_case_mm: Annotated[float | None, Note("null where a linkage within the tolerances does not turn")]
+    saving_per_um: float
+    """What a greater limit would save."""
+    tolerances: list[Tolerance]
+    active_angles: list[ActiveAngle]
+    cost_before: Before
+    error_before_mm: Before
+    rounds: int
+    residual: float
+    """Of the optimality conditions."""
+    converged: bool
+    """Whether the cost is proven to be the least."""
+
 
 _STEP = replace(LENGTH, metric=face("1 µm", 1e6), inch=face("0.0001 in", 1e4 * LENGTH.face("inch").factor))
 """A step of length, for what it saves: as a unit of its own."""
@@ -49,7 +98,7 @@ def prepare(
     return {"found": found, "costs": problem.costs}
 
 
-def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, **_: Any) -> dict[str, Any]:
+def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, **_: Any) -> Tolerances:
     """Return an allocation ready for JSON.
 
     before: the mechanism as it was; cost and error of its own tolerances are None unless it has all that have a cost.
@@ -59,7 +108,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Co
         exact = 1e3 * worst(found.mechanism, linkage).size
     except AssemblyError:
         exact = None
-    tolerances = []
+    tolerances: list[Tolerance] = []
     for part in found.parts:
         angle = part.name == "crank_angle"
         unit = float(np.degrees(1.0)) if angle else 1e3
@@ -97,7 +146,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Co
     }
 
 
-def notes(numbers: Mapping[str, Any]) -> list[str]:
+def notes(numbers: Tolerances) -> list[str]:
     """Return what is not proven."""
     residual = f"the optimality conditions are met to {numbers['residual']:.1e} only"
     return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
@@ -110,7 +159,7 @@ def figure(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Cos
     return allocation_figure(allocation_curves(found, linkage, costs, before), units)
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Tolerances) -> list[Block]:
     """Return the numbers for people."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
     rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
@@ -137,7 +186,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
 
 
-def _row(tolerance: dict[str, Any]) -> tuple[Text, ...]:
+def _row(tolerance: Tolerance) -> tuple[Text, ...]:
     length = tolerance["tolerance_deg"] is None
     remark: Text = ""
     if tolerance["bound"]:
@@ -153,13 +202,13 @@ def _row(tolerance: dict[str, Any]) -> tuple[Text, ...]:
     return tolerance["name"].replace("_", " "), (size,), cost, share, remark
 
 
-def _saved(per_um: float) -> Value:
+def _saved(per_um: float | None) -> Value:
     """Return what a step of length saves."""
     per = replace(_STEP, metric=face("", 1e-6), inch=face("", 1.0 / _STEP.face("inch").factor))
-    return Value(1e6 * per_um, per, 4)
+    return Value(None if per_um is None else 1e6 * per_um, per, 4)
 
 
-def _before(numbers: dict[str, Any]) -> Text:
+def _before(numbers: Tolerances) -> Text:
     if numbers["cost_before"] is None:
         return ""
     cost, error = recorded(numbers, "cost_before", digits=5), recorded(numbers, "error_before_mm", digits=4)

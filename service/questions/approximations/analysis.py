@@ -3,18 +3,57 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
+from ....model.arrays import Array
 from ....model.classical.comparison import Errors, compare, errors_over_offset, relative_error
 from ....model.classical.lumped import rotating_and_reciprocating
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE
+from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
 from ...render.numerals import shown
+from ..answers import Note, Record
+
+Share = Annotated[float | None, Note("null where the exact value is zero all over")]
+
+
+class Approximation(Record):
+    """An approximation and its error: the greatest difference over the cycle, as a share of the exact peak."""
+
+    name: str
+    error_percent: Share
+    error_over_offset_percent: list[Share]
+    """At each offset of the answer."""
+
+
+class AccelerationOf(Approximation):
+    """Approximate slider acceleration."""
+
+    peak_acceleration_m_s2: float
+
+
+class TorqueOf(Approximation):
+    """Approximate inertia torque."""
+
+    peak_torque_Nm: float
+
+
+class Approximations(Record):
+    """Textbook models beside the exact one: inertia alone, at constant speed."""
+
+    rotating_mass_kg: float
+    reciprocating_mass_kg: float
+    exact_peak_acceleration_m_s2: float
+    exact_peak_torque_Nm: float
+    offset_mm: list[float]
+    """Offsets, the design's own among them, at which the errors are given."""
+    accelerations: list[AccelerationOf]
+    torques: list[TorqueOf]
+
 
 _TOLD, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}
@@ -27,7 +66,7 @@ def _over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
     return errors_over_offset(mechanism, linkage, math.copysign(1.0, own) * np.linspace(0.0, far, count))
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     """Return for each approximation its peak, its error at this design, and its error over offset.
 
     Errors: the greatest difference over the cycle as a share of the exact peak, in per cent; None where all is zero.
@@ -37,50 +76,50 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
     offsets = _over_offset(mechanism, linkage, _TOLD)
 
-    def entry(name: str, curve: Any, exact: Any, errors: Any, unit: str) -> dict[str, Any]:
-        return {
-            "name": name,
-            f"peak_{unit}": float(np.abs(curve).max()),
-            "error_percent": _percent(relative_error(curve, exact)),
-            "error_over_offset_percent": [_percent(value) for value in errors.tolist()],
-        }
-
     return {
         "rotating_mass_kg": rotating,
         "reciprocating_mass_kg": reciprocating,
-        "exact_peak_acceleration_m_s2": float(np.abs(found.acceleration).max()),
-        "exact_peak_torque_Nm": float(np.abs(found.torque).max()),
+        "exact_peak_acceleration_m_s2": _peak(found.acceleration),
+        "exact_peak_torque_Nm": _peak(found.torque),
         "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # of a negative offset the first one is -0.0
         "accelerations": [
-            entry(name, curve, found.acceleration, offsets.accelerations[name], "acceleration_m_s2")
+            {
+                "name": name,
+                "peak_acceleration_m_s2": _peak(curve),
+                "error_percent": _percent(relative_error(curve, found.acceleration)),
+                "error_over_offset_percent": list(map(_percent, offsets.accelerations[name].tolist())),
+            }
             for name, curve in found.accelerations.items()
         ],
         "torques": [
-            entry(name, curve, found.torque, offsets.torques[name], "torque_Nm")
+            {
+                "name": name,
+                "peak_torque_Nm": _peak(curve),
+                "error_percent": _percent(relative_error(curve, found.torque)),
+                "error_over_offset_percent": list(map(_percent, offsets.torques[name].tolist())),
+            }
             for name, curve in found.torques.items()
         ],
     }
+
+
+def _peak(curve: Array) -> float:
+    return float(np.abs(curve).max())
 
 
 def _percent(share: float) -> float | None:
     return 100.0 * share if math.isfinite(share) else None
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Approximations) -> list[Block]:
     """Return a line for each approximation."""
     offsets = [column(f"{100 * k // (_TOLD - 1)} %") for k in range(_TOLD)]
     columns = (column("model", left=True), column("peak"), column("unit", left=True), column("error"), *offsets)
     rows: list[tuple[Text, ...]] = []
-    for what, kind, key, exact in (
-        ("slider acceleration", ACCELERATION, "accelerations", "exact_peak_acceleration_m_s2"),
-        ("inertia torque", TORQUE, "torques", "exact_peak_torque_Nm"),
-    ):
-        rows.append((f"{what}, exact", recorded(numbers, exact, digits=5), Unit(kind), *[""] * (1 + _TOLD)))
-        for entry in numbers[key]:
-            peak = next(name for name in entry if name.startswith("peak_"))
-            errors = (entry["error_percent"], *entry["error_over_offset_percent"])
-            cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
-            rows.append((f"  {entry['name']}", recorded(entry, peak, digits=5), Unit(kind), *cells))
+    rows.append(("slider acceleration, exact", *_exact(numbers, "exact_peak_acceleration_m_s2", ACCELERATION)))
+    rows += [_row(one, "peak_acceleration_m_s2", ACCELERATION) for one in numbers["accelerations"]]
+    rows.append(("inertia torque, exact", *_exact(numbers, "exact_peak_torque_Nm", TORQUE)))
+    rows += [_row(one, "peak_torque_Nm", TORQUE) for one in numbers["torques"]]
     return [
         heading("Approximate models, inertia alone, at constant speed"),
         Table(columns, tuple(rows), ruled=True),
@@ -90,6 +129,16 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
             most=recorded_all(numbers, "offset_mm", digits=4)[-1],
         ),
     ]
+
+
+def _exact(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
+    return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TOLD)
+
+
+def _row(one: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
+    errors = (one["error_percent"], *one["error_over_offset_percent"])
+    cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
+    return f"  {one['name']}", recorded(one, key, digits=5), Unit(kind), *cells
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,29 @@ from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.needs import MOTION
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
-from ..peaks import peak, row_of
+from ..answers import AngleOfPeak, Note, Record
+from ..peaks import Peak, peak, row_of
+
+Bare = Annotated[float | None, Note("null without a counterweight")]
+
+
+class Shaking(Record):
+    """Force and moment of inertia on the frame, gravity and load left out; root mean squares are over time."""
+
+    counterweight_kg: float
+    counterweight_radius_mm: float
+    peak_shaking_force_N: float
+    peak_shaking_force_angle_deg: AngleOfPeak
+    rms_shaking_force_N: float
+    peak_shaking_force_without_counterweight_N: Bare
+    rms_shaking_force_without_counterweight_N: Bare
+    peak_shaking_moment_Nm: float
+    """About the crank pivot."""
+    peak_shaking_moment_angle_deg: AngleOfPeak
+    rms_shaking_moment_Nm: float
+    peak_shaking_moment_without_counterweight_Nm: Bare
+    rms_shaking_moment_without_counterweight_Nm: Bare
+
 
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
 
@@ -32,7 +54,7 @@ def _bare(mechanism: Mechanism) -> Mechanism | None:
     return replace(mechanism, counterweight=Counterweight(mass=0.0, radius=0.0))
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
 
     Root mean squares are over time. Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The
@@ -40,18 +62,33 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """
     if not MOTION.met(mechanism):
         raise InputError(MOTION.missing)
-    design, weight, bare = row_of(linkage), mechanism.counterweight, _bare(mechanism)
-    values: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
-    for name, unit, signal in _CURVES:
-        greatest = peak(mechanism, signal, linkage)
-        without = None if bare is None else peak(bare, signal, linkage).value
-        values[f"peak_{name}_{unit}"] = greatest.value
-        values[f"peak_{name}_angle_deg"] = greatest.degrees
-        values[f"rms_{name}_{unit}"] = float(average(mechanism, signal, design).rms[0])
-        values[f"peak_{name}_without_counterweight_{unit}"] = without
-        rms = None if bare is None else float(average(bare, signal, design).rms[0])
-        values[f"rms_{name}_without_counterweight_{unit}"] = rms
-    return values
+    weight, bare = mechanism.counterweight, _bare(mechanism)
+    force, moment = (_shaken(mechanism, signal, linkage) for *_, signal in _CURVES)
+    force_bare, moment_bare = (None if bare is None else _shaken(bare, signal, linkage) for *_, signal in _CURVES)
+    return {
+        "counterweight_kg": weight.mass,
+        "counterweight_radius_mm": 1e3 * weight.radius,
+        "peak_shaking_force_N": force.peak.value,
+        "peak_shaking_force_angle_deg": force.peak.degrees,
+        "rms_shaking_force_N": force.rms,
+        "peak_shaking_force_without_counterweight_N": None if force_bare is None else force_bare.peak.value,
+        "rms_shaking_force_without_counterweight_N": None if force_bare is None else force_bare.rms,
+        "peak_shaking_moment_Nm": moment.peak.value,
+        "peak_shaking_moment_angle_deg": moment.peak.degrees,
+        "rms_shaking_moment_Nm": moment.rms,
+        "peak_shaking_moment_without_counterweight_Nm": None if moment_bare is None else moment_bare.peak.value,
+        "rms_shaking_moment_without_counterweight_Nm": None if moment_bare is None else moment_bare.rms,
+    }
+
+
+class _Shaking(NamedTuple):
+    peak: Peak
+    rms: float
+
+
+def _shaken(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
+    rms = average(mechanism, signal, row_of(linkage)).rms[0]
+    return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 
 def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> ShakingCurves | WholeCurves:
@@ -61,7 +98,7 @@ def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) 
     return shaking_curves(mechanism, linkage, theta)
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Shaking) -> list[Block]:
     """Return the numbers for people."""
     shown: list[NamedNumber] = []
     for name, unit, _ in _CURVES:

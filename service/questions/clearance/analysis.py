@@ -7,14 +7,16 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from ....model.clearance.run import ClearanceProgress, ClearanceRun, simulate
+from ....model.clearance.run import ClearanceProgress, ClearanceRun, Status, simulate
 from ....model.clearance.statistics import summarise
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
+from ....model.machine.clearance import Joint, Law
 from ....model.machine.mechanism import Mechanism
 from ...render.blocks import Block, Table, Text, Unit, column, heading, note, recorded, sentence, words
+from ..answers import Keys, Note
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,6 +40,34 @@ ROWS = (
     ("dissipated", "dissipated", "_J", 1.0, "lost in the joint per turn", ""),
     ("stored", "stored", "_J", 1.0, "gain of stored energy per turn", ""),
 )
+
+
+_Counted = Annotated[float | None, Note("mean over the turns that count; null without one")]
+_Uncertain = Annotated[float | None, Note("half the width of the 99 % confidence interval; null without two turns")]
+Impacts = Annotated[
+    dict[str, Any],
+    Keys(
+        "Impacts",
+        "Statistics of a simulation of the loose joint over turns of the crank.",
+        {
+            "joint": Joint,
+            "radial_clearance_mm": float,
+            "law": Law,
+            "restitution": float,
+            "friction": float,
+            "contact_stiffness_N_per_m_to_1_5": float,
+            "status": Status,
+            "turns": int,
+            "turns_discarded": int,
+            **{f"{key}{unit}": _Counted for _, key, unit, *_ in ROWS},
+            **{f"{key}_uncertainty{unit}": _Uncertain for _, key, unit, *_ in ROWS},
+            "fastest_impact_m_s": Annotated[float | None, Note("null without an impact")],
+            "energy_residual_J": Annotated[
+                float | None, Note("greatest error of the balance in a turn; null without one")
+            ],
+        },
+    ),
+]
 
 
 def simulated(
@@ -67,9 +97,7 @@ def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool
     return {"run": simulated(mechanism, linkage, cancelled=cancelled)}
 
 
-def numbers(
-    mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any
-) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any) -> Impacts:
     """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None for what is not defined.
 
     run: one that was done before; else `simulated` with the options does it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -30,7 +30,56 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import shown
+from ..answers import AngleOfPeak, Note, Record
 from . import QUESTION
+
+
+class RodBalance(Record):
+    """A mass that is added to the rod; its centre is along and across the rod from the crank pin."""
+
+    mass_kg: float
+    moment_along_kg_m: float
+    moment_across_kg_m: float
+    inertia_kg_m2: float
+    """About the crank pin."""
+    centre_along_mm: Annotated[float | None, Note("null where nothing is added")]
+    centre_across_mm: Annotated[float | None, Note("null where nothing is added")]
+
+
+class ShakingNumbers(Record):
+    """Shaking of inertia; moments are about the crank pivot, root mean squares over time."""
+
+    peak_shaking_force_N: float
+    peak_shaking_force_angle_deg: AngleOfPeak
+    rms_shaking_force_N: float
+    peak_shaking_moment_Nm: float
+    peak_shaking_moment_angle_deg: AngleOfPeak
+    rms_shaking_moment_Nm: float
+
+
+class BalanceNumbers(Record):
+    """Counterweight of least shaking, and a balance mass on the rod."""
+
+    measure: Measure
+    """What is least over the cycle."""
+    counterweight_moment_kg_m: float
+    """Mass times radius."""
+    counterweight_angle_deg: float
+    """From the crank."""
+    counterweight_radius_mm: float
+    counterweight_kg: float
+    rod_balance: Annotated[RodBalance | None, Note("null where none is allowed")]
+    before: ShakingNumbers
+    after: ShakingNumbers
+    objective_N: float
+    least_possible_N: float
+    """A proven bound of the objective."""
+    saving_N_per_kg: float
+    """Of the objective, where the counterweight is the heaviest that is allowed; 0 elsewhere."""
+    rounds: int
+    converged: bool
+    """Whether the objective is proven to be the least."""
+
 
 _SAMPLES = 1441
 
@@ -72,7 +121,7 @@ def _rod_space(inputs: Mapping[str, Any], said: Mapping[str, str]) -> RodSpace |
     return RodSpace(radius=radius, mass=mass)
 
 
-def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "peak", **options: Any) -> dict[str, Any]:
+def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "peak", **options: Any) -> BalanceNumbers:
     """Return a balance ready for JSON; the angle of the counterweight is from the crank's direction."""
     rod = found.rod
     weighs = rod is not None and rod.mass > 0.0
@@ -102,13 +151,13 @@ def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "pe
     }
 
 
-def notes(numbers: Mapping[str, Any]) -> list[str]:
+def notes(numbers: BalanceNumbers) -> list[str]:
     """Return what is not proven."""
     proven = f"{numbers['objective_N']:.6g} N, and no less than {numbers['least_possible_N']:.6g} N is possible"
     return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
 
 
-def _shaking(shaking: Shaking) -> dict[str, float]:
+def _shaking(shaking: Shaking) -> ShakingNumbers:
     return {
         "peak_shaking_force_N": shaking.peak_force,
         "peak_shaking_force_angle_deg": float(np.degrees(shaking.peak_force_angle)),
@@ -119,7 +168,7 @@ def _shaking(shaking: Shaking) -> dict[str, float]:
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: BalanceNumbers) -> list[Block]:
     """Return the numbers for people."""
     mass, radius, angle = (recorded(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg"))
     moment = recorded(numbers, "counterweight_moment_kg_m")
@@ -153,11 +202,12 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
 
 
-def _centre(rod: dict[str, Any]) -> Text:
-    if rod["centre_along_mm"] is None:
+def _centre(rod: RodBalance) -> Text:
+    along, across = rod["centre_along_mm"], rod["centre_across_mm"]
+    if along is None or across is None:
         return ""
-    along, across = (Value(1e-3 * round(rod[f"centre_{name}_mm"], 3), LENGTH) for name in ("along", "across"))
-    return words("centre {along} along, {across} across the rod", along=along, across=across)
+    places = {"along": Value(1e-3 * round(along, 3), LENGTH), "across": Value(1e-3 * round(across, 3), LENGTH)}
+    return words("centre {along} along, {across} across the rod", **places)
 
 
 def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> Sheet:

@@ -3,66 +3,113 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from ....model.cycle.several import whole_breakpoints, whole_curves, whole_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import alone, members
+from ....model.machine.members import Member, alone, members
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
 from ...render.blocks import Block, Table, Text, column, compared, named_number, number_list, recorded
+from ..answers import AngleOfPeak, Locked, Note, Record
 from ..peaks import peak
 
-_FORCES = {
-    "peak_torque_Nm": Signal.TORQUE,
-    "peak_crank_pin_force_N": Signal.CRANK_PIN_FORCE,
-    "peak_slider_pin_force_N": Signal.SLIDER_PIN_FORCE,
-    "peak_guide_force_N": Signal.GUIDE_FORCE,
-}
+
+class Cylinder(Record):
+    """A cylinder by itself."""
+
+    phase_deg: float
+    bank_deg: float
+    place_mm: float
+    peak_torque_Nm: Locked
+    peak_crank_pin_force_N: Locked
+    peak_slider_pin_force_N: Locked
+    peak_guide_force_N: Locked
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+class Cylinders(Record):
+    """Torque and shaking of all cylinders together."""
+
+    cylinders: list[Cylinder]
+    peak_torque_Nm: Locked
+    peak_torque_angle_deg: AngleOfPeak
+    least_torque_Nm: Locked
+    least_torque_angle_deg: AngleOfPeak
+    greatest_torque_Nm: Locked
+    greatest_torque_angle_deg: AngleOfPeak
+    mean_torque_Nm: Locked
+    rms_torque_Nm: Locked
+    torque_fluctuation_Nm: Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")]
+    energy_change_J: Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")]
+    peak_shaking_force_N: float
+    peak_shaking_force_angle_deg: AngleOfPeak
+    rms_shaking_force_N: float
+    peak_shaking_moment_Nm: float
+    peak_shaking_moment_angle_deg: AngleOfPeak
+    rms_shaking_moment_Nm: float
+    peak_rocking_couple_Nm: float
+    peak_rocking_couple_angle_deg: AngleOfPeak
+    peak_shaking_force_of_one_N: float
+    peak_shaking_moment_of_one_Nm: float
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     """Return torque and shaking of all cylinders together, and the peaks of each. None: an angle of what is zero.
 
     Raises `InputError` for a machine without stated cylinders.
     """
-    each = []
-    for member in members(mechanism):
-        phase = math.degrees(member.lead + member.bank)
-        own = {"phase_deg": phase, "bank_deg": math.degrees(member.bank), "place_mm": 1e3 * member.place}
-        each.append(own | {key: peak(member.mechanism, kind, linkage).value for key, kind in _FORCES.items()})
     whole = whole_cycle(mechanism, linkage)
     return {
-        "cylinders": each,
-        **_with_angle("peak_torque", "Nm", Extreme(abs(whole.peak.value), whole.peak.angle)),
-        **_with_angle("least_torque", "Nm", whole.least),
-        **_with_angle("greatest_torque", "Nm", whole.greatest),
+        "cylinders": [_each(member, linkage) for member in members(mechanism)],
+        "peak_torque_Nm": abs(whole.peak.value),
+        "peak_torque_angle_deg": _degrees(whole.peak),
+        "least_torque_Nm": whole.least.value,
+        "least_torque_angle_deg": _degrees(whole.least),
+        "greatest_torque_Nm": whole.greatest.value,
+        "greatest_torque_angle_deg": _degrees(whole.greatest),
         "mean_torque_Nm": whole.mean,
         "rms_torque_Nm": whole.rms,
         "torque_fluctuation_Nm": whole.fluctuation,
         "energy_change_J": whole.energy_change,
-        **_with_angle("peak_shaking_force", "N", whole.shaking_force),
+        "peak_shaking_force_N": whole.shaking_force.value,
+        "peak_shaking_force_angle_deg": _degrees(whole.shaking_force),
         "rms_shaking_force_N": whole.rms_shaking_force,
-        **_with_angle("peak_shaking_moment", "Nm", whole.shaking_moment),
+        "peak_shaking_moment_Nm": whole.shaking_moment.value,
+        "peak_shaking_moment_angle_deg": _degrees(whole.shaking_moment),
         "rms_shaking_moment_Nm": whole.rms_shaking_moment,
-        **_with_angle("peak_rocking_couple", "Nm", whole.couple),
+        "peak_rocking_couple_Nm": whole.couple.value,
+        "peak_rocking_couple_angle_deg": _degrees(whole.couple),
         "peak_shaking_force_of_one_N": peak(alone(mechanism), Signal.SHAKING_FORCE, linkage).value,
         "peak_shaking_moment_of_one_Nm": peak(alone(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
 
 
-def _with_angle(name: str, unit: str, extreme: Extreme) -> dict[str, Any]:
-    at = None if math.isnan(extreme.angle) else math.degrees(extreme.angle)
-    return {f"{name}_{unit}": extreme.value, f"{name}_angle_deg": at}
+def _each(member: Member, linkage: Linkage) -> Cylinder:
+    def greatest(signal: Signal) -> float:
+        return peak(member.mechanism, signal, linkage).value
+
+    return {
+        "phase_deg": math.degrees(member.lead + member.bank),
+        "bank_deg": math.degrees(member.bank),
+        "place_mm": 1e3 * member.place,
+        "peak_torque_Nm": greatest(Signal.TORQUE),
+        "peak_crank_pin_force_N": greatest(Signal.CRANK_PIN_FORCE),
+        "peak_slider_pin_force_N": greatest(Signal.SLIDER_PIN_FORCE),
+        "peak_guide_force_N": greatest(Signal.GUIDE_FORCE),
+    }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def _degrees(extreme: Extreme) -> float | None:
+    return None if math.isnan(extreme.angle) else math.degrees(extreme.angle)
+
+
+def blocks(numbers: Cylinders) -> list[Block]:
     """Return the numbers for people."""
     remarks: dict[str, Text] = {
         "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first alone"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated, Any, NotRequired
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
+from ....objectives.tables.cycle_curves import KINDS
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import (
     Block,
@@ -32,12 +33,47 @@ from ...render.blocks import (
 from ...render.extremes import extremes_table
 from ...render.numerals import shown
 from ...text.tables import plain
+from ..answers import Keys, Note, Record, keys_of_kinds
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
 _STROKES = ("outward", "inward")
+_Place = Annotated[float | None, Note("null for a constant curve, and where friction leaves the curve undetermined")]
+_OfAll = Annotated[float | None, Note("null where cylinders have different ones")]
+_PLACES = ("at_crank_angle_deg", "at_slider_position_mm")
+_CURVE = {
+    "title": str,
+    **keys_of_kinds(("least", "greatest"), KINDS),
+    **{f"{word}_{place}": _Place for word in ("least", "greatest") for place in _PLACES},
+}
+_STROKE = {
+    "crank_angle_deg": float,
+    "duration_s": NotRequired[_OfAll],
+    "greatest_speed_m_s": NotRequired[float],
+    **{f"greatest_speed_{place}": NotRequired[_Place] for place in _PLACES},
+}
+_Stroke = Annotated[dict[str, Any], Keys("StrokeNumbers", "A stroke of the slider.", _STROKE)]
+_OF_STROKES = {
+    **dict.fromkeys(_STROKES, _Stroke),
+    "angle_ratio": float,
+    "duration_ratio": _OfAll,
+    "duration_difference_s": NotRequired[_OfAll],
+    "greatest_speed_ratio": NotRequired[float],
+    "greatest_speed_difference_m_s": NotRequired[float],
+}
+_Curve = Annotated[dict[str, Any], Keys("CurveExtremes", "Least and greatest value of a curve.", _CURVE, 7)]
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+class Extremes(Record):
+    """Extremes of each curve over the turn, and both strokes; ratios and differences are outward against inward."""
+
+    curves: dict[str, _Curve]
+    """By name: those that the machine defines."""
+    strokes: Annotated[dict[str, Any], Keys("Strokes", "Both strokes, compared.", _OF_STROKES)]
+    undefined_because: NotRequired[str]
+    """Why curves are undetermined; left out where none is."""
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:
     """Return the extremes of each curve, by its name, and the strokes: their durations, greatest speeds and ratios.
 
     A curve without masses, loads or a speed that it needs is left out. None stands for what friction leaves
@@ -46,11 +82,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     """
     extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
-    return {
+    answer: Extremes = {
         "curves": {name: _entry(found) for name, found in extremes.items()},
         "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),
-        **({"undefined_because": f"friction locks this design: {locks}"} if locks else {}),
     }
+    if locks:
+        answer["undefined_because"] = f"friction locks this design: {locks}"
+    return answer
 
 
 def _entry(found: CurveExtremes) -> dict[str, Any]:
@@ -107,7 +145,7 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Extremes) -> list[Block]:
     """Return a line for each curve, and the strokes."""
     found: list[Block] = [heading("Extremes over the turn, crank angles continuous"), extremes_table(numbers["curves"])]
     if "undefined_because" in numbers:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -16,14 +16,37 @@ from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
 from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
 from ...render.numerals import shown
-from ..start_up.analysis import RPM, in_order, steady_numbers
+from ..answers import Note, Record
+from ..start_up.analysis import RPM, SteadyNumbers, in_order, steady_numbers
 from . import FLUCTUATION
+
+Bare = Annotated[float | None, Note("null where no steady running was found without a flywheel")]
+
+
+class Flywheel(Record):
+    """Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and those for others."""
+
+    motor: str
+    """Its kind, or "constant torque" for a job without a drive."""
+    wanted_fluctuation: float
+    flywheel_kgm2: float
+    classical_estimate_kgm2: float
+    fluctuation_without_flywheel: Bare
+    least_speed_without_flywheel_rpm: Bare
+    reason_without_flywheel: Annotated[str | None, Note("null where steady running was found without it")]
+    steady: SteadyNumbers
+    """With the flywheel."""
+    fluctuations: list[float]
+    flywheels_kgm2: list[float]
+    """For each of the fluctuations."""
+    classical_estimates_kgm2: list[float]
+
 
 _TRIED = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005)
 _SIZES = np.geomspace(0.25, 4.0, 33)
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Flywheel:
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     found = design_flywheel(mechanism, linkage, fluctuation)
     tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
@@ -56,7 +79,7 @@ def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[tuple[float, float
         return None, str(error)
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Flywheel) -> list[Block]:
     """Return the numbers for people."""
     inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
     wanted = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
@@ -94,7 +117,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
 
 
-def _without_one(numbers: dict[str, Any]) -> Text:
+def _without_one(numbers: Flywheel) -> Text:
     """Return how the machine runs without a flywheel."""
     bare = numbers["fluctuation_without_flywheel"]
     if bare is None:

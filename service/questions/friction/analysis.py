@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -22,7 +22,42 @@ from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
 from ...figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, NamedNumber, Value, compared, joined, named_number, number_list, recorded, words
 from ...text.tables import plain
+from ..answers import Locked, Note, Record
 from ..peaks import peak, row_of
+
+Smooth = Annotated[float | None, Note("null where it is not determined")]
+Verdict = Literal["drives", "locks", "locks or may jam", "may jam"]
+
+
+class FrictionNumbers(Record):
+    """Self-locking, torque and guide force with and without friction, and the energies of a cycle."""
+
+    one_cylinder_at_constant_speed: bool
+    """True of a machine with several cylinders or a speed profile: the numbers are those of one at constant speed."""
+    verdict: Verdict
+    self_locking_margin_deg: Annotated[
+        float | None, Note("least transmission angle less angles of friction; null where there is none")
+    ]
+    least_transmission_angle_deg: float
+    guide_friction_angle_deg: float
+    pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for any")]
+    locked_angles_deg: list[list[float]]
+    """From and to, of each range of crank angles at which it locks."""
+    peak_torque_Nm: Locked
+    peak_torque_without_friction_Nm: Smooth
+    mean_torque_Nm: Locked
+    mean_torque_without_friction_Nm: Smooth
+    peak_guide_force_N: Locked
+    peak_guide_force_without_friction_N: Smooth
+    input_work_J: Locked
+    useful_work_J: Annotated[float | None, Note("negative where the load drives; null where friction locks")]
+    friction_heat_J: Locked
+    guide_heat_J: Locked
+    crank_pivot_heat_J: Locked
+    crank_pin_heat_J: Locked
+    slider_pin_heat_J: Locked
+    efficiency: Annotated[float | None, Note("null where friction locks, and where the load does no net work")]
+
 
 _WORDS = {
     "drives": "drives at every crank angle, whatever the load",
@@ -31,10 +66,9 @@ _WORDS = {
     "may jam": "MAY JAM: the forces are not determined",
 }
 _OVER = "over the crank angle"
-_JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     """Return verdict, torque with and without friction, energies of a cycle and efficiency of one linkage.
 
     Undefined values are None: torques and energies of a linkage that locks, the efficiency if the load does no net
@@ -44,7 +78,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     friction, found = mechanism.friction, verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
-    values: dict[str, Any] = {
+    torque, smooth_torque = (plain(peak(of, Signal.TORQUE, linkage).value) for of in (mechanism, smooth))
+    mean, smooth_mean = (plain(average_torque(of, row_of(linkage)).mean[0]) for of in (mechanism, smooth))
+    guide, smooth_guide = (plain(peak(of, Signal.GUIDE_FORCE, linkage).value) for of in (mechanism, smooth))
+    work = None if found.locks else energies(mechanism, linkage)
+    return {
         "one_cylinder_at_constant_speed": whole,
         "verdict": "drives" if found.holds is None and not found.locks else _word(found.holds),
         "self_locking_margin_deg": plain(math.degrees(found.margin)),
@@ -52,38 +90,40 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
         "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
         "pin_friction_angle_deg": math.degrees(math.asin(pins)) if pins < 1.0 else None,
         "locked_angles_deg": [[math.degrees(a) % 360.0, math.degrees(b) % 360.0] for a, b in found.locked],
+        "peak_torque_Nm": torque,
+        "peak_torque_without_friction_Nm": smooth_torque,
+        "mean_torque_Nm": mean,
+        "mean_torque_without_friction_Nm": smooth_mean,
+        "peak_guide_force_N": guide,
+        "peak_guide_force_without_friction_N": smooth_guide,
+        "input_work_J": None if work is None else work.input,
+        "useful_work_J": None if work is None else work.useful,
+        "friction_heat_J": None if work is None else work.heat,
+        "guide_heat_J": None if work is None else work.guide_heat,
+        "crank_pivot_heat_J": None if work is None else work.crank_pivot_heat,
+        "crank_pin_heat_J": None if work is None else work.crank_pin_heat,
+        "slider_pin_heat_J": None if work is None else work.slider_pin_heat,
+        "efficiency": None if work is None else work.efficiency,
     }
-    for key, number in (
-        ("peak_torque{}_Nm", lambda of: peak(of, Signal.TORQUE, linkage).value),
-        ("mean_torque{}_Nm", lambda of: average_torque(of, row_of(linkage)).mean[0]),
-        ("peak_guide_force{}_N", lambda of: peak(of, Signal.GUIDE_FORCE, linkage).value),
-    ):
-        values[key.format("")] = plain(number(mechanism))
-        values[key.format("_without_friction")] = plain(number(smooth))
-    work = None if found.locks else energies(mechanism, linkage)
-    for key, name in (
-        ("input_work_J", "input"),
-        ("useful_work_J", "useful"),
-        ("friction_heat_J", "heat"),
-        *((f"{joint}_heat_J", f"{joint}_heat") for joint in _JOINTS),
-        ("efficiency", "efficiency"),
-    ):
-        values[key] = None if work is None else getattr(work, name)
-    return values
 
 
-def _word(holds: float | None) -> str:
+def _word(holds: float | None) -> Verdict:
     if holds is None:  # a single angle, at a margin of exactly zero
         return "may jam"
     return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: FrictionNumbers) -> list[Block]:
     """Return the numbers for people."""
     where = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
+    heats = {
+        "guide": numbers["guide_heat_J"],
+        "crank pivot": numbers["crank_pivot_heat_J"],
+        "crank pin": numbers["crank_pin_heat_J"],
+        "slider pin": numbers["slider_pin_heat_J"],
+    }
     heat, drives = numbers["friction_heat_J"], (numbers["useful_work_J"] or 0.0) < 0.0
-    parts = [(name, numbers[f"{name}_heat_J"] / heat) for name in _JOINTS if heat and numbers[f"{name}_heat_J"]]
-    shares = ", ".join(f"{name.replace('_', ' ')} {100.0 * part:.3g} %" for name, part in parts)
+    shares = ", ".join(f"{name} {100.0 * part / heat:.3g} %" for name, part in heats.items() if heat and part)
     least = words(
         "least transmission angle {angle} less angles of friction",
         angle=recorded(numbers, "least_transmission_angle_deg", digits=4),

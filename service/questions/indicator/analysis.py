@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -18,9 +18,31 @@ from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, face
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, NamedNumber, Value, number_list, recorded
+from ..answers import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=face("bar", 1e-5))
+Event = Annotated[float | None, Note("null where no such event comes")]
 _BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
+
+
+class CylinderPressures(Record):
+    """A cylinder: its volumes, its absolute pressures, and crank angles of events."""
+
+    load: int
+    """Its number among the loads of the job."""
+    least_volume_cm3: float
+    greatest_volume_cm3: float
+    least_pressure_bar: float
+    greatest_pressure_bar: float
+    expansion_ends_deg: Event
+    compression_ends_deg: Event
+    burning_ends_deg: Event
+
+
+class Indicator(Record):
+    """Indicator diagrams."""
+
+    cylinders: list[CylinderPressures]
 
 
 def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
@@ -33,13 +55,13 @@ def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
     return found
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     """Return volumes, pressures and events of each cylinder, in the order of the loads.
 
     The end of expansion, compression or burning at peak pressure is None where no such event comes. Raises `InputError`
     without a cylinder.
     """
-    found = []
+    found: list[CylinderPressures] = []
     for place, load in _of(mechanism):
         curve = indicator(mechanism, linkage, load, turn(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
@@ -60,7 +82,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     return {"cylinders": found}
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Indicator) -> list[Block]:
     """Return the numbers for people."""
     found: list[Block] = []
     for one in numbers["cylinders"]:

@@ -38,14 +38,5 @@ QUESTION = Question(
         job="A job file: what the branch and fixed dimensions come from. A run with --design.",
         alone="Without JOB the branch is the open one. Dimensions that JOB fixes need not be repeated. With --design, "
         "a run stands in place of JOB, and the design has its dimensions.",
-        example=("slider_position", "slider_velocity"),
-        part={
-            "slider_position_mm": 240.0,
-            "slider_velocity_m_s": -1.0,
-            "solutions": [
-                {"crank_angle_deg": 312.364, "crank_speed_rpm": -141.481},
-                {"crank_angle_deg": 80.1563, "crank_speed_rpm": 162.872},
-            ],
-        },
     ),
 )

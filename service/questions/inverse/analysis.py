@@ -7,20 +7,50 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated
 
 from ....model.errors import AssemblyError
 from ....model.linkage.from_slider import CrankSolution
+from ....model.linkage.inverse import Solution as Stroke
 from ....model.linkage.linkage import Linkage
-from ....model.machine.mechanism import Mechanism
+from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_points, placed, require_swing
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
+from ..answers import Note, Record
 
 _NEAR = 1e-9  # rad, beyond an end of a swing: rounding
 UNDEFINED = "at a dead centre a slider at rest goes with any crank speed: crank speed and acceleration are undefined"
 """Reason why there is no crank speed where a slider velocity is given."""
+
+
+Given = Annotated[float | None, Note("as it was given; null if it was not")]
+Rate = Annotated[float | None, Note("null without that of the slider, and where a dead centre leaves it undefined")]
+
+
+class Solution(Record):
+    """A crank angle that gives the slider position, and the rates that give the slider's."""
+
+    crank_angle_deg: float
+    stroke: Annotated[Stroke | None, Note("for a crank that turns counter-clockwise; null at a dead centre")]
+    crank_speed_rpm: Rate
+    crank_acceleration_rad_s2: Rate
+
+
+class CrankAngles(Record):
+    """Every crank angle of a linkage that puts its slider at a position."""
+
+    crank_mm: float
+    rod_mm: float
+    offset_mm: float
+    branch: Branch
+    slider_position_mm: float
+    slider_velocity_m_s: Given
+    slider_acceleration_m_s2: Given
+    solutions: list[Solution]
+    note: str
+    """What is undefined or left out, and why; or empty."""
 
 
 _GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
@@ -35,7 +65,7 @@ def numbers(
     slider_position: float,
     slider_velocity: float | None = None,
     slider_acceleration: float | None = None,
-) -> dict[str, Any]:
+) -> CrankAngles:
     """Return dimensions, slider motion and every solution with keys that carry their units, and a note.
 
     The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. Of a crank that swings the angles of
@@ -61,7 +91,9 @@ def numbers(
     if slider_velocity is not None and any(each.speed is None for each in found):
         said.append(UNDEFINED)
     return {
-        **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
+        "crank_mm": 1e3 * float(linkage.crank),
+        "rod_mm": 1e3 * float(linkage.rod),
+        "offset_mm": 1e3 * float(linkage.offset),
         "branch": linkage.branch,
         "slider_position_mm": 1e3 * slider_position,
         "slider_velocity_m_s": slider_velocity,
@@ -89,12 +121,13 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.6g}"
 
 
-def blocks(record: dict[str, Any]) -> list[Block]:
+def blocks(record: CrankAngles) -> list[Block]:
     """Return the slider's motion and the crank angles."""
+    motion = {key: recorded(record, key) for key in _GIVEN}
     given = [
-        words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=recorded(record, key))
-        for key in _GIVEN
-        if record[key] is not None
+        words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)
+        for key, value in motion.items()
+        if value.number is not None
     ]
     asked = [
         (key, column(title, kind))
@@ -102,13 +135,12 @@ def blocks(record: dict[str, Any]) -> list[Block]:
             ("crank_speed_rpm", "crank speed", ANGULAR_SPEED, "slider_velocity_m_s"),
             ("crank_acceleration_rad_s2", "crank acceleration", ANGULAR_ACCELERATION, "slider_acceleration_m_s2"),
         )
-        if record[of] is not None
+        if motion[of].number is not None
     ]
     rows = []
     for solution in record["solutions"]:
-        _, stroke, *_ = solution.values()
         rates = (recorded(solution, key) for key, _ in asked)
-        rows.append((recorded(solution, "crank_angle_deg"), stroke or "dead centre", *rates))
+        rows.append((recorded(solution, "crank_angle_deg"), solution["stroke"] or "dead centre", *rates))
     heads = (column("crank angle", ANGLE), column("stroke, counter-clockwise", left=True))
     return [
         sentence("slider: {given}", given=joined(given)),
@@ -116,7 +148,7 @@ def blocks(record: dict[str, Any]) -> list[Block]:
     ]
 
 
-def _solution(found: CrankSolution) -> dict[str, Any]:
+def _solution(found: CrankSolution) -> Solution:
     return {
         "crank_angle_deg": ANGLE.metric.factor * found.crank_angle,
         "stroke": found.stroke,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -15,19 +15,46 @@ from ....objectives.counted import counted
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
+from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
 from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
 from ...render.numerals import shown
 from ...text.tables import plain
+from ..answers import Keys, Note, Record, keys_of_kinds
+
+_Fit = Annotated[float | None, Note("null where the samples do not determine a shift")]
+_CURVE = {
+    "title": str,
+    "samples": int,
+    **keys_of_kinds(("rms", "mean", "largest", "best_shift", "left_rms"), KINDS),
+    "largest_at_crank_angle_deg": Annotated[float | None, Note("null where friction leaves the curve undetermined")],
+    "best_crank_angle_shift_deg": _Fit,
+}
+_Curve = Annotated[dict[str, Any], Keys("CurveDeviation", "Measured minus computed values of a curve.", _CURVE, 9)]
+
+
+class Deviations(Record):
+    """Deviation of measured curves from the computed ones. Shifts fit best if added to what was measured."""
+
+    rows: int
+    understood: str
+    """What was read of the file."""
+    rows_without_crank_angle: int
+    crank_angle_from_time: bool
+    left_out: list[str]
+    """Columns that are no curve, or empty."""
+    curves: dict[str, _Curve]
+    """By name."""
+
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
 _NAMED = 12  # of the columns that were left out
 _UNDETERMINED = "undetermined where friction locks"
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Deviations:
     """Return the deviation of each measured curve, measured minus computed, by the curve's name.
 
     best_crank_angle_shift_deg and best_shift: what is to be added to the measured crank angles and values so that the
@@ -66,7 +93,7 @@ def _entry(found: Deviation) -> dict[str, Any]:
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Deviations) -> list[Block]:
     """Return the deviation of each curve, then the shifts that fit best, and what was left out."""
     source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
     deviations: list[tuple[Text, ...]] = []

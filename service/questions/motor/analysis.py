@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -28,13 +28,35 @@ from ....objectives.needs import SPEED
 from ...figures.sheets import Line, Sheet, over_turn, turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import plain
+from ..answers import AngleOfPeak, Locked, Note, Record
 from ..peaks import peak, row_of
+
+Moving = Annotated[float | None, Note("null where friction locks or may jam the linkage, and without a crank speed")]
+
+
+class Motor(Record):
+    """Torque, power and inertia that a motor moves; of several cylinders together."""
+
+    peak_torque_Nm: Locked
+    peak_torque_angle_deg: AngleOfPeak
+    rms_torque_Nm: Annotated[float | None, Note("over time; null where friction locks or may jam the linkage")]
+    mean_torque_Nm: Annotated[float | None, Note("over the crank angle; null where friction locks the linkage")]
+    peak_power_W: Moving
+    peak_power_angle_deg: AngleOfPeak
+    mean_power_W: Moving
+    greatest_reflected_inertia_kg_m2: float
+    greatest_reflected_inertia_angle_deg: AngleOfPeak
+    least_reflected_inertia_kg_m2: float
+    least_reflected_inertia_angle_deg: AngleOfPeak
+    mean_reflected_inertia_kg_m2: float
+    """Over the crank angle."""
+
 
 _SAMPLES = 2048
 _MOST_DIPS = 64  # more than 24 cylinders have; a constant inertia has as many as samples
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
@@ -88,7 +110,7 @@ def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     return sum(own.reflected_inertia for own in curves)
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Motor) -> list[Block]:
     """Return the numbers for people."""
     remarks = {
         "rms_torque_Nm": "over time, heats the motor",

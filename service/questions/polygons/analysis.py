@@ -15,7 +15,30 @@ from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.sheets import Line, Panel, Sheet
 from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
 from ...render.numerals import shown
+from ..answers import Record
 from . import AT
+
+
+class BranchPolygons(Record):
+    """Vertices by name, each with x and y, and the rod's rates."""
+
+    position_mm: dict[str, list[float]]
+    velocity_m_s: dict[str, list[float]]
+    acceleration_m_s2: dict[str, list[float]]
+    rod_velocity_rad_s: float
+    rod_acceleration_rad_s2: float
+
+
+class PolygonNumbers(Record):
+    """Kinematic polygons at one crank angle, on both branches."""
+
+    crank_angle_deg: float
+    speed_rad_s: float
+    """1 where the crank has no speed."""
+    acceleration_rad_s2: float
+    open: BranchPolygons
+    crossed: BranchPolygons
+
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 _POLYGONS = (
@@ -37,28 +60,34 @@ def both_branches(
     }
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PolygonNumbers:
     """Return the vertices at one crank angle, rad, by branch and polygon; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
-    record: dict[str, Any] = {
+    found = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
+    return {
         "crank_angle_deg": math.degrees(crank_angle),
         "speed_rad_s": speed,
         "acceleration_rad_s2": mechanism.acceleration,
+        "open": _vertices(found["open"]),
+        "crossed": _vertices(found["crossed"]),
     }
-    for branch, found in both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration).items():
-        record[branch] = {
-            name + kind.metric.suffix: dict(
-                zip(vertices, (kind.metric.factor * getattr(found, name)).tolist(), strict=True)
-            )
-            for name, vertices, kind in _POLYGONS
-        } | {
-            "rod_velocity_rad_s": float(found.rod_velocity),
-            "rod_acceleration_rad_s2": float(found.rod_acceleration),
-        }
-    return record
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def _vertices(found: Polygons) -> BranchPolygons:
+    position, velocity, acceleration = (
+        dict(zip(vertices, (kind.metric.factor * getattr(found, name)).tolist(), strict=True))
+        for name, vertices, kind in _POLYGONS
+    )
+    return {
+        "position_mm": position,
+        "velocity_m_s": velocity,
+        "acceleration_m_s2": acceleration,
+        "rod_velocity_rad_s": float(found.rod_velocity),
+        "rod_acceleration_rad_s2": float(found.rod_acceleration),
+    }
+
+
+def blocks(numbers: Mapping[str, Any]) -> list[Block]:
     """Return the vertices, one a line, both branches beside each other."""
     heads = ("open x", "open y", "crossed x", "crossed y")
     rows: list[tuple[Text, ...]] = []

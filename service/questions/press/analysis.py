@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +20,38 @@ from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.sheets import Line, Panel, Sheet
 from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, recorded_all
+from ..answers import Note, Record
 from ..peaks import row_of
 
 _ROWS = 10
 _SAMPLES = 200
 _CAPTION = "distance before the dead centre"
+
+
+Timed = Annotated[float | None, Note("null without a constant crank speed")]
+Dwelling = Annotated[float | None, Note("null without a dwell distance")]
+
+
+class Press(Record):
+    """What a press does before a dead centre at its rated torque, and lists at distances before it."""
+
+    dead_centre: Literal["inner", "outer"]
+    rated_torque_Nm: float
+    torque_is_peak_of_design: bool
+    """True where no rated torque was given."""
+    touch_distance_mm: float
+    touch_angle_deg: float
+    touch_speed_m_s: Timed
+    touch_force_N: float
+    work_J: float
+    """That the rated torque does from there to the dead centre."""
+    dwell_distance_mm: Dwelling
+    dwell_angle_deg: Dwelling
+    dwell_time_s: Annotated[float | None, Note("null without a dwell distance or a constant crank speed")]
+    distances_mm: list[float]
+    angles_deg: list[float]
+    forces_N: list[float]
+    speeds_m_s: Annotated[list[float] | None, Note("null without a constant crank speed")]
 
 
 def numbers(
@@ -34,7 +61,7 @@ def numbers(
     touch_distance: float | None = None,
     dwell_distance: float | None = None,
     rated_torque: float | None = None,
-) -> dict[str, Any]:
+) -> Press:
     """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
 
     touch_distance, dwell_distance: m, those of the machine if None. rated_torque: N m, the peak torque of the design if
@@ -113,7 +140,7 @@ def _require_stroke(distance: float, stroke: float) -> None:
         )
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Press) -> list[Block]:
     """Return the numbers for people."""
     origin = "the peak torque of this design" if numbers["torque_is_peak_of_design"] else ""
     shown: list[NamedNumber] = [
@@ -137,7 +164,8 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
         "forces_N": column("force", FORCE),
         "speeds_m_s": column("slider speed", SPEED),
     }
-    there = {key: head for key, head in columns.items() if numbers[key] is not None}
+    known = [key for key, value in numbers.items() if value is not None]
+    there = {key: head for key, head in columns.items() if key in known}
     rows = tuple(zip(*(recorded_all(numbers, key) for key in there), strict=True))
     return [
         *number_list("Press", shown),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +22,22 @@ from ....objectives.peak_torque import PEAK_TORQUE
 from ....objectives.quantity import Quantity
 from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
 from ...render.blocks import Block, named_number, number_list
+from ..answers import Note, Record
 from ..peaks import row_of
 from ..static_forces.analysis import massless
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+class Delivery(Record):
+    """What all cylinders deliver together, and the torque of the pressures alone."""
+
+    flow_L_min: float
+    """Mean over a turn; gas counts at suction pressure."""
+    flow_ripple: Annotated[float | None, Note("of a liquid, over the mean; null for gas and along a speed profile")]
+    mean_torque_Nm: float
+    peak_torque_Nm: float
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     """Return flow, ripple and torque of the pressures of all cylinders together, ready for JSON.
 
     flow_ripple: None for gas and along a speed profile. Raises `InputError` without a pump, a compressor or a speed.
@@ -67,7 +78,7 @@ def _flows(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -
     return flows
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Delivery) -> list[Block]:
     """Return the numbers for people."""
     remarks = {
         "flow_L_min": "mean over a turn; gas counts at suction pressure",
@@ -75,7 +86,8 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
         "mean_torque_Nm": "of the pressures alone",
         "peak_torque_Nm": "of the pressures alone",
     }
-    shown = [named_number(numbers, key, remark) for key, remark in remarks.items() if numbers[key] is not None]
+    known = [key for key, value in numbers.items() if value is not None]
+    shown = [named_number(numbers, key, remark) for key, remark in remarks.items() if key in known]
     return number_list("Delivery", shown)
 
 

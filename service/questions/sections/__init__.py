@@ -14,12 +14,5 @@ QUESTION = Question(
         endpoint="size_sections",
         job="A job file with a table [sections].",
         sizes=True,
-        part={
-            "crank_width_mm": 20.72,
-            "crank_depth_mm": 3.0,
-            "rod_width_mm": 12.95,
-            "rod_depth_mm": 3.0,
-            "settled": True,
-        },
     ),
 )

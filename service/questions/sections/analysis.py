@@ -11,11 +11,36 @@ from ....model.machine.mechanism import Mechanism
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.sections import size_sections
 from ...render.blocks import Block, Sentence, Table, Value, column, recorded, sentence, words
+from ..answers import Record
+
+
+class Sections(Record):
+    """Rectangular bars of least mass."""
+
+    crank_mm: float
+    rod_mm: float
+    offset_mm: float
+    crank_width_mm: float
+    crank_depth_mm: float
+    rod_width_mm: float
+    rod_depth_mm: float
+    crank_mass_kg: float
+    rod_mass_kg: float
+    mass_kg: float
+    """Of both."""
+    settled: bool
+    """Whether sections and dynamics have settled."""
+    iterations: int
+    utilisation: dict[str, float]
+    """By limit, how much of it is used: 1 where it is reached."""
+    mass_percent_per_percent: dict[str, float]
+    """By limit, how much mass 1 % more of it saves."""
+
 
 _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, **_: Any) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, **_: Any) -> Sections:
     """Return the sections of least mass, ready for JSON; pins are those of the design.
 
     Raises `InputError` without limits, and as `size_sections` does.
@@ -24,11 +49,17 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
         raise InputError("sizing sections needs the table [sections]; got none; add it with a material and pins")
     pins = {pin: getattr(mechanism.strength, pin) for pin in ("crank_pivot", "crank_pin", "slider_pin")}
     found = size_sections(mechanism, linkage, mechanism.strength.material, replace(problem.sections, **pins))
-    bars = (("crank", found.crank), ("rod", found.rod))
+    crank, rod = float(linkage.crank), float(linkage.rod)
     return {
-        **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
-        **{f"{name}_{side}_mm": 1e3 * getattr(bar, side) for name, bar in bars for side in ("width", "depth")},
-        **{f"{name}_mass_kg": bar.mass(float(getattr(linkage, name))) for name, bar in bars},
+        "crank_mm": 1e3 * crank,
+        "rod_mm": 1e3 * rod,
+        "offset_mm": 1e3 * float(linkage.offset),
+        "crank_width_mm": 1e3 * found.crank.width,
+        "crank_depth_mm": 1e3 * found.crank.depth,
+        "rod_width_mm": 1e3 * found.rod.width,
+        "rod_depth_mm": 1e3 * found.rod.depth,
+        "crank_mass_kg": found.crank.mass(crank),
+        "rod_mass_kg": found.rod.mass(rod),
         "mass_kg": found.mass,
         "settled": found.settled,
         "iterations": found.iterations,
@@ -37,7 +68,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Sections) -> list[Block]:
     """Return the numbers for people."""
 
     def size(of: str) -> Sentence:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
@@ -15,17 +15,43 @@ from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of
+from ..answers import Keys, Note, Record
 from ..peaks import row_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+_SLOPES = ("per_mm", "percent", "tolerance")
+_Slope = Annotated[float | None, Note("null where the quantity has none")]
+_Change = Annotated[
+    dict[str, Any],
+    Keys(
+        "Change",
+        "Change of a quantity: in its unit for 1 mm more of a dimension, in percent for 1 % more, and for its "
+        "tolerance; once more on the side of smaller values, where a kink has another one.",
+        {
+            "quantity": str,
+            "title": str,
+            "unit": str,
+            "value": Annotated[float | None, Note("null where it is not defined, and where it is infinite")],
+            **{f"{of}_{slope}{side}": _Slope for of in DIMENSIONS for slope in _SLOPES for side in ("", "_below")},
+        },
+    ),
+]
+
+
+class Sensitivity(Record):
+    """Change of every quantity with every dimension."""
+
+    quantities: list[_Change]
+
 
 _SAME = 1e-9  # relative: derivatives that differ by less are equal
 _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
 """Rows that the text leaves out, besides plain quantities: they follow from the dimensions at a glance."""
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
     """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None where not defined.
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
@@ -35,7 +61,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
     return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
 
 
-def in_units(numbers: dict[str, Any], system: System) -> dict[str, Any]:
+def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
     """Return the numbers in a system of units: each entry in its unit there, derivatives per mm or per in."""
     per, length = shown_in("mm", system)
 
@@ -50,7 +76,7 @@ def in_units(numbers: dict[str, Any], system: System) -> dict[str, Any]:
     return {"quantities": [entry(row) for row in numbers["quantities"]]}
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Sensitivity) -> list[Block]:
     """Return the numbers for people: change of each quantity for 1 mm or 1 in more, and in percent per percent."""
     rows: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]

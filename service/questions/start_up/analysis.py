@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -11,12 +11,56 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.transient.forward import State, simulate
-from ....model.transient.record import Transient
+from ....model.transient.record import Transient, Verdict
 from ....model.transient.steady import SteadyRunning, steady_running
 from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
 from ...render.blocks import Block, Table, Unit, column, recorded, sentence
 from ...render.numerals import shown
+from ..answers import Note, Record
+
+
+class SteadyNumbers(Record):
+    """Steady running, one cycle after the other alike; means are over time."""
+
+    mean_speed_rpm: float
+    least_speed_rpm: float
+    greatest_speed_rpm: float
+    fluctuation: float
+    """Greatest less least speed over the mean."""
+    period_s: float
+    peak_motor_torque_Nm: float
+    """On the crank."""
+    peak_torque_Nm: float
+    """Into the mechanism."""
+    mean_power_W: float
+
+
+class Start(Record):
+    """Start from rest at the inner dead centre, and the steady running that it comes to."""
+
+    verdict: Verdict
+    message: str
+    time_s: float
+    turns: float
+    final_speed_rpm: float
+    peak_motor_torque_Nm: float
+    """On the crank."""
+    peak_torque_Nm: float
+    """Into the mechanism."""
+    peak_power_W: float
+    turned_back_s: list[float]
+    """Times at which the crank reversed."""
+    motor_work_J: float
+    load_work_J: float
+    friction_work_J: float
+    kinetic_energy_gained_J: float
+    potential_energy_gained_J: float
+    energy_imbalance: float
+    """Error of the energy balance, as a share."""
+    steady: Annotated[SteadyNumbers | None, Note("null where there is no steady running")]
+    why_not_steady: Annotated[str | None, Note("null where there is steady running")]
+
 
 LONGEST = 60.0
 """s; a start that takes longer is not followed to its end unless asked for."""
@@ -45,7 +89,7 @@ def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool
     return {"cancelled": cancelled}
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Start:
     """Return the start from rest and the steady running, ready for JSON. options: those of `simulate`."""
     run, running, reason = start(mechanism, linkage, **options)
     return {
@@ -69,7 +113,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str,
     }
 
 
-def steady_numbers(running: SteadyRunning) -> dict[str, Any]:
+def steady_numbers(running: SteadyRunning) -> SteadyNumbers:
     """Return the numbers of steady running: speeds, fluctuation, period, torques and mean power."""
     return {
         "mean_speed_rpm": RPM * running.mean_speed,
@@ -83,7 +127,7 @@ def steady_numbers(running: SteadyRunning) -> dict[str, Any]:
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: Start) -> list[Block]:
     """Return the numbers for people."""
     titles = {
         "final_speed_rpm": "speed reached",
@@ -106,7 +150,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     lines = [
         (title, recorded(numbers, key, digits=4))
         for key, title in titles.items()
-        if key != "friction_work_J" or numbers[key]
+        if key != "friction_work_J" or numbers["friction_work_J"]
     ]
     if steady is not None:
         lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
@@ -116,7 +160,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
         Table((column(left=True), column(), column(left=True)), rows),
     ]
     if steady is None:
-        found.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"]))
+        found.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
@@ -33,7 +33,31 @@ from ...render.blocks import (
     sentence,
     words,
 )
+from ..answers import AngleOfPeak, Note, Record
 from ..peaks import peak
+
+
+class StaticForces(Record):
+    """Forces of the loads alone: peaks over the cycle, and lists at crank angles every 30 deg."""
+
+    load: str
+    """What acts on the slider."""
+    peak_rod_force_N: float
+    peak_rod_force_angle_deg: AngleOfPeak
+    peak_guide_reaction_N: float
+    peak_guide_reaction_angle_deg: AngleOfPeak
+    peak_crank_torque_Nm: float
+    peak_crank_torque_angle_deg: AngleOfPeak
+    least_mechanical_advantage: float
+    """Slider load over tangential crank pin force."""
+    least_mechanical_advantage_angle_deg: AngleOfPeak
+    crank_angle_deg: list[float]
+    load_N: list[float]
+    rod_force_N: list[float]
+    guide_reaction_N: list[float]
+    crank_torque_Nm: list[float]
+    mechanical_advantage: list[Annotated[float | None, Note("null at a dead centre, where it is unbounded")]]
+
 
 _OWN = "loads of the job"
 _STEP = 30
@@ -65,7 +89,7 @@ def _own(mechanism: Mechanism) -> tuple[Load, ...]:
     return tuple(load for load in mechanism.loads if not load.on_crank)
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:
     """Return peaks over the cycle, continuous in the crank angle, and the forces every 30 deg.
 
     load: on the slider, N outward; those of the mechanism if None, and 1 N towards the crank if it has none.
@@ -100,7 +124,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     }
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: StaticForces) -> list[Block]:
     """Return the forces every 30 deg and the peaks."""
     columns = {
         "crank_angle_deg": column("crank angle", ANGLE),
@@ -130,7 +154,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     return [*found, least]
 
 
-def _load(numbers: dict[str, Any]) -> Text:
+def _load(numbers: StaticForces) -> Text:
     if numbers["load"] == _OWN:
         return _OWN
     return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])

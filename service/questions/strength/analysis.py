@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Annotated, Any, NotRequired
 
 import numpy as np
 
@@ -26,12 +26,44 @@ from ...designs.violations import violated_by
 from ...figures.sheets import Line, Panel, Sheet, over_turn
 from ...render.blocks import Block, Table, Text, Value, column, number_list, recorded, words
 from ...text.tables import plain
+from ..answers import Boundless, Keys, Note
 from ..peaks import row_of
 
 _SIGNS = ("tension", "compression")
+_OfEye = Annotated[float | None, Note("null where a pin as wide as the bar leaves nothing of it")]
+_OfSign = Annotated[float | None, Note("null of a sign that it never has")]
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def _bar_keys(name: str) -> Any:
+    along = {f"greatest_{sign}_{of}": _OfSign for sign in _SIGNS for of in _ALONG}
+    eyes = {f"eye_at_{pin}_{of}": _OfEye for pin in (NEAR, LINKS[name].far) for of in _ALONG[:2]}
+    text = "Greatest stresses along a bar, its eyes apart, and in each eye: where and at which crank angle."
+    return NotRequired[Annotated[dict[str, Any], Keys(f"StressOf{name.capitalize()}", text, along | eyes)]]
+
+
+_ALONG = ("MPa", "at_crank_angle_deg", "from_crank_pin_mm")
+_QUANTITIES = {
+    of.field: NotRequired[Annotated[Boundless, Note(f"{of.sentence} null without a value")]]
+    for of in QUANTITIES.values()
+    if of.group is Group.STRENGTH
+}
+StrengthNumbers = Annotated[
+    dict[str, Any],
+    Keys(
+        "StrengthNumbers",
+        "Quantities of strength that the machine has, by how much it goes beyond allowable values, and its bars.",
+        {
+            **_QUANTITIES,
+            "violated": dict[str, float],
+            "bars": Annotated[
+                dict[str, Any], Keys("Bars", "Links that are bars.", {of: _bar_keys(of) for of in LINKS})
+            ],
+        },
+    ),
+]
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
 
     With the crank angle and the place along the bar from the crank pin; and of each eye the greatest stress with its

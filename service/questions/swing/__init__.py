@@ -45,16 +45,6 @@ QUESTION = Question(
         job="A job file: what masses, loads, friction and tolerances come from, and the swing of its [motion]. A run "
         "with --design.",
         alone="Without JOB nothing has mass.",
-        example=("start", "end"),
-        part={
-            "driver": "crank",
-            "law": "slow",
-            "swing_angle_deg": 60.0,
-            "travel_mm": 48.6741,
-            "least_transmission_angle_deg": 79.9846,
-            "peak_drive_Nm": 0.0,
-            "extremes": {"slider_position": {"least_mm": 229.783, "greatest_mm": 278.457}},
-        },
         curves="the curves of both ways",
     ),
 )

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired
 
+from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
-from ....model.machine.mechanism import Mechanism, Window
+from ....model.machine.mechanism import Branch, Mechanism, Window
 from ....model.swing.asked import AskedSwing, asked_swing
 from ....model.swing.over import At, Over
 from ....model.swing.summary import SwingSummary, summarise
 from ....model.swing.swing import Swing
-from ....model.swing.words import Side
+from ....model.swing.words import Driver, Law, Side
 from ....objectives.keys import kind_of_key
-from ....objectives.kinds import ANGLE, FORCE, POWER, TORQUE
+from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
+from ....objectives.tables.cycle_curves import KINDS
 from ...designs.shown_units import rows_in
 from ...designs.swing_curves import (
     drive_kind,
@@ -27,6 +29,7 @@ from ...designs.swing_curves import (
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
 from ...render.extremes import extremes_table
 from ...text.tables import plain
+from ..answers import Keys, Note, keys_of_kinds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,7 +60,66 @@ _TITLES = {
 }
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> dict[str, Any]:
+_Known = Annotated[float | None, Note("null where friction may lock the linkage")]
+_Way = Annotated[Literal["forth", "back"] | None, Note("null where the value is")]
+_Place = Annotated[float | None, Note("null where the value is, and for a constant curve")]
+_ENDS = [f"drive_at_{end}_{way}" for end in ("start", "end") for way in ("forth", "back")]
+_DRIVES = (TORQUE, FORCE)  # of the crank, of the slider
+_PLACES = {"at_crank_angle_deg": _Place, "at_slider_position_mm": _Place}
+_KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
+
+
+def _places(name: str, *, way: bool = True) -> dict[str, Any]:
+    """Return the keys of where a value is, if there is one."""
+    return {f"{name}_{of}": NotRequired[kind] for of, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
+
+
+_CURVE = {
+    "title": str,
+    **keys_of_kinds(("least", "greatest"), _KINDS),
+    **_places("least"),
+    **_places("greatest"),
+}
+_Curve = Annotated[dict[str, Any], Keys("SwingExtremes", "Least and greatest value of a curve, both ways.", _CURVE, 9)]
+SwingNumbers = Annotated[
+    dict[str, Any],
+    Keys(
+        "SwingNumbers",
+        "A swing, forth and back; what drives it is a torque on the crank or a force on the slider.",
+        {
+            **{f"{name}_mm": float for name in DIMENSIONS},
+            "branch": Branch,
+            "driver": Driver,
+            "law": Law,
+            "duration_s": Annotated[float | None, Note("of one way; null for a slow swing")],
+            **{f"{end}_crank_angle_deg": float for end in ("start", "end")},
+            "swing_angle_deg": float,
+            **{f"{end}_slider_position_mm": float for end in ("start", "end")},
+            "travel_mm": float,
+            "least_transmission_angle_deg": float,
+            **_places("least_transmission_angle", way=False),
+            **keys_of_kinds(("peak_drive",), _DRIVES),
+            **_places("peak_drive"),
+            **keys_of_kinds(_ENDS, _DRIVES),
+            "holds_by_friction": bool,
+            "energy_forth_J": _Known,
+            "energy_back_J": _Known,
+            "stored_energy_J": _Known,
+            "efficiency": Annotated[float | None, Note("null where neither way is driven")],
+            "peak_power_W": NotRequired[_Known],
+            **_places("peak_power"),
+            **keys_of_kinds(("slider_position_error",), (LENGTH,)),
+            **keys_of_kinds(("crank_position_error",), (ANGLE,)),
+            **_places("slider_position_error", way=False),
+            **_places("crank_position_error", way=False),
+            "extremes": Annotated[dict[str, _Curve], Note("by curve")],
+            "notes": Annotated[list[str], Note("what is undefined or left out, and why")],
+        },
+    ),
+]
+
+
+def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> SwingNumbers:
     """Return the numbers of a swing, ready for JSON. options: the inputs, in SI, with `swing` and `words`.
 
     Raises `AssemblyError` where the linkage does not close, and as `asked_swing` does.
@@ -91,7 +153,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
     return swing_figure(machine, linkage, swing, units)
 
 
-def swing_record(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
+def swing_record(mechanism: Mechanism, found: SwingSummary) -> SwingNumbers:
     """Return a swing in numbers, metric; null for what is undefined, and notes that say why."""
     swing, linkage = found.swing, found.linkage
     drive, error = drive_kind(swing).metric, error_kind(swing).metric

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -19,18 +19,81 @@ from ....model.tolerance.monte_carlo import simulate, summarise, variances, yiel
 from ....model.tolerance.sources import SOURCES, limits, source_influences
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
+from ..answers import Note, Record
 from ..peaks import row_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Turning = Annotated[float | None, Note("null where all but one of the machines are stuck")]
+Exact = Annotated[float | None, Note("null where a linkage within the tolerances does not turn fully")]
 SAMPLES = 20_000
 BINS = 40  # of the histogram
 
 
+class Contribution(Record):
+    """What one tolerance adds to the position error at the crank angle of the worst case."""
+
+    source: str
+    limit_mm: Annotated[float | None, Note("null for the crank angle")]
+    limit_deg: Annotated[float | None, Note("of the crank angle; null for lengths")]
+    contribution_mm: float
+    share_of_worst_case_percent: float
+    share_of_variance_percent: float
+
+
+class Histogram(Record):
+    """Machines by their greatest error, in even bins from 0."""
+
+    edges_mm: list[float]
+    counts: list[int]
+
+
+class MonteCarlo(Record):
+    """Greatest errors of random machines within the tolerances."""
+
+    samples: int
+    seed: int
+    stuck: int
+    """Machines that do not turn fully."""
+    mean_greatest_mm: Turning
+    standard_deviation_greatest_mm: Turning
+    percentiles_greatest_mm: dict[str, float]
+    """By percent of the machines; empty where all but one are stuck."""
+    histogram: Annotated[Histogram | None, Note("null where no machine turns, and where none errs")]
+
+
+class Yield(Record):
+    """Share of the random machines within a limit, with its confidence interval."""
+
+    limit: str
+    """What it is: the root-sum-square, the worst case, or given."""
+    limit_mm: float
+    yield_percent: float
+    yield_low_percent: float
+    yield_high_percent: float
+    confidence_percent: float
+
+
+class PositionError(Record):
+    """Greatest position error over the counted part of the cycle, and what it comes from."""
+
+    worst_case_mm: float
+    """To first order."""
+    worst_case_angle_deg: float
+    exact_worst_case_mm: Exact
+    exact_worst_case_angle_deg: Exact
+    root_sum_square_mm: float
+    root_sum_square_angle_deg: float
+    contributions: list[Contribution]
+    monte_carlo: MonteCarlo
+    yields: list[Yield]
+    """At the limit that is given; without one at the root-sum-square and at the worst case."""
+
+
 def numbers(
     mechanism: Mechanism, linkage: Linkage, *, limit: float | None = None, samples: int = SAMPLES, seed: int = 1
-) -> dict[str, Any]:
+) -> PositionError:
     """Return the effect of a mechanism's tolerances on the slider position of one linkage, ready for JSON.
 
     limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
@@ -104,7 +167,7 @@ def numbers(
     }
 
 
-def _histogram(greatest: np.ndarray) -> dict[str, list[float] | list[int]] | None:
+def _histogram(greatest: np.ndarray) -> Histogram | None:
     """Return edges, mm, and counts of the machines that turn; None if none does."""
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
@@ -113,13 +176,13 @@ def _histogram(greatest: np.ndarray) -> dict[str, list[float] | list[int]] | Non
     return {"edges_mm": edges.tolist(), "counts": counts.tolist()}
 
 
-def blocks(numbers: dict[str, Any]) -> list[Block]:
+def blocks(numbers: PositionError) -> list[Block]:
     """Return the numbers for people."""
 
     def at(name: str) -> Text:
-        if numbers[f"{name}_mm"] is None:
-            return "not defined: a linkage within the tolerances does not turn fully"
         size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
+        if size.number is None:
+            return "not defined: a linkage within the tolerances does not turn fully"
         return words("{size} at {angle}", size=size, angle=angle)
 
     simulation = numbers["monte_carlo"]
@@ -154,11 +217,11 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     return [*shown, _sources(numbers["contributions"])]
 
 
-def _sources(contributions: list[dict[str, Any]]) -> Table:
+def _sources(contributions: list[Contribution]) -> Table:
     rows = []
     for row in contributions:
         limit = recorded(row, "limit_deg" if row["limit_mm"] is None else "limit_mm", digits=4)
-        of_worst, of_variance = (row[f"share_of_{name}_percent"] for name in ("worst_case", "variance"))
+        of_worst, of_variance = row["share_of_worst_case_percent"], row["share_of_variance_percent"]
         adds = recorded(row, "contribution_mm", digits=4)
         rows.append((row["source"], (limit,), adds, f"{of_worst:.1f} %", f"{of_variance:.1f} %"))
     heads = column("limit"), column("adds", LENGTH), column("of worst case"), column("of variance")

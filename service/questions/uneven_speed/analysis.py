@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ....model.transient.uneven import uneven_curves, uneven_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.sheets import DASHED, Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, Value, compared, joined, named_number, number_list
+from ..answers import AngleOfPeak, Keys, Locked, Note
 
 _RPM = 30.0 / math.pi
 _KINDS = {
@@ -34,6 +35,32 @@ _KINDS = {
 }
 
 
+UnevenSpeed = Annotated[
+    dict[str, Any],
+    Keys(
+        "UnevenSpeed",
+        "Speeds, torque and peaks along the speed profile, and at constant speed, the mean over the crank angle.",
+        {
+            "least_speed_rpm": float,
+            "least_speed_angle_deg": float,
+            "greatest_speed_rpm": float,
+            "greatest_speed_angle_deg": float,
+            "mean_speed_over_time_rpm": float,
+            "speed_fluctuation": Annotated[float, Note("greatest less least speed over the mean over time")],
+            "period_s": float,
+            "peak_crank_acceleration_rad_s2": float,
+            "mean_torque_Nm": Annotated[Locked, Note("over the crank angle; null where friction locks")],
+            "rms_torque_Nm": Locked,
+            "rms_torque_at_constant_speed_Nm": Locked,
+            "mean_power_W": Locked,
+            **{f"peak_{name}{kind.metric.suffix}": Locked for name, kind in _KINDS.items()},
+            **{f"peak_{name}_angle_deg": AngleOfPeak for name in _KINDS},
+            **{f"peak_{name}_at_constant_speed{kind.metric.suffix}": Locked for name, kind in _KINDS.items()},
+        },
+    ),
+]
+
+
 def _require(mechanism: Mechanism) -> None:
     if mechanism.speed_profile is None:
         raise InputError(
@@ -42,7 +69,7 @@ def _require(mechanism: Mechanism) -> None:
         )
 
 
-def numbers(mechanism: Mechanism, linkage: Linkage) -> dict[str, Any]:
+def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
     """Return speeds, period and peaks at the profile, and the peaks at constant speed. Raises without a profile."""
     _require(mechanism)
     found, even = (uneven_cycle(each, linkage) for each in (mechanism, replace(mechanism, speed_profile=None)))

@@ -1,0 +1,284 @@
+"""Answers of all questions on random machines: as their types declare them, in inches the metric numbers changed."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import slidercrank as sc
+from slidercrank.model.errors import AssemblyError, InputError
+from slidercrank.objectives.keys import kind_of_key, split_unit
+from slidercrank.objectives.kinds import PRESSURE, SHOWN, unit_text
+from slidercrank.objectives.tables.curve_extremes import defined_curves
+from slidercrank.service.api.app import create_app
+from slidercrank.service.designs.measured_file import read_measured
+from slidercrank.service.questions.answers import schema_of
+from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
+from slidercrank.service.questions.measured import MEASURED
+from slidercrank.service.questions.question import Question, QuestionOfDesign
+from slidercrank.service.render.blocks import Block, Sentence, Value
+from slidercrank.service.render.formatting import plain_blocks
+from slidercrank.service.runs.result import json_ready
+from slidercrank.service.store import Store
+from tests.doors.scripts import JOBS
+from tests.service import sized
+
+Random = np.random.Generator
+SORTS = ("turn", "engine", "cylinders", "loose", "sized", "swing")
+"""A press with friction, four strokes (720 deg), two cylinders along a speed profile, a motor, bars, a swing."""
+METRIC = "|".join(
+    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
+)
+_LB_IN2 = 1.0 / (0.45359237 * 0.0254**2)
+_PSI = PRESSURE.face("inch").factor * 1e5
+OTHER_KEYS = {
+    "saving_N_per_kg": ("saving_lbf_per_lb", 0.45359237 / 4.4482216152605),
+    "saving_per_um": ("saving_per_in", 25400.0),
+    "bound_saving_per_um": ("bound_saving_per_in", 25400.0),
+    **{f"{name}_kgm2": (f"{name}_lb_in2", _LB_IN2) for name in ("flywheel", "classical_estimate")},
+    **{f"{name}_kgm2": (f"{name}_lb_in2", _LB_IN2) for name in ("flywheels", "classical_estimates")},
+    "least_pressure_bar": ("least_pressure_psi", _PSI),
+    "greatest_pressure_bar": ("greatest_pressure_psi", _PSI),
+}
+"""Key and factor in inches of what has no unit of one kind alone."""
+
+
+def some_problem(sort: str, random: Random) -> sc.Problem:
+    """Return the problem of a machine with a speed, masses and forces of its own."""
+    tables = sized.TABLES if sort == "sized" else tomllib.loads((JOBS / f"{sort}.toml").read_text(encoding="utf-8"))
+    tables = {key: table for key, table in json.loads(json.dumps(tables)).items() if key != "constraints"}
+    tables["variables"].pop("mechanism.slider.mass", None)
+    mechanism = tables["mechanism"]
+    if sort != "swing":
+        speed, unit = mechanism["speed"].split()
+        mechanism["speed"] = f"{float(speed) * random.uniform(0.3, 1.3):.6g} {unit}"
+    mechanism["slider"] = {**mechanism["slider"], "mass": f"{random.uniform(0.1, 9.0):.6g} kg"}
+    mechanism["counterweight"] = {"mass": f"{random.uniform(0.1, 3.0):.4g} kg", "radius": "41.3 mm"}
+    if random.random() < 0.3 and sort in ("turn", "loose"):
+        mechanism["slider"] |= {"touch_distance": "7.3 mm", "dwell_distance": "1.7 mm"}
+    return sc.problem(tables, require_feasible=False)
+
+
+def linkage_of(problem: sc.Problem, design: Sequence[float]) -> sc.Linkage:
+    return sc.Linkage(design[0], design[1], design[2], problem.mechanism.nominal.branch)
+
+
+def some_design(problem: sc.Problem, random: Random) -> list[float]:
+    """Return a design in the ranges that turns fully, or swings."""
+    for _ in range(1000):
+        design = [float(random.uniform(ends.lower, ends.upper)) for ends in problem.ranges.values()]
+        linkage = linkage_of(problem, design)
+        if problem.motion is None and linkage.rotates_fully and linkage.least_transmission_angle > 0.2:
+            return design
+        if problem.motion is not None and np.isfinite(problem.evaluate([design])).all():
+            return design
+    raise AssertionError("no design of the ranges turns or swings")
+
+
+def some_inputs(question: Question, problem: sc.Problem, design: Sequence[float], random: Random) -> dict[str, Any]:
+    """Return inputs in SI that most designs of a machine can be asked with."""
+    crank, rod, offset = design[:3]
+    if question.name == "swing":
+        if problem.motion is not None:
+            return {"driver": str(random.choice(["crank", "slider"]))}
+        start = float(random.uniform(0.2, 1.0))
+        timed = random.random() < 0.6
+        more = {"law": "harmonic", "duration": float(random.uniform(0.2, 2.0))} if timed else {}
+        return {"start": start, "end": start + 0.7, "driver": str(random.choice(["crank", "slider"])), **more}
+    if question.name == "inverse":
+        angle = float(random.uniform(0.3, 1.7))
+        at = crank * math.cos(angle) + math.sqrt(rod**2 - (offset - crank * math.sin(angle)) ** 2)
+        rates = {"slider_velocity": -0.4, "slider_acceleration": 2.5}
+        return {"slider_position": at, **(rates if random.random() < 0.5 else {})}
+    given: dict[str, Any] = {}
+    for one in question.inputs:
+        if one.required or random.random() < 0.6:
+            given[one.name] = _some_value(one.name, one.words, crank, random)
+    if "rod_mass" in given or "rod_radius" in given or "arm" in given:
+        given |= {"rod_mass": 1.3, "rod_radius": 0.05}
+    return given
+
+
+def _some_value(name: str, words: Any, crank: float, random: Random) -> Any:
+    if words is not None:
+        return str(random.choice(get_args(words)))
+    shares = {"limit": 3e-4, "fluctuation": 0.013, "crank_angle": 1.1, "rated_torque": 44.0, "mass": 2.1}
+    return float(random.uniform(0.8, 1.2)) * shares.get(name, 0.2 * crank)
+
+
+def asked_of(question: Question, problem: sc.Problem, design: Sequence[float], random: Random) -> QuestionOfDesign:
+    machine = problem.mechanism.at(list(design[3:]))
+    return question.asked(machine, linkage_of(problem, design), problem, some_inputs(question, problem, design, random))
+
+
+def answers_of(name: str) -> Iterator[tuple[QuestionOfDesign, dict[str, Any]]]:
+    """Yield a question to designs of every sort of machine that has an answer, and the numbers."""
+    random = np.random.default_rng(sum(map(ord, name)))
+    for sort in SORTS:
+        for _ in range(2):
+            problem = some_problem(sort, random)
+            if name == "flywheel" and sort == "turn":
+                continue  # with friction it takes 12 s
+            try:
+                asked = asked_of(OF_DESIGNS[name], problem, some_design(problem, random), random)
+                yield asked, asked.numbers()
+            except (InputError, AssemblyError):
+                continue
+
+
+def assert_declared(answer_type: Any, record: Any) -> None:
+    """Compare a record of JSON with its schema, and what the schema says of its numbers with their keys."""
+    judge = pytest.importorskip("jsonschema_rs")
+    errors = judge.Draft202012Validator(schema_of(answer_type)).iter_errors(record)
+    assert [f"{error.instance_path}: {error.message}" for error in errors] == []
+
+
+def assert_in_inches(metric: Any, inch: Any, factor: float = 1.0) -> None:
+    """Compare the records of one answer in both systems; factor: of numbers without a key of their own."""
+    if isinstance(metric, dict):
+        for (key, value), (shown, other) in zip(metric.items(), inch.items(), strict=True):
+            name, kind = kind_of_key(key)
+            own = kind.face("inch").factor / kind.metric.factor
+            expected = OTHER_KEYS.get(key, (name + kind.face("inch").suffix if kind.inch else key, own))
+            assert shown == expected[0]
+            assert_in_inches(value, other, expected[1] if split_unit(key)[1] else factor)
+    elif isinstance(metric, list):
+        for one, other in zip(metric, inch, strict=True):
+            assert_in_inches(one, other, factor)
+    elif isinstance(metric, float):
+        assert inch == pytest.approx(factor * metric, rel=1e-12)
+    else:
+        assert inch == metric
+
+
+def numbers_of(record: Any) -> Iterator[float]:
+    if isinstance(record, dict | list):
+        for value in record.values() if isinstance(record, dict) else record:
+            yield from numbers_of(value)
+    elif isinstance(record, float):
+        yield abs(record)
+
+
+def values_of(text: Any) -> Iterator[Value]:
+    """Yield the values of blocks and texts."""
+    if isinstance(text, Value):
+        yield text
+    elif isinstance(text, Sentence):
+        yield from values_of(text.text)
+    elif isinstance(text, tuple | list):
+        for part in text:
+            yield from values_of(part)
+    elif hasattr(text, "rows"):
+        yield from values_of(text.rows)
+
+
+def assert_shown_in_inches(blocks: Sequence[Block], record: Any, near: float = 1e-12) -> None:
+    """Compare the numbers of a text in inches, which have no metric unit, with those of JSON in inches."""
+    told = np.array(sorted(numbers_of(record)))
+    for value in values_of(blocks):
+        if value.number is not None and math.isfinite(value.number) and value.kind.inch is not None:
+            number = abs(value.kind.inch.factor * value.number)
+            steps = np.array([1.0, 1e-4])  # savings are told for 0.0001 in
+            assert np.isclose(np.outer(steps, told), number, rtol=1e-9, atol=near).any(), (value, number)
+    for block in plain_blocks(blocks, "inch"):
+        for text in (block.sentence, *block.heads, *(cell for row in block.rows for cell in row)):
+            assert not re.search(rf"(?:^|\s)(?:{METRIC})(?![\w^/²³])", text), text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in OF_DESIGNS if name != "clearance"])
+def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name: str) -> None:
+    answers = 0
+    for asked, numbers in answers_of(name):
+        answers += 1
+        inch = asked.numbers_in(numbers, "inch")
+        assert_declared(asked.question.answer_type, json_ready(numbers))
+        if name != "sensitivity":  # whose entries have units of their own: see test_topics_in_inches
+            assert_in_inches(numbers, inch)
+        near = 2e-5 if name == "counterweight" else 1e-12  # places of its mass are rounded to 0.001 mm
+        assert_shown_in_inches(asked.blocks(numbers), inch, near)
+    assert answers >= 2
+
+
+@pytest.mark.slow
+def test_impacts_in_a_loose_joint_are_as_declared_and_the_same_in_inches() -> None:
+    problem = sc.load_job(JOBS / "loose.toml", require_feasible=False)
+    asked = TOPICS["clearance"].of(problem.mechanism.nominal, sc.Linkage(0.03, 0.16, 0.01))
+    analysis = asked.question.analysis
+    stopped = analysis.simulated(asked.mechanism, asked.linkage, cancelled=lambda: True)
+    done = analysis.simulated(asked.mechanism, asked.linkage, cycles=3, discard=1)
+    for run in (stopped, done, replace(done, discard=2)):
+        numbers = analysis.numbers(asked.mechanism, asked.linkage, run=run)
+        inch = asked.numbers_in(numbers, "inch")
+        assert_declared(asked.question.answer_type, json_ready(numbers))
+        assert_in_inches(numbers, inch)
+        assert_shown_in_inches(asked.blocks(numbers), inch)
+
+
+@pytest.mark.parametrize("sort", ["turn", "cylinders", "loose"])
+def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(sort: str) -> None:
+    random = np.random.default_rng(4)
+    problem = some_problem(sort, random)
+    machine, linkage = problem.mechanism.nominal, linkage_of(problem, some_design(problem, random))
+    angles = np.sort(random.uniform(0.0, 2.0 * math.pi, 12))
+    curves = defined_curves(machine, linkage, angles)
+    heads = ["crank_angle_deg", *(curve.field for curve in curves)]
+    noisy = [curve.kind.metric.factor * curve.values * random.uniform(0.9, 1.1, 12) for curve in curves]
+    rows = np.column_stack([np.degrees(angles), *noisy]).tolist()
+    text = "\n".join([",".join(heads), *(",".join(map(repr, row)) for row in rows)])
+    asked = MEASURED.of(machine, linkage, {"measured": read_measured(text, machine, linkage)})
+    numbers = asked.numbers()
+    assert len(numbers["curves"]) == len(curves)
+    inch = asked.numbers_in(numbers, "inch")
+    assert_declared(MEASURED.answer_type, json_ready(numbers))
+    assert_in_inches(numbers, inch)
+    assert_shown_in_inches(asked.blocks(numbers)[:4], inch)  # below, what was read of the file is said in its units
+
+
+ALL = {**OF_DESIGNS, "measured": MEASURED}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_schema_is_closed_says_its_units_and_why_a_number_may_be_null(name: str) -> None:
+    schema = schema_of(ALL[name].answer_type)
+    records = [schema, *schema.get("$defs", {}).values()]
+    assert all(record["additionalProperties"] is False and record["description"] for record in records)
+    for record in records:
+        for key, of in record["properties"].items():
+            _, unit, _ = split_unit(key.partition("_per_")[0])
+            assert unit in of["title"]
+            items = of.get("items", {})
+            for value in (of, items):
+                if {"type": "null"} in value.get("anyOf", ()):
+                    assert value.get("description"), f"{key} is null for a reason"
+
+
+def test_the_description_of_the_api_has_the_schema_of_every_answer(tmp_path: Path) -> None:
+    with Store(tmp_path / "store.db") as store:
+        schemas = create_app(store).openapi()["components"]["schemas"]
+
+    def described(model: str, field: str) -> list[Any]:
+        return [one.get("$ref", "").rpartition("/")[2] for one in schemas[model]["properties"][field]["anyOf"]]
+
+    topics = [schema_of(topic.answer_type)["title"] for topic in TOPICS.values()]
+    assert described("ToldTopic", "numbers") == [*topics, ""]
+    for model in ("AnalysisModel", "StoredAnalysisModel"):
+        places = schemas[model]["properties"]["analysis"]["properties"]
+        assert {name: of["$ref"].rpartition("/")[2] for name, of in places.items()} == dict(
+            zip(TOPICS, topics, strict=True)
+        )
+    for name in (*COMMANDS, "measured"):
+        assert described(f"{name.capitalize()}Model", name) == [schema_of(ALL[name].answer_type)["title"], ""]
+    for name, question in ALL.items():
+        schema = schema_of(question.answer_type)
+        text = json.dumps(schemas[schema["title"]]).replace("#/components/schemas/", "#/$defs/")
+        assert json.loads(text) == {key: value for key, value in schema.items() if key != "$defs"}, name
