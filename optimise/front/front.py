@@ -133,7 +133,7 @@ class ParetoFront:
         Raises `InputError` for a row that is none of the front.
         """
         try:
-            known = -len(self) <= operator.index(row) < len(self)
+            known = 0 <= operator.index(row) < len(self)
         except TypeError:
             known = False
         if not known:

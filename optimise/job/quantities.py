@@ -202,11 +202,12 @@ class _Table(Part):
 
 
 class Stated(NamedTuple):
-    """Facts of a quantity that the tables of a job have: title, kind and a usual value."""
+    """Facts of a quantity that the tables of a job have: title, kind, a usual value, and which bound it mostly has."""
 
     title: str
     kind: Kind
     example: str | float
+    bound: Literal["min", "max"] = "min"
 
 
 def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
@@ -218,12 +219,14 @@ def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[P
     wishes: dict[str, Any] = {}
     made: dict[Kind, tuple[Any, Any]] = {}
     names = frozenset((*own, *named))
-    known = {name: Stated(of.title, of.kind, of.usual) for name, of in FACTS.items()}
-    for name, (title, kind, example) in (known | dict(own)).items():
+    known = {
+        name: Stated(of.title, of.kind, of.usual, "max" if of.better == "low" else "min") for name, of in FACTS.items()
+    }
+    for name, (title, kind, example, bound) in (known | dict(own)).items():
         if kind not in made:
             made[kind] = _forms(kind, names)
         bounds, wish = made[kind]
-        limits[name] = (bounds | None, optional(title, {"min": example}))
+        limits[name] = (bounds | None, optional(title, {bound: example}))
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
     slow = optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward")
     limits[SLOW_STROKE] = (SlowStroke | None, slow)

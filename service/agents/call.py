@@ -62,7 +62,7 @@ class Call:
     def run(self, name: str) -> tuple[Path, Result]:
         """Return the folder, as `folder`, and the result of a run. Raises `RunError` where it has none."""
         folder = self.folder(name)
-        return folder, read_run(folder)
+        return folder, read_run(folder, "optimise with resume =")
 
     def _require_inside(self, path: Path, name: str) -> None:
         try:

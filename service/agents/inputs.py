@@ -136,14 +136,14 @@ class Design:
         self._require_no_lengths()
         folder, result = call.front(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
-        require_alone(number, result, run, others=False)
+        require_alone(number, result, others=False)
         of = stored_design(call.problem_of_run(folder, result), result, number)
         return Machine(of.mechanism, of.linkage, of.part)
 
     def _of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
         lengths = {name: getattr(self, name) for name in DIMENSIONS}
-        return Machine(problem.mechanism.nominal, Dimensions(**lengths).linkage(problem), problem)
+        return Machine(problem.mechanism.nominal, Dimensions(**lengths).linkage(problem, str), problem)
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class Asked:
     def __post_init__(self) -> None:
         """Raise `InputError` for topics that there are not, or that do not go together, and for inputs of others."""
         if self.alone is None:
-            chosen_topics(self.topics, job=True)
+            chosen_topics(self.topics, job=True, word="topics")
         elif len(self.topics) > 1:
             raise InputError(f"{self.alone} is asked alone; got {', '.join(self.topics)}; ask the others without it")
         if self.alone in WIDER:
@@ -180,7 +180,7 @@ class Asked:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the topics."""
-        return chosen_topics(self.topics, job=True) if self.alone is None else (self.alone,)
+        return chosen_topics(self.topics, job=True, word="topics") if self.alone is None else (self.alone,)
 
     def options(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""

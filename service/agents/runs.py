@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ..workers.own_search import Opened
 
 Written = Literal["csv", "json", "figures", "report", "pdf", "dxf", "svg", "motion", "gif", "cycle"]
+_OF_RUN = {"csv", "json", "figures"}
 _NAMES = {
     "csv": "designs.csv",
     "json": "designs.json",
@@ -115,7 +116,7 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Shown
     """
     folder, result = call.front(run)
     chosen = selection.rows(result)
-    picked = _picked(result, run, chosen, pick)
+    picked = _picked(result, chosen, pick)
     if not chosen:
         raise InfeasibleError(none_meets(result, selection.where or []))
     shown = result_in(result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result))
@@ -144,8 +145,10 @@ def files(
     Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
     as HTML or PDF, a drawing at true scale as DXF or SVG, its motion as HTML or GIF, its cycle as CSV.
     """
+    if design is not None and _OF_RUN.issuperset(write):
+        raise InputError(f"{', '.join(write)} are of all designs of a run; got design {design}; leave it out")
     folder, result = call.front(run)
-    picked = _picked(result, run, [], Pick(design=design))
+    picked = _picked(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
     found, shown = stored_design(problem, result, number), result_in(result, units, problem)
@@ -182,11 +185,11 @@ def _record(shown: Result, rows: Sequence[int], part: Shown) -> dict[str, Any]:
     return part_of(shown, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
-def _picked(result: Result, run: str, chosen: Sequence[int], pick: Pick) -> int | None:
+def _picked(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
     """Return which design is named or chosen by its values, None without either."""
     if pick.design is None:
         return pick.row(result, chosen)
-    require_alone(pick.design, result, run, others=pick.picking)
+    require_alone(pick.design, result, others=pick.picking)
     return pick.design - 1
 
 

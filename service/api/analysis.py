@@ -82,7 +82,7 @@ class TradeOffsModel(OfDesign):
 @router.get("/jobs/{number}/designs/{design}/analysis")
 def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
-    topics = chosen_topics(show, job=True)
+    topics = chosen_topics(show, job=True, word="show")
     stored = found.design(design)
     if stored.part.motion is not None:
         if topics:
@@ -97,13 +97,13 @@ def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> St
 @router.post("/analyse")
 def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
-    topics = chosen_topics(asked.show, job=True)
+    topics = chosen_topics(asked.show, job=True, word="show")
     problem = given_problem(asked.job, settings.allowed_quantities, asked.values, require_feasible=False)
     require_turning(problem.motion, "an analysis")
     mechanism = problem.mechanism.nominal
     if asked.speed is not None:
-        mechanism = replace(mechanism, speed=speed_option(asked.speed))
-    linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem)
+        mechanism = replace(mechanism, speed=speed_option(asked.speed, "speed"))
+    linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem, str)
     record, notes = _with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in asked.show)
     return AnalysisModel(analysis=record, notes=notes)
 

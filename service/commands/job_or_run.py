@@ -117,5 +117,5 @@ def design_of_run(
     folder, result = run_of(str(run), place)
     if not result.designs:
         raise NoDesigns(result)
-    require_alone(design, result, str(run), others=False)
+    require_alone(design, result, others=False)
     return stored_design(problem_of(folder, result), result, design)

@@ -45,7 +45,7 @@ def front_of_run(
     if not (result.designs or empty):
         raise NoDesigns(result)
     if number is not None:
-        require_alone(number, result, name, others=False)
+        require_alone(number, result, others=False)
     return folder, front_of(problem_of(folder, result), result)
 
 
@@ -80,7 +80,7 @@ class Choice(Pick):
         if not result.designs:
             raise NoDesigns(result)
         if self.design is not None:
-            require_alone(self.design, result, run, others=bool(self.picking or where))
+            require_alone(self.design, result, others=bool(self.picking or where))
             return self.design
         if not self.picking:
             raise InputError(

@@ -15,17 +15,17 @@ from .selection import plain_number
 if TYPE_CHECKING:
     from ...model.arrays import Array
 
-_TOPSIS = '--topsis "peak_torque=2, transmission_angle=1"'
-_LEXICOGRAPHIC = '--lexicographic "peak_torque: 5 %, transmission_angle"'
+_TOPSIS = '"peak_torque=2, transmission_angle=1"'
+_LEXICOGRAPHIC = '"peak_torque: 5 %, transmission_angle"'
 
 
-def require_alone(design: int, result: Result, run: str, *, others: bool) -> None:
+def require_alone(design: int, result: Result, *, others: bool) -> None:
     """Raise `InputError` for a number that the run does not have, and for one given with another way of choosing."""
     if others:
-        raise InputError("a design is chosen in one way; got --design and another; keep one of them")
+        raise InputError("a design is chosen in one way; got its number and another way; keep one of them")
     if not 1 <= design <= len(result.designs):
         count = len(result.designs)
-        raise InputError(f"the run has designs 1 to {count}; got {design}; see slidercrank front {run}")
+        raise InputError(f"the run has designs 1 to {count}; got {design}; name one of them")
 
 
 def picked_row(
@@ -36,7 +36,7 @@ def picked_row(
 
     asked = [
         name
-        for name, given in (("--knee", knee), ("--topsis", topsis), ("--lexicographic", lexicographic))
+        for name, given in (("knee", knee), ("topsis", topsis), ("lexicographic", lexicographic))
         if given not in (None, False)
     ]
     if len(asked) > 1:

@@ -33,7 +33,7 @@ _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
 }
 _TURNED = {">=": "<=", "<=": ">=", ">": "<", "<": ">", "==": "==", "!=": "!="}
 _SAME = {"=": "==", "≥": ">=", "≤": "<="}
-_EXAMPLE = '--where "transmission_angle >= 40 deg"'
+_EXAMPLE = '"transmission_angle >= 40 deg"'
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,5 @@ def require_turning(swing: Swing | None, what: str) -> None:
     """Refuse a crank that swings. what: it is of a full turn, as the subject of the sentence."""
     if swing is not None:
         raise InputError(
-            f"{what} is of a crank that turns through; got a job whose crank swings; "
-            "`slidercrank swing` analyses its designs, of a job with --crank, --rod, --offset, of a run with --design"
+            f"{what} is of a crank that turns through; got a job whose crank swings; swing analyses its designs"
         )

@@ -71,7 +71,7 @@ def find_folder(text: str, place: Path) -> Path:
     )
     if text == "latest":
         if not names:
-            raise InputError(f"there is no run in {place} yet; run `slidercrank optimise JOB` first")
+            raise InputError(f"there is no run in {place} yet; optimise a job first")
         return place / names[-1]
     if text in names:
         return place / text

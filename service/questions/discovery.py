@@ -40,8 +40,11 @@ TOPIC_OF = {given.name: topic.name for topic in TOPICS.values() for given in top
 """Name of the topic of an input."""
 
 
-def chosen_topics(names: Iterable[str], *, job: bool) -> tuple[str, ...]:
-    """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job."""
+def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> tuple[str, ...]:
+    """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job.
+
+    word: what the door calls them.
+    """
     import difflib
 
     asked = [name.strip().replace("-", "_") for text in names for name in text.split(",")]
@@ -50,7 +53,7 @@ def chosen_topics(names: Iterable[str], *, job: bool) -> tuple[str, ...]:
         if name not in TOPICS and name != ALL:
             near = difflib.get_close_matches(name, TOPICS, n=1)
             hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(TOPICS)}, {ALL}"
-            raise InputError(f"--show must name a topic; got {name!r}; {hint}")
+            raise InputError(f"{word} must name a topic; got {name!r}; {hint}")
         if name not in (*possible, ALL):
             raise InputError(
                 f"--show {name} needs masses, loads or tolerances; got no job file; give one: analyse JOB --show {name}"

@@ -16,14 +16,15 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 
-def read_run(folder: Path) -> Result:
-    """Return the result of a run. Raises `RunError` for one that is unfinished, damaged, or no run."""
+def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Result:
+    """Return the result of a run. Raises `RunError` for one that is unfinished, damaged, or no run.
+
+    again: what an unfinished run goes on with, in the words of the door.
+    """
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
-            raise RunError(
-                f"the run {folder} is unfinished: {text}; go on with `slidercrank optimise --resume {folder.name}`"
-            )
+            raise RunError(f"the run {folder} is unfinished: {text}; go on with `{again} {folder.name}`")
         if not (folder / "front.json").is_file():
             raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))

@@ -119,6 +119,10 @@ def _helped(name: str, hint: Any) -> Any:
     return Annotated[kind, option]
 
 
+def _flag(name: str) -> str:
+    return f"--{name}"
+
+
 @dataclass(frozen=True)
 class Dimensions:
     """Crank, rod and offset as they are given."""
@@ -127,33 +131,36 @@ class Dimensions:
     rod: Annotated[Length, "Connecting rod, likewise."] = None
     offset: Annotated[Length, 'Offset of the slider line, such as "-20 mm", likewise.'] = None
 
-    def lengths(self, problem: Problem | None) -> list[float]:
+    def lengths(self, problem: Problem | None, word: Callable[[str], str] = _flag) -> list[float]:
         """Return crank, rod and offset, m, each as `length_option` gives it."""
-        return [length_option(name, getattr(self, name), problem) for name in DIMENSIONS]
+        return [length_option(name, getattr(self, name), problem, word) for name in DIMENSIONS]
 
-    def linkage(self, problem: Problem) -> Linkage:
-        """Return the linkage of a job's branch."""
+    def linkage(self, problem: Problem, word: Callable[[str], str] = _flag) -> Linkage:
+        """Return the linkage of a job's branch. word: gives what the door calls a dimension."""
         from ...model.linkage.linkage import Linkage
 
-        crank, rod, offset = self.lengths(problem)
+        crank, rod, offset = self.lengths(problem, word)
         return Linkage(crank, rod, offset, problem.mechanism.branch)
 
 
-def length_option(name: str, text: str | None, problem: Problem | None) -> float:
-    """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero."""
+def length_option(name: str, text: str | None, problem: Problem | None, word: Callable[[str], str] = _flag) -> float:
+    """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero.
+
+    word: gives what the door calls it.
+    """
     if text is not None:
-        return value_of(f"--{name}", text, LENGTH, sign="any" if name == "offset" else "positive")
+        return value_of(word(name), text, LENGTH, sign="any" if name == "offset" else "positive")
     bounds = getattr(problem, name, None)
     if bounds is not None and bounds.fixed:
         return float(bounds.lower)
     if name == "offset" and problem is None:
         return 0.0
-    raise InputError(f'--{name} is needed; write it like --{name} "40 mm"')
+    raise InputError(f'{word(name)} is needed; write it like {word(name)} "40 mm"')
 
 
-def speed_option(text: str) -> float:
-    """Return the crank speed, rad/s."""
-    return value_of("--speed", text, ANGULAR_SPEED)
+def speed_option(text: str, word: str = "--speed") -> float:
+    """Return the crank speed, rad/s. word: what the door calls it."""
+    return value_of(word, text, ANGULAR_SPEED)
 
 
 def require_ending(option: str, file: Path | None, *endings: str) -> None:

@@ -31,6 +31,7 @@ from slidercrank.service.agents.call import Answer
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
+from slidercrank.service.questions.answers import schema_of
 from slidercrank.service.questions.discovery import INPUTS, QUESTIONS, TOPICS
 from slidercrank.service.text.tables import ROWS
 from tests.faults.waits import Stopwatch
@@ -49,6 +50,7 @@ def loud(designs):
 OWN_TABLES = '[quantity.mine]\nfunction = "FUNCTION"\nunit = "mm"\ngradient = "finite differences"\n'
 LONG = fronts.JOB.replace("samples = 512\n", 'method = "nsga2"\nsamples = 40\nevaluations = 6000\n')
 IMPOSSIBLE = fronts.JOB.replace("transmission_angle = {", "time_ratio = { min = 1.5 }\ntransmission_angle = {")
+SWUNG = {"crank": "1.4 m", "rod": "1.8 m", "offset": "-50 mm"}
 PROGRAM = "from slidercrank.service.cli import main; main()"
 
 
@@ -359,8 +361,18 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
         ("ask", {"run": "latest", "topics": ["inverse"]}, "inverse needs slider_position; got none"),
         ("ask", {"run": "latest", "topics": ["inverse", "press"]}, "inverse is asked alone"),
         ("ask", {"run": "latest", "topics": ["press"], "inputs": {"rated_torque": "5 mm"}}, "rated_torque must be"),
-        ("ask", {"job": "feeder", "crank": "20 mm"}, "--rod is needed"),
+        ("ask", {"job": "feeder", "crank": "20 mm"}, 'rod is needed; write it like rod "40 mm"'),
         ("ask", {"job": "feeder", "crank": "9 kg", "rod": "1 m", "offset": "0 m"}, "crank must be a length"),
+        ("ask", {"job": "support", "topics": ["motor"], **SWUNG}, "swing analyses its designs"),
+        ("ask", {"job": "feeder", "topics": ["pres"]}, "topics must name a topic"),
+        ("front", {"run": "latest", "knee": True, "topsis": "stroke=1"}, "got knee and topsis; keep one"),
+        ("front", {"run": "latest", "topsis": "a, b"}, "an objective"),
+        ("front", {"run": "latest", "where": ["time_ratio"]}, 'write it like "transmission_angle >= 40 deg"'),
+        (
+            "files",
+            {"run": "latest", "write": ["csv", "figures"], "design": 2},
+            "csv, figures are of all designs of a run",
+        ),
         ("files", {"run": "latest", "write": ["exe"]}, "write.0 must be 'csv'"),
         ("files", {"run": "latest", "write": []}, "write must have at least 1 entries"),
         ("files", {"run": "latest", "write": ["svg"], "design": 99}, "the run has designs 1 to "),
@@ -371,6 +383,7 @@ def test_wrong_input_is_one_sentence_and_the_server_lives_on(
 ) -> None:
     found = agent.answer(tool, **inputs)
     assert sentence in text_of(found)
+    assert not re.search(r"--[a-z]|`slidercrank", text_of(found)), "an agent has inputs, no command line"
     assert found.is_error or tool == "check"
     assert agent.ask("describe", name="stroke")["quantity"]["unit"] == "mm"
 
@@ -422,6 +435,11 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
     assert keys["required"] == ["mass"]
     assert keys["keys"]["mass"]["examples"]
     assert len(agent.ask("describe", name="load")["key"]["tables"]) > 10
+    bounds = text_of(agent.answer("describe", name="constraints"))
+    for of in QUANTITIES.values():
+        assert f"  {of.name}: {of.title}; such as {of.name} = {{ {'max' if of.better == 'low' else 'min'} = " in bounds
+    for name, question in QUESTIONS.items():
+        assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.answer_type)
     assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
 
 

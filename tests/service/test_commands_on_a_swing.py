@@ -143,9 +143,9 @@ def test_inverse_gives_the_crank_angles_of_the_swing(command: Command, place: Pa
 @pytest.mark.parametrize(
     ("name", "given", "words"),
     [
-        ("analyse", ("--design", 1), "`slidercrank swing` analyses its designs"),
-        ("analyse", ("--design", 1, "--show", "balance"), "`slidercrank swing` analyses its designs"),
-        ("analyse", ("--design", 1, "--measured", "curves.csv"), "`slidercrank swing` analyses its designs"),
+        ("analyse", ("--design", 1), "swing analyses its designs"),
+        ("analyse", ("--design", 1, "--show", "balance"), "swing analyses its designs"),
+        ("analyse", ("--design", 1, "--measured", "curves.csv"), "swing analyses its designs"),
         ("report", ("--design", 1, "--measured", "curves.csv"), "what --measured compares is of a crank that turns"),
         ("certify", (), "the residuals of the front tell how near its designs are to optimal"),
         ("front", ("--where", "stroke >= 1 m"), "'stroke'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,6 +25,7 @@ from slidercrank.objectives.dead_centre import TOUCH_SPEED
 from slidercrank.service.questions.press import analysis as press
 from slidercrank.service.questions.pump import analysis as pump
 from tests.model.cases import linkage_of, random_designs
+from tests.service.conftest import Command
 
 DESIGNS = random_designs(6, seed=11, least_margin=0.02)
 PUMP = Compressor(bore=0.05, low=1e5, high=6e5, compression_exponent=0.0, expansion_exponent=0.0)
@@ -166,3 +168,16 @@ def test_gas_has_no_ripple_and_a_machine_without_cylinders_no_flow() -> None:
     assert len(pump.figure(Mechanism(speed=20.0, loads=(AIR,)), linkage).panels) == 1
     with pytest.raises(InputError, match="it comes from a compressor or pump; got none"):
         pump.numbers(Mechanism(speed=20.0), linkage)
+
+
+def test_a_press_without_a_job_needs_its_distance_and_its_torque(command: Command) -> None:
+    linkage = Linkage(0.03, 0.16, 0.01)
+    asked = ("analyse", "--crank", "30 mm", "--rod", "160 mm", "--offset", "10 mm", "--show", "press")
+    given = ("--touch-distance", "5 mm", "--rated-torque", "50 N m")
+    found = json.loads(command(*asked, *given, "--json").stdout)["press"]
+    expected = press.numbers(Mechanism(), linkage, touch_distance=0.005, rated_torque=50.0)
+    assert found == expected
+    assert (found["touch_speed_m_s"], found["touch_force_N"] > 0.0) == (None, True)
+    for few, reason in ((given[:2], "give a rated torque, such as 50 N m"), (given[2:], "give a touch distance")):
+        refused = command(*asked, *few)
+        assert (refused.exit_code, refused.stderr.count(reason)) == (2, 1)

@@ -319,8 +319,9 @@ def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> N
         sc.load_job("runs/support.toml").ask("balance", [1.4, 1.8, -0.05])
     with pytest.raises(InputError, match="a design of a problem with choices"):
         sc.load_job(JOBS / "catalogue.toml").ask("balance", [0.04, 0.1, 0.02])
-    with pytest.raises(InputError, match="a row must be one of the front"):
-        fronts.front(designs=3).ask("balance", 99)
+    for row in (99, -1, 1.0):
+        with pytest.raises(InputError, match=f"a row must be one of the front, which has rows 0 to 2; got {row}"):
+            fronts.front(designs=3).ask("balance", row)  # type: ignore[arg-type]
 
 
 def test_an_unknown_question_of_a_client_is_refused_by_the_service(solved: Solved, client: Client) -> None:

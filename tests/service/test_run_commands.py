@@ -205,7 +205,7 @@ def test_a_design_is_chosen_among_those_that_meet_the_conditions(stored: Result,
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--knee", "--topsis", "peak_torque=1"), "got --knee and --topsis; keep one"),
+        (("--knee", "--topsis", "peak_torque=1"), "got knee and topsis; keep one"),
         (("--topsis", "stroke=1"), "time_ratio, peak_torque, transmission_angle, position_error; got 'stroke'"),
         (("--topsis", "peak_torque"), "an objective, =, and a number"),
         (("--topsis", "peak_torque=1, peak_torque=2"), "each objective once"),

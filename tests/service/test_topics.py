@@ -37,7 +37,7 @@ def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: py
 
 
 def test_without_a_job_all_topics_are_those_that_need_none() -> None:
-    assert chosen_topics([ALL], job=False) == ("polygons", "extremes")
+    assert chosen_topics([ALL], job=False) == ("press", "polygons", "extremes")
     assert chosen_topics([ALL], job=True) == tuple(TOPICS)
     with pytest.raises(InputError, match="--show motor needs masses, loads or tolerances; got no job file"):
         chosen_topics(["motor"], job=False)

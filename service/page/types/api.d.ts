@@ -74,27 +74,9 @@ declare global {
     type Wrong = Schemas["WrongModel"];
     /** A design: its cells by the keys of columns. */
     type Row = Record<string, Cell>;
-    /** What /analysis gives for "extremes", which its description leaves open: values whose keys end with their units. */
-    interface Extremes {
-      curves: Record<string, Record<string, unknown> & { title: string }>;
-      strokes: Record<string, unknown> & { outward: Record<string, unknown>; inward: Record<string, unknown> };
-    }
-    /** What /swing gives, which its description leaves open: numbers whose keys end with their units beside these. */
-    type Swing = Record<string, unknown> & {
-      driver: string;
-      law: string;
-      duration_s: number | null;
-      holds_by_friction: boolean;
-      extremes: Extremes["curves"];
-      notes: string[];
-    };
-    /** What /inverse gives, which its description leaves open. */
-    interface Inverse {
-      solutions: { crank_angle_deg: number; stroke: string | null; crank_speed_rpm: number | null; crank_acceleration_rad_s2: number | null }[];
-      note: string;
-      slider_velocity_m_s: number | null;
-      slider_acceleration_m_s2: number | null;
-    }
+    type Extremes = Schemas["Extremes"];
+    type Swing = Schemas["SwingNumbers"] & Record<string, unknown>;
+    type Inverse = Schemas["CrankAngles"];
     /** What /rounded gives, which its description leaves open. */
     interface Rounded {
       met: boolean;
@@ -112,35 +94,10 @@ declare global {
       side: "above" | "below";
       allowed: number;
     }
-    /** What /analysis gives for "sensitivity", which its description leaves open: rates such as crank_per_mm beside the rest. */
-    interface Sensitivity {
-      quantities: Sensitive[];
-    }
-    type Sensitive = Record<string, Cell> & { quantity: string; title: string; unit: string; value: number | null };
-    /** What /analysis gives for "tolerances", which its description leaves open. */
-    interface Tolerances {
-      worst_case_mm: number;
-      worst_case_angle_deg: number;
-      exact_worst_case_mm: number | null;
-      exact_worst_case_angle_deg: number;
-      root_sum_square_mm: number;
-      root_sum_square_angle_deg: number;
-      monte_carlo: {
-        samples: number;
-        stuck: number;
-        percentiles_greatest_mm: Record<string, number>;
-        histogram: { edges_mm: number[]; counts: number[] } | null;
-      };
-      yields: { limit: string; limit_mm: number; yield_percent: number; yield_low_percent: number; yield_high_percent: number }[];
-      contributions: Contribution[];
-    }
-    interface Contribution {
-      source: string;
-      limit_mm: number | null;
-      limit_deg: number | null;
-      share_of_worst_case_percent: number;
-      share_of_variance_percent: number;
-    }
+    type Sensitivity = { quantities: Sensitive[] };
+    type Sensitive = Schemas["Change"] & Row;
+    type Tolerances = Schemas["PositionError"];
+    type Contribution = Schemas["Contribution"];
     /** Curves over a turn of the crank, at evenly spaced angles from 0 deg; null where a value is not defined. */
     type Curves = Record<string, (number | null)[]>;
   }

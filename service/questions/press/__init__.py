@@ -27,5 +27,9 @@ RATED = Input(
     sign="positive",
 )
 QUESTION = Question(
-    __name__, 46, "force, speed and work of a press before a dead centre, dwell", inputs=(TOUCH, DWELL, RATED)
+    __name__,
+    46,
+    "force, speed and work of a press before a dead centre, dwell",
+    needs_job=False,  # with a touch distance and a rated torque
+    inputs=(TOUCH, DWELL, RATED),
 )

@@ -70,8 +70,12 @@ _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
 
 def _places(name: str, *, way: bool = True) -> dict[str, Any]:
-    """Return the keys of where a value is, if there is one."""
-    return {f"{name}_{of}": NotRequired[kind] for of, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
+    """Return the keys of where a value is."""
+    return {f"{name}_{of}": kind for of, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
+
+
+def _optional(keys: dict[str, Any]) -> dict[str, Any]:
+    return {key: NotRequired[kind] for key, kind in keys.items()}
 
 
 _CURVE = {
@@ -107,11 +111,11 @@ SwingNumbers = Annotated[
             "stored_energy_J": _Known,
             "efficiency": Annotated[float | None, Note("null where neither way is driven")],
             "peak_power_W": NotRequired[_Known],
-            **_places("peak_power"),
+            **_optional(_places("peak_power")),
             **keys_of_kinds(("slider_position_error",), (LENGTH,)),
             **keys_of_kinds(("crank_position_error",), (ANGLE,)),
-            **_places("slider_position_error", way=False),
-            **_places("crank_position_error", way=False),
+            **_optional(_places("slider_position_error", way=False)),
+            **_optional(_places("crank_position_error", way=False)),
             "extremes": Annotated[dict[str, _Curve], Note("by curve")],
             "notes": Annotated[list[str], Note("what is undefined or left out, and why")],
         },

@@ -69,6 +69,7 @@ function spread(
 function numbers(found) {
   const {
     exact_worst_case_mm: exact,
+    exact_worst_case_angle_deg: where,
     monte_carlo: { percentiles_greatest_mm: percentiles, stuck },
     yields,
   } = found;
@@ -78,9 +79,9 @@ function numbers(found) {
     ["worst case, first order", at(found.worst_case_mm, found.worst_case_angle_deg)],
     [
       "worst case, exact",
-      exact === null
+      exact === null || where === null
         ? "a linkage within the tolerances does not turn fully"
-        : at(exact, found.exact_worst_case_angle_deg),
+        : at(exact, where),
     ],
     ["root sum square", at(found.root_sum_square_mm, found.root_sum_square_angle_deg)],
     ...Object.entries(percentiles).map(([percent, value]) => [
