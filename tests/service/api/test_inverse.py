@@ -92,15 +92,10 @@ def test_a_design_that_is_not_there_is_not_found(client: httpx.Client, solved: S
     assert answer.status_code == 404
 
 
-def test_the_description_has_an_example(client: httpx.Client) -> None:
+def test_the_description_says_what_must_be_given(client: httpx.Client) -> None:
     described = client.get("/api/v1/openapi.json").json()
     operation = described["paths"]["/api/v1/jobs/{number}/designs/{design}/inverse"]["get"]
     assert operation["operationId"] == "find_crank_angles"
     named = {parameter["name"]: parameter["required"] for parameter in operation["parameters"]}
     assert named["slider_position_mm"] is True
     assert named["slider_velocity_m_s"] is False
-    (example,) = described["components"]["schemas"]["InverseModel"]["properties"]["inverse"]["examples"]
-    expected = Linkage(0.06, 0.23, 0.07).from_slider(0.24, velocity=-1.0)
-    assert example["slider_position_mm"] == 240.0
-    for shown, one in zip(example["solutions"], expected, strict=True):
-        assert shown["crank_angle_deg"] == pytest.approx(math.degrees(one.crank_angle), abs=5e-4)
