@@ -366,7 +366,7 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
         ("ask", {"job": "support", "topics": ["motor"], **SWUNG}, "swing analyses its designs"),
         ("ask", {"job": "feeder", "topics": ["pres"]}, "topics must name a topic"),
         ("front", {"run": "latest", "knee": True, "topsis": "stroke=1"}, "got knee and topsis; keep one"),
-        ("front", {"run": "latest", "topsis": "a, b"}, "an objective"),
+        ("front", {"run": "latest", "topsis": "stroke, b"}, "a design is chosen by the objectives of its run"),
         ("front", {"run": "latest", "where": ["time_ratio"]}, 'write it like "transmission_angle >= 40 deg"'),
         (
             "files",
