@@ -121,7 +121,7 @@ class Design:
         folder, result = call.run(self.run)
         row = None
         if self.design is not None:
-            require_alone(self.design, result, self.run, others=False)
+            require_alone(self.design, result, others=False)
             row = self.design - 1
         return folder, front_of(call.problem_of_run(folder, result), result), row
 

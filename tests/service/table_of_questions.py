@@ -34,9 +34,7 @@ COLUMNS = ("question", "file", "subject", "doors", "statements", "javascript", "
 FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 UNDECLARED = {
-    "wish": ("front", "service/designs/wishing.py service/commands/wish.py service/api/wish.py"),
     "like": ("front", "service/commands/like.py"),
-    "certify": ("front", "service/designs/proof.py service/commands/certify.py service/api/certificate.py"),
     "round": ("front", "service/designs/rounding.py service/commands/round.py service/api/rounding.py"),
     "compare": ("runs", "service/designs/comparing.py service/commands/compare.py service/api/comparison.py"),
     "sweep": ("job", "service/commands/sweep.py"),

@@ -32,7 +32,7 @@ from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
 from slidercrank.service.questions.answers import schema_of
-from slidercrank.service.questions.discovery import INPUTS, QUESTIONS, TOPICS
+from slidercrank.service.questions.discovery import INPUTS, OF_DESIGNS, QUESTIONS, TOPICS
 from slidercrank.service.text.tables import ROWS
 from tests.faults.waits import Stopwatch
 from tests.service import fronts, sized
@@ -438,7 +438,7 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
     bounds = text_of(agent.answer("describe", name="constraints"))
     for of in QUANTITIES.values():
         assert f"  {of.name}: {of.title}; such as {of.name} = {{ {'max' if of.better == 'low' else 'min'} = " in bounds
-    for name, question in QUESTIONS.items():
+    for name, question in OF_DESIGNS.items():
         assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.answer_type)
     assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
 

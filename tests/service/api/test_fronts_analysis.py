@@ -82,9 +82,7 @@ def test_topics_that_a_design_does_not_have_are_notes_only_for_all(solved: Solve
     assert any(note.startswith("tolerances: ") for note in notes)
 
 
-def test_an_unknown_topic_is_refused_as_on_the_command_line_but_for_dashes(
-    solved: Solved, client: httpx.Client
-) -> None:
+def test_an_unknown_topic_is_refused_as_on_the_command_line(solved: Solved, client: httpx.Client) -> None:
     answer = client.get(f"{solved.path}/designs/1/analysis?show=balanse")
     assert answer.status_code == 422
     lengths = [f"--{name}={size}" for name, size in SIZES.items()]
