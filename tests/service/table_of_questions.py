@@ -34,8 +34,6 @@ COLUMNS = ("question", "file", "subject", "doors", "statements", "javascript", "
 FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 UNDECLARED = {
-    "like": ("front", "service/commands/like.py"),
-    "round": ("front", "service/designs/rounding.py service/commands/round.py service/api/rounding.py"),
     "compare": ("runs", "service/designs/comparing.py service/commands/compare.py service/api/comparison.py"),
     "sweep": ("job", "service/commands/sweep.py"),
     "check": ("job", "service/preview/preview.py service/commands/job.py service/api/preview.py"),
