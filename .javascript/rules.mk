@@ -1,6 +1,6 @@
 # JavaScript of the page and of the player: lint and types (npm), unit tests (node 18.18 or newer; Debian: nodejs npm).
 # Without node they are left out, and make says so.
-.PHONY: lint-javascript format-javascript test-javascript clean-javascript
+.PHONY: lint-javascript format-javascript test-javascript clean-javascript count-javascript
 lint: lint-javascript
 test: test-javascript
 CHECKS += lint-javascript test-javascript
@@ -21,6 +21,10 @@ lint-javascript: $(JAVASCRIPT)/node_modules/.installed $(JAVASCRIPT)/openapi.d.t
 
 format-javascript: $(JAVASCRIPT)/node_modules/.installed
 	$(PRETTIER) --write
+
+# Statements by folder, compared with BASE.
+count-javascript: $(JAVASCRIPT)/node_modules/.installed
+	@node $(JAVASCRIPT)/statements.js $(BASE)
 
 # The shapes of the API, from its own description: anew whenever Python has changed.
 $(JAVASCRIPT)/openapi.d.ts: $(JAVASCRIPT)/node_modules/.installed $(VENV)/.installed-test $(JAVASCRIPT)/describe.py \
