@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
 from ..designs.trade_offs import trade_offs_of
 from ..designs.turning import require_turning
@@ -21,6 +22,7 @@ from ..questions.design_analysis import analysis_of, numbers_of, numbers_of_swin
 from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
+from .blocks import AnswerBlock, sentence_blocks
 from .computing import LongRoute
 from .fronts import OfDesign
 from .job_requests import given_problem
@@ -37,6 +39,8 @@ Show = Annotated[
     Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
 _TOPICS = Answering(lambda: [topic.answer_type for topic in TOPICS.values()], names=TOPICS)
+_ALONG = "Next to this design, along the front, with the requirements that are at their limit held:"
+_NOTHING_TO_GAIN = "At this design nothing can be gained in one objective for a loss in the others."
 
 
 class AnalysisModel(BaseModel):
@@ -72,11 +76,12 @@ class WhatIf(BaseModel, extra="forbid"):
 class TradeOffsModel(OfDesign):
     """Trade-offs of a design: the cost of one objective in the others, in words.
 
-    note: why there is nothing, or empty.
+    note: why there is nothing, or empty. blocks: all of it.
     """
 
     trade_offs: list[str] = Field(examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]])
     note: str = Field(examples=[""])
+    blocks: list[AnswerBlock]
 
 
 @router.get("/jobs/{number}/designs/{design}/analysis")
@@ -116,7 +121,10 @@ def show_trade_offs(found: FrontDep, design: DesignNumber, units: UnitsAsked = "
         sentences, note = trade_offs_of(found.front, design - 1, stored, units), ""
     except InputError as error:
         sentences, note = [], str(error)
-    return TradeOffsModel(job=found.job.id, number=design, trade_offs=sentences, note=note)
+    told = [_ALONG, *(unit_text(f"{one}.") for one in sentences)] if sentences else [note or _NOTHING_TO_GAIN]
+    return TradeOffsModel(
+        job=found.job.id, number=design, trade_offs=sentences, note=note, blocks=sentence_blocks(told)
+    )
 
 
 def _with_topics(

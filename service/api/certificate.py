@@ -12,6 +12,7 @@ from pydantic_core import to_json
 from ..questions.discovery import WIDER
 from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
+from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .input_parameters import inputs_in_address, parameter_of
 from .problems import problem_responses
@@ -34,13 +35,14 @@ class CertificateModel(BaseModel):
     """A proof of how far a front can be from the true one.
 
     proven: whether that which was asked for is proven. sentences: the proof in words, in metric units. certificate:
-    what `slidercrank certify --json` prints.
+    what `slidercrank certify --json` prints. blocks: the sentences as data.
     """
 
     job: int = Field(examples=[7])
     proven: bool
     sentences: list[str] = Field(examples=[["proven: for every feasible design, one of the 100 designs is worse ..."]])
     certificate: dict[str, Any] = Field(examples=[_EXAMPLE])
+    blocks: list[AnswerBlock]
 
 
 @router.get("/jobs/{number}/certificate", response_model=CertificateModel)
@@ -62,4 +64,5 @@ def _proof(found: StoredFront, given: dict[str, Any]) -> CertificateModel:
         proven=answer.met,
         sentences=sentences if found.result.designs else [answer.message],
         certificate=json_ready({"run": found.result.run} | answer.record("metric")),
+        blocks=answer_blocks(answer.blocks),
     )

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, SHOWN, shown_in
 from ..designs.quantity_facts import facts_of_all
-from ..questions.discovery import TOPICS
+from ..questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
 from ..questions.question import Question
 
 router = APIRouter(tags=["designs"])
@@ -98,27 +100,41 @@ class UnitTable(BaseModel):
 
 
 class InputModel(BaseModel):
-    """What a topic is asked with. key: in its address. title: before a field. unit: of the key. usual: if left out."""
+    """What a question is asked with. key: in its address. title: before a field. unit: of the key. usual: if left out.
+
+    words: that it may be, none for a number. required: whether there is no answer without it. example: as typed.
+    """
 
     key: str = Field(examples=["crank_angle_deg"])
     title: str = Field(examples=["Crank angle"])
+    help: str = Field(examples=["Crank angle at which the polygons are drawn."])
     unit: str = Field(examples=["deg"])
     usual: str = Field(examples=["30 deg"])
+    words: list[str] = Field(examples=[[]])
+    required: bool
+    example: str = Field(examples=[""])
 
 
 class TopicModel(BaseModel):
-    """A topic of a design. name: in its path. title: for a heading. shows: what it is about, in words."""
+    """A question to a design. path: after that of the design. title: for a heading. shows: what it is about, in words.
+
+    command: of the command line, which tells the same. figure: whether it is drawn at the path with .svg.
+    """
 
     name: str = Field(examples=["balance"])
+    path: str = Field(examples=["topics/balance"])
+    command: str = Field(examples=["analyse --show balance"])
+    figure: bool
     title: str = Field(examples=["Balance"])
     shows: str = Field(examples=["shaking force and moment"])
     inputs: list[InputModel] = Field(examples=[[]])
 
 
 class TopicList(BaseModel):
-    """The topics that a design may have, in their order."""
+    """The topics that a design may have, in their order. questions: those that are commands of their own."""
 
     topics: list[TopicModel]
+    questions: list[TopicModel]
 
 
 @router.get("/units")
@@ -159,11 +175,33 @@ def list_quantities() -> QuantityList:
 
 @router.get("/topics")
 def list_topics() -> TopicList:
-    """List the topics that a design may have."""
-    return TopicList(topics=list(map(_topic, TOPICS.values())))
+    """List the topics that a design may have, and the questions that are commands of their own."""
+    topics = [_topic(of, f"topics/{of.name}", f"analyse --show {of.name}") for of in TOPICS.values()]
+    questions = [_topic(OF_DESIGNS[name], name, says.called or name) for name, says in COMMANDS.items()]
+    return TopicList(topics=topics, questions=questions)
 
 
-def _topic(of: Question) -> TopicModel:
-    inputs = [InputModel(key=one.key, title=one.title, unit=one.unit.symbol, usual=one.usual) for one in of.inputs]
+def _topic(of: Question, path: str, command: str) -> TopicModel:
+    inputs = [
+        InputModel(
+            key=one.key,
+            title=one.title or one.name.replace("_", " ").capitalize(),
+            help=one.help,
+            unit=one.unit.symbol,
+            usual=one.usual,
+            words=get_args(one.words),
+            required=one.required,
+            example=one.example,
+        )
+        for one in of.inputs
+    ]
     title = of.name.replace("_", " ").capitalize()
-    return TopicModel(name=of.name, title=title, shows=of.shows, inputs=inputs)
+    return TopicModel(
+        name=of.name,
+        path=path,
+        command=command,
+        figure=of.command is None or of.command.figure is not None,
+        title=title,
+        shows=of.shows,
+        inputs=inputs,
+    )

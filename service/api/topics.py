@@ -15,6 +15,7 @@ from ..questions.answers import Answering
 from ..questions.discovery import INPUTS, TOPIC_OF, TOPICS
 from ..questions.question import Question, QuestionOfDesign
 from ..runs.result import json_ready
+from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .exports import SEALED, of_type
 from .figures import require_figures
@@ -46,11 +47,12 @@ class BlockModel(BaseModel):
 
 
 class ToldTopic(OfDesign):
-    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text."""
+    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text. blocks: that as data."""
 
     name: str = Field(examples=["balance"])
     numbers: Annotated[dict[str, Any], Answering(lambda: [topic.answer_type for topic in TOPICS.values()])]
     told: list[BlockModel]
+    blocks: list[AnswerBlock]
 
 
 @dataclass(frozen=True)
@@ -111,9 +113,15 @@ def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
 
         found = asked.of(of, shown)
         numbers = found.numbers()
-        blocks = [BlockModel(**vars(block)) for block in plain_blocks(found.blocks(numbers), asked.units)]
-        record = found.numbers_in(json_ready(numbers), asked.units)
-        answer = ToldTopic(job=shown.found.job.id, number=shown.number, name=topic, numbers=record, told=blocks)
+        blocks = found.blocks(numbers)
+        answer = ToldTopic(
+            job=shown.found.job.id,
+            number=shown.number,
+            name=topic,
+            numbers=found.numbers_in(json_ready(numbers), asked.units),
+            told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, asked.units)],
+            blocks=answer_blocks(blocks),
+        )
         return (shown.key,), to_json(answer)
 
     content = shown.found.made(shown.key, asked.kind(of, "told"), make)

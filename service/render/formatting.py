@@ -33,9 +33,7 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
     if value.number is None or math.isnan(value.number):
         return value.missing
     face = value.kind.face(system)
-    digits, decimals = value.digits, value.decimals
-    if face is not value.kind.metric:
-        digits, decimals = max(digits, _LEAST_DIGITS), None
+    digits, decimals = digits_of(value, system)
     number, unit = face.factor * value.number, "" if bare or value.bare else unit_text(face.symbol)
     if printed and decimals is None:
         text = shown(number, digits)
@@ -44,6 +42,13 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
         text = text.removeprefix("-") if float(text) == 0.0 else text
         text = text.replace("-", "−") if printed else text
     return f"{'+' if value.sign and number > 0.0 else ''}{text} {unit}".rstrip()
+
+
+def digits_of(value: Value, system: System) -> tuple[int, int | None]:
+    """Return how many significant digits of a value are shown in a system, and how many after the point instead."""
+    if value.kind.face(system) is value.kind.metric:
+        return value.digits, value.decimals
+    return max(value.digits, _LEAST_DIGITS), None
 
 
 def format_text(text: Text, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:

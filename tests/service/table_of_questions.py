@@ -41,6 +41,8 @@ UNDECLARED = {
     "trade-offs": ("design", "service/designs/trade_offs.py"),
 }
 """Subject and files of what is asked without a declaration of its own."""
+SHOWN = ("certify", "trade-offs")
+"""What the page shows as it shows questions to a design, from the blocks of their answers."""
 _STATEMENT = re.compile(r";$|^(if|for|while|switch|try|do|(export )?(default )?(async )?(function|class))\b")
 
 
@@ -90,7 +92,7 @@ def _doors(name: str, paths: list[str], commands: set[str], drawn: bool) -> Iter
         yield "Python"
     if name in QUESTIONS or hasattr(Client, form.replace("-", "_")):
         yield "client"
-    if name in TOPICS or drawn:
+    if name in TOPICS or name in COMMANDS or name in SHOWN or drawn:
         yield "page"
     reported = (file.read_text(encoding="utf-8") for file in (ROOT / "service" / "report").glob("*.py"))
     if any(f"questions.{name}." in text for text in reported):

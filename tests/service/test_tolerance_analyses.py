@@ -156,7 +156,12 @@ def test_sensitivity_numbers_are_those_of_the_table_with_none_for_nan() -> None:
     in_line: Any = sensitivity_analysis.numbers(SMOOTH, Linkage(0.14, 0.31))
     json.dumps(in_line, allow_nan=False)
     assert all(row["offset_percent"] is None for row in in_line["quantities"])
-    assert len(text_of(sensitivity_analysis, found).splitlines()) <= 32
+    each, within = text_of(sensitivity_analysis, found).split("Change of each quantity for the tolerance")
+    assert max(len(part.splitlines()) for part in (each, within)) <= 32
+    (line,) = (line for line in within.splitlines() if line.startswith("peak torque "))
+    (row,) = (row for row in found["quantities"] if row["title"] == "peak torque")
+    changes = [row[f"{name}_tolerance"] for name in DIMENSIONS]
+    assert [float(one) for one in line.split()[2:5]] == pytest.approx(changes, rel=5e-4)
     assert "peak torque" in text_of(sensitivity_analysis, in_line)
 
 

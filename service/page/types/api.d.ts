@@ -65,7 +65,8 @@ declare global {
     type Requirement = Schemas["RequirementModel"];
     type Requirements = Schemas["RequirementsModel"];
     type SwingPreview = Schemas["SwingPreview"];
-    type Told = Schemas["BlockModel"];
+    type Block = Schemas["AnswerBlock"];
+    type NumberPart = Schemas["NumberPart"];
     type Topic = Schemas["TopicModel"];
     type Understood = Schemas["Understood"];
     type Units = Schemas["UnitTable"]["inch"];
@@ -75,7 +76,6 @@ declare global {
     /** A design: its cells by the keys of columns. */
     type Row = Record<string, Cell>;
     type Extremes = Schemas["Extremes"];
-    type Swing = Schemas["SwingNumbers"] & Record<string, unknown>;
     type Inverse = Schemas["CrankAngles"];
     /** What /rounded gives, which its description leaves open. */
     interface Rounded {
@@ -94,10 +94,6 @@ declare global {
       side: "above" | "below";
       allowed: number;
     }
-    type Sensitivity = { quantities: Sensitive[] };
-    type Sensitive = Schemas["Change"] & Row;
-    type Tolerances = Schemas["PositionError"];
-    type Contribution = Schemas["Contribution"];
     /** Curves over a turn of the crank, at evenly spaced angles from 0 deg; null where a value is not defined. */
     type Curves = Record<string, (number | null)[]>;
   }

@@ -8,17 +8,20 @@ from ..question import Command, Question
 QUESTION = Question(
     __name__,
     1,
+    shows="tolerances of least cost within a limit of the position error",
     inputs=(
         Input(
             "limit",
             LENGTH,
-            help="Position error that is allowed.",
+            "Position error allowed",
+            "Position error that is allowed.",
             sign="positive",
             example="0.1 mm",
             required=True,
         ),
         Input(
             "kind",
+            title="Errors add up as",
             help='How errors add up: "worst case" or "rss" (root-sum-square).',
             usual="worst case",
             words=Kind,

@@ -8,9 +8,11 @@ from ..question import Command, Question
 QUESTION = Question(
     __name__,
     2,
+    shows="counterweight, and a balance mass on the rod, of least shaking force",
     inputs=(
         Input(
             "measure",
+            title="To be least",
             help='What is to be least over the cycle: "peak" or "rms".',
             usual="peak",
             words=Measure,
@@ -19,16 +21,26 @@ QUESTION = Question(
         Input(
             "radius",
             LENGTH,
-            help="Place of the counterweight's centre.  [default: as in JOB, or the crank]",
+            "Radius of the counterweight",
+            "Place of the counterweight's centre.  [default: as in JOB, or the crank]",
             sign="positive",
         ),
-        Input("mass", MASS, help="Greatest mass of the counterweight, such as 2 kg.", sign="positive"),
-        Input("rod_radius", LENGTH, help="Space around the crank pin for a balance mass on the rod.", sign="positive"),
-        Input("rod_mass", MASS, help="Greatest mass of it.", sign="positive"),
+        Input(
+            "mass", MASS, "Counterweight, at most", "Greatest mass of the counterweight, such as 2 kg.", sign="positive"
+        ),
+        Input(
+            "rod_radius",
+            LENGTH,
+            "Space for a mass on the rod",
+            "Space around the crank pin for a balance mass on the rod.",
+            sign="positive",
+        ),
+        Input("rod_mass", MASS, "Mass on the rod, at most", "Greatest mass of it.", sign="positive"),
         Input(
             "arm",
             LENGTH,
-            help="Count the shaking moment too, as moment / arm; needs a rod balance.",
+            "Moment counts, divided by",
+            "Count the shaking moment too, as moment / arm; needs a rod balance.",
             sign="positive",
         ),
     ),

@@ -6,6 +6,7 @@ from ..question import Command, Question
 
 QUESTION = Question(
     __name__,
+    shows="crank angles that put the slider at a position",
     inputs=(
         Input(
             "slider_position",

@@ -5,6 +5,7 @@ from ..question import Command, Question
 QUESTION = Question(
     __name__,
     3,
+    shows="crank and rod as bars of least mass within the limits of stress",
     command=Command(
         help="""Size crank and rod of one design as rectangular bars of least mass.
 

@@ -77,8 +77,9 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 
 
 def blocks(numbers: Sensitivity) -> list[Block]:
-    """Return the numbers for people: change of each quantity for 1 mm or 1 in more, and in percent per percent."""
+    """Return the numbers for people: change for 1 mm or 1 in more, in percent per percent, and for the tolerances."""
     rows: list[tuple[Text, ...]] = []
+    within: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
     for row in numbers["quantities"]:
         slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
@@ -93,10 +94,16 @@ def blocks(numbers: Sensitivity) -> list[Block]:
             kinks = kinks or isinstance(slope, tuple)
         value = Value(row["value"] / kind.metric.factor, kind, 5)
         rows.append((row["title"], value, Unit(kind), *cells))
+        if any(row[f"{name}_tolerance"] for name in DIMENSIONS):
+            changes = (_derivative(row, f"{name}_tolerance", kind, 4) for name in DIMENSIONS)
+            within.append((row["title"], *changes, Unit(kind)))
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
     title = "Change of each quantity for 1 {unit} more of a dimension (and in % for 1 % more)"
     found: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
+    if within:
+        columns = column("quantity", left=True), *map(column, DIMENSIONS), column("unit", left=True)
+        found += [heading("Change of each quantity for the tolerance of a dimension"), Table(columns, tuple(within))]
     return [*found, note("a / b: at a kink, the derivative below and above the dimension")] if kinks else found
 
 
@@ -110,7 +117,9 @@ def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
     """Return a derivative as text: both where the quantity has a kink."""
 
     def value(number: float | None) -> Value:
-        return Value(None if number is None else number / kind.metric.factor, kind, digits, sign=True, missing="-")
+        return Value(
+            None if number is None else number / kind.metric.factor, kind, digits, sign=True, bare=True, missing="-"
+        )
 
     below, above = row[f"{key}_below"], row[key]
     if below is None or above is None or abs(above - below) <= _SAME * max(abs(above), abs(below)):

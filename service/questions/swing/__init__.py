@@ -7,6 +7,7 @@ from ..question import Command, Question
 
 QUESTION = Question(
     __name__,
+    shows="swing of the crank between two angles, or two slider positions",
     inputs=(
         Input("start", ANGLE, help="Crank angle at which the way forth starts.", option="from", example="30 deg"),
         Input("end", ANGLE, help="Crank angle at which it ends; less is clockwise.", option="to", example="90 deg"),

@@ -31,7 +31,8 @@ class Bands:
     """Deviations of the slider over the cycle, m, each (m,), at crank angles, deg.
 
     least, greatest: exact; None where a linkage within the tolerances does not turn. percentiles: (4, m), `PERCENTS`.
-    shares: (s, m), of the variance, in percent, of the sources named.
+    shares: (s, m), of the variance, in percent, of the sources named. machines: (n,), the greatest error of each random
+    machine that turns, over the counted part of the cycle.
     """
 
     angles: Array
@@ -42,6 +43,7 @@ class Bands:
     percentiles: Array
     sources: tuple[str, ...]
     shares: Array
+    machines: Array
 
 
 def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLES, seed: int = 1) -> Bands:
@@ -52,7 +54,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         exact = extremes(mechanism, linkage, theta)
         least, greatest = exact.least, exact.greatest
     linear = cycle(mechanism, linkage, theta)
-    errors = simulate(mechanism, linkage, theta, samples=samples, seed=seed).errors
+    simulated = simulate(mechanism, linkage, theta, samples=samples, seed=seed)
     there = limits(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),
@@ -60,14 +62,15 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         linear.position_error_rss,
         least,
         greatest,
-        np.nanpercentile(errors, PERCENTS, axis=0),
+        np.nanpercentile(simulated.errors, PERCENTS, axis=0),
         tuple(name for name, given in zip(SOURCES, there, strict=True) if given),
         100.0 * shares(variances(mechanism, linkage, theta))[there],
+        simulated.greatest[np.isfinite(simulated.greatest)],
     )
 
 
 def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: above the bands, below where they come from."""
+    """Return the figure in a system of units: the bands, beside them random machines, below where they come from."""
     unit = LENGTH.face(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
@@ -94,6 +97,11 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     lower.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     lower.set_ylim(0, 100)
     style.draw_stack(lower, bands.angles, bands.shares, bands.sources)
+    counts = style.place(figure, 7.25, 3.75, 1.7, 1.3)
+    style.dress(counts, across=3)
+    counts.hist(unit.factor * bands.machines, bins=40, color="#bdbdbd")
+    counts.set_yticks([])
+    counts.set_xlabel(with_unit("greatest error of a machine", unit.symbol), fontsize=style.SMALL)
     style.legend_beside(upper)
     style.legend_beside(lower, stacked=len(bands.sources))
     return figure

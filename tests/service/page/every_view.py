@@ -70,7 +70,7 @@ def fill(store: Store, results: tuple[Result, Result], tables: dict[str, Any]) -
         View("live", f"/jobs/{claim.job.id}", (".points circle", ".log li")),
         View("no_solution", f"/jobs/{none}", (".outcome",)),
         View("front", f"/jobs/{first}", ("table.designs tbody tr", ".linkage svg", ".marks li")),
-        View("design", f"/jobs/{first}/designs/2", (".curves .chart", ".trade-offs li", ".group tbody tr")),
+        View("design", f"/jobs/{first}/designs/2", (".curves .chart", ".trade-offs .answer", ".group tbody tr")),
         View("designs", f"/jobs/{first}/designs/2?beside=5", (".curves .chart", ".group tbody tr")),
         View("compare", f"/compare?jobs={first},{second}", (".points circle",)),
         View("help", "/help", (".quantities li",)),

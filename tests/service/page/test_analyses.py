@@ -13,8 +13,8 @@ from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched
 
-OWN = ("extremes", "sensitivity", "tolerances")
-"""Topics that the page draws itself."""
+OWN = ("extremes", "sensitivity", "tolerances", "inverse")
+"""Questions with a place of their own."""
 
 
 @pytest.fixture(scope="module")
@@ -30,15 +30,16 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
     panel = page.get_by_role("tabpanel")
     panel.scroll_into_view_if_needed(timeout=30_000)
-    topics = httpx.get(f"{address}{API}/topics", timeout=60.0).json()["topics"]
+    listed = httpx.get(f"{address}{API}/topics", timeout=60.0).json()
+    asked = [*listed["topics"], *listed["questions"]]
     tabs = page.get_by_role("tab")
-    expect(tabs).to_have_text([*(one["title"] for one in topics if one["name"] not in OWN), "Certify"])
+    expect(tabs).to_have_text([*(one["title"] for one in asked if one["name"] not in OWN), "Certify"])
     page.get_by_role("tab", name="Motor", exact=True).click()
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics"
     told = httpx.get(f"{path}/motor", timeout=60.0).json()["told"]
     for block in told:
         for row in block["rows"]:
-            expect(panel.locator("tr", has_text=row[0]).first).to_contain_text(row[1])
+            expect(panel.locator("tr", has_text=row[0]).first).to_contain_text(row[1].replace("-", "−"))
     picture = page.get_by_role("img", name="Figure: Motor")
     expect(picture).to_have_js_property("complete", True, timeout=30_000)
     assert picture.evaluate("image => image.naturalWidth") > 100

@@ -6,14 +6,12 @@ import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
+import { question } from "../design/question.js";
 import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
-import { swinging } from "../design/swinging.js";
 import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
-import { DRAWN, topics } from "../design/topics.js";
 import { goOn, top } from "../design/top.js";
-import { tradeOffs } from "../design/trade_offs.js";
 import { turning } from "../mechanism/turning.js";
 import { wayBack } from "../design/way_back.js";
 import { whatIf } from "../design/what_if.js";
@@ -151,19 +149,21 @@ export async function show(place, { parts, query, signal }) {
       ...kept,
       value: kept?.value?.join(","),
     });
-  const further = turns
-    ? analyses(places.analyses, {
-        job,
-        number,
-        drawn: DRAWN,
-        tab,
-        told: (now) => {
-          tab = now;
-          keepAll();
-        },
-        signal,
-      })
-    : null; // all are of full turns
+  const further = analyses(
+    { sections: places.topics, tabs: places.analyses },
+    {
+      job,
+      number,
+      swings: !turns,
+      tolerances: requirements.tolerances,
+      tab,
+      told: (now) => {
+        tab = now;
+        keepAll();
+      },
+      signal,
+    },
+  );
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
   let refused = false; // whether the last change cannot be had, so that all is of the design itself
@@ -210,7 +210,7 @@ export async function show(place, { parts, query, signal }) {
     charts.show(series);
     legend(places.curves, series);
     return () => {
-      further?.show(changed && kept);
+      further.show(changed && kept);
       showNumbers(places.numbers, {
         designs: asked ? [main, asked, ...others] : moving,
         columns: main.columns,
@@ -255,28 +255,25 @@ export async function show(place, { parts, query, signal }) {
   });
   const drawAll = () => draw()();
   drawAll();
-  tradeOffs(places["trade-offs"], shared);
+  const costs = question(
+    { title: "What it would cost", inputs: [], figure: false },
+    { path: `${path}/trade-offs`, job, signal },
+  );
+  fill(places["trade-offs"], h("h2", {}, "What it would cost"), costs.node);
+  costs.ask();
   wayBack(places["way-back"], {
     path,
     positions: main.curves.slider_position_mm,
     turnTo: (at) => hold(placeOf(main, at, angle.angle), true),
     signal,
   });
-  /** @type {Record<string, Promise<Record<string, unknown>>>} */
-  const asked = {};
-  const analysis = (/** @type {string} */ name) =>
-    (asked[name] ??= get(`${path}/analysis`, { show: name }, signal).then(
-      (found) => found.analysis,
-    ));
-  if (turns) {
-    topics(places.topics, { ...shared, analysis });
-    analysis("extremes")
-      .then(({ extremes }) => {
-        main.exact = endsOf(/** @type {Api.Extremes} */ (extremes), main);
+  if (turns)
+    get(`${path}/analysis`, { show: "extremes" }, signal)
+      .then(({ analysis }) => {
+        main.exact = endsOf(/** @type {Api.Extremes} */ (analysis.extremes), main);
         charts.show(series);
       })
-      .catch(() => {}); // the topic says so
-  } else swinging(places.topics, shared);
+      .catch(() => {}); // the analysis of that name says so
   window.addEventListener(
     "units",
     () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()),
