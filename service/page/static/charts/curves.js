@@ -149,7 +149,16 @@ function chart(panel, turned, resize) {
   });
   const readout = h("span", { class: "readout number" });
   const title = h("span", { class: "title" });
-  const picture = svg("svg", { class: "chart", role: "img" });
+  const picture = svg("svg", {
+    class: "chart",
+    role: "img",
+    onpointerdown: (event) => {
+      lit = true;
+      picture.setPointerCapture(event.pointerId);
+      move(event);
+    },
+    onpointermove: (event) => (lit || event.pointerType === "mouse") && move(event),
+  });
   // Cursor and dots lie over the picture, which is not painted again as they move.
   const cursor = h("div", { class: "cursor" });
   const plot = h("div", { class: "plot" }, picture);
@@ -200,15 +209,6 @@ function chart(panel, turned, resize) {
     return (360 * best) / values.length;
   }
 
-  picture.addEventListener("pointerdown", (event) => {
-    lit = true;
-    picture.setPointerCapture(event.pointerId);
-    move(event);
-  });
-  picture.addEventListener(
-    "pointermove",
-    (event) => (lit || event.pointerType === "mouse") && move(event),
-  );
   for (const end of ["pointerup", "pointercancel"])
     picture.addEventListener(end, () => (lit = false));
 

@@ -2,10 +2,9 @@
 
 import { h } from "../lib/dom.js";
 import { completing } from "./completion.js";
-import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
+import { entries } from "./controls.js";
 import { at, idOf, isTable } from "./path.js";
-import { drawnFrom, entered } from "./typed_field.js";
-import { convert, split, spread } from "../lib/units.js";
+import { spread } from "../lib/units.js";
 
 const ANY = ["any", "any"];
 const MODES = [
@@ -34,60 +33,45 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
       id: idOf(spot.id, any ? "c" : "m"),
       class: "mode",
       "aria-label": any ? null : `${label}: what must hold`,
+      onchange: () => {
+        write(KEYS[select.value]);
+        again();
+      },
     },
     (any ? [ANY, ...MODES] : MODES).map(([value, text]) =>
       h("option", { value, selected: value === mode }, text),
     ),
   );
   const keys = KEYS[mode];
-  const parts = keys.map((key) => split(at(given, [key]), kind));
-  const unit =
-    parts.find((one) => one.number !== "")?.unit ?? (kind ? split(undefined, kind).unit : "");
-  const units =
-    keys.length && kind ? unitSelect(label, kind, unit, false, idOf(spot.id, "u")) : null;
-  const inputs = keys.map((key, place) =>
-    numberInput(
-      idOf(spot.id, key),
-      convert(parts[place].number, parts[place].unit, unit, kind),
-      `${label}, ${SAID[key]}`,
-    ),
-  );
-  inputs.forEach((input, place) => drawnFrom(input, at(given, [keys[place]]), units));
   const ranges = mode === "equals" || mode === "between";
-  /** @param {HTMLInputElement} input */
-  const typedIn = (input) => entered(input, { kind, select: units, range: ranges });
-  const between = () => inputs.map((input) => typedIn(input).ends).find(Boolean);
+  const { inputs, units, read } = entries(
+    keys.map((key) => ({
+      id: idOf(spot.id, key),
+      given: at(given, [key]),
+      title: `${label}, ${SAID[key]}`,
+    })),
+    { label, kind, range: ranges, unitId: idOf(spot.id, "u") },
+    () => write(),
+  );
+  const between = () => inputs.map((_, n) => read(n).ends).find(Boolean);
   /** @param {string[]} names */
   const write = (names = keys) => {
     /** @type {Record<string, unknown>} */
     const found = {};
     const both = between();
     (both && names.length ? KEYS.between : names).forEach((key, place) => {
-      const input = inputs[Math.min(place, inputs.length - 1)];
-      const typed = both
-        ? kind
-          ? both[place]
-          : Number(both[place])
-        : input && (kind ? typedIn(input).value : number(input));
-      found[key] = typed ?? ""; // the service says that it is missing
+      const n = Math.min(place, inputs.length - 1);
+      const typed = both ? (kind ? both[place] : Number(both[place])) : n >= 0 && read(n).value;
+      found[key] = typed === false ? "" : (typed ?? ""); // the service says that it is missing
     });
     form.put(spot.path, names.length ? found : undefined);
   };
-  inputs.forEach((input) => input.addEventListener("input", () => write()));
   const drawn = () => {
     if (!select.isConnected) return; // drawn anew meanwhile
     write();
     here();
   };
   inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(drawn))); // once the next control has the focus
-  units?.addEventListener("change", () => {
-    changeUnit(units, inputs, kind);
-    write();
-  });
-  select.addEventListener("change", () => {
-    write(KEYS[select.value]);
-    again();
-  });
   const [low, high] = inputs.map((input) => completing(input, form, { number: true }));
   const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter(
     (one) => one instanceof HTMLElement,

@@ -16,13 +16,16 @@ export function choices(form) {
   const all = Array.isArray(given) ? given : [];
   const add = h(
     "button",
-    { type: "button", id: "add-choice" },
+    {
+      type: "button",
+      id: "add-choice",
+      onclick: () => {
+        form.put(["choice", all.length], { name: `catalogue ${all.length + 1}`, table: "" });
+        form.redraw(idOf(["choice", all.length, "table"], "c"));
+      },
+    },
     all.length ? "Add another catalogue" : "Add a catalogue",
   );
-  add.addEventListener("click", () => {
-    form.put(["choice", all.length], { name: `catalogue ${all.length + 1}`, table: "" });
-    form.redraw(idOf(["choice", all.length, "table"], "c"));
-  });
   return [all.map((one, place) => row(form, one, place, all)), h("p", { class: "wide" }, add)];
 }
 
@@ -68,6 +71,20 @@ function row(form, one, place, all) {
     class: "points",
     spellcheck: "false",
     placeholder: EXAMPLE,
+    oninput: () => {
+      const now = form.at(path);
+      if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: it still is the table of its file
+      names.length = 0;
+      const {
+        option: _,
+        rows: __,
+        file: ___,
+        ...rest
+      } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
+      const given = { ...rest, table: text.value };
+      form.put(path, given);
+      say(given);
+    },
   });
   text.value = String(at(one, ["table"]) ?? "");
   const made = field(
@@ -79,29 +96,21 @@ function row(form, one, place, all) {
     { wide: true },
   );
   const begun = text.value; // as browsers have its ends of lines
-  text.addEventListener("input", () => {
-    const now = form.at(path);
-    if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: it still is the table of its file
-    names.length = 0;
-    const {
-      option: _,
-      rows: __,
-      file: ___,
-      ...rest
-    } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
-    const given = { ...rest, table: text.value };
-    form.put(path, given);
-    say(given);
-  });
   const drop = h(
     "button",
-    { type: "button", "aria-label": `Remove catalogue ${place + 1}` },
+    {
+      type: "button",
+      "aria-label": `Remove catalogue ${place + 1}`,
+      onclick: () => {
+        form.put(
+          ["choice"],
+          all.length > 1 ? all.filter((_, other) => other !== place) : undefined,
+        );
+        form.redraw("add-choice");
+      },
+    },
     "Remove",
   );
-  drop.addEventListener("click", () => {
-    form.put(["choice"], all.length > 1 ? all.filter((_, other) => other !== place) : undefined);
-    form.redraw("add-choice");
-  });
   return h(
     "fieldset",
     { class: "inner" },

@@ -17,6 +17,13 @@ export function completing(input, form, { number = false } = {}) {
     class: "names",
     "aria-label": "Names of formulas",
     hidden: true,
+    onmousedown: (event) => event.preventDefault(), // the input keeps the focus
+    onclick: (event) => {
+      const place = [...list.children].findIndex(
+        (one) => event.target instanceof Node && one.contains(event.target),
+      );
+      if (place >= 0) take(shown[place]);
+    },
   });
   const node = h("span", { class: number ? "completed" : "completed wide" }, input, list);
   for (const [name, value] of [
@@ -114,13 +121,6 @@ export function completing(input, form, { number = false } = {}) {
   input.addEventListener("blur", close);
   input.addEventListener("names", () => {
     if (typing && active < 0) open();
-  });
-  list.addEventListener("mousedown", (event) => event.preventDefault()); // the input keeps the focus
-  list.addEventListener("click", (event) => {
-    const place = [...list.children].findIndex(
-      (one) => event.target instanceof Node && one.contains(event.target),
-    );
-    if (place >= 0) take(shown[place]);
   });
   node.classList.toggle("long", number && /[A-Za-z_]{3}|\(/.test(input.value));
   return node;

@@ -4,7 +4,7 @@ import { h, numberField } from "../lib/dom.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
-import { drawnFrom, ordered, taken } from "./typed_field.js";
+import { drawnFrom, entered, ordered, taken } from "./typed_field.js";
 import { convert, split, unitsOf, usual } from "../lib/units.js";
 
 /** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
@@ -38,17 +38,40 @@ export function byschema(form, path, options = {}) {
 
 /** Return a field of a number with its unit. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function quantity(form, path, { kind, percent = false, label, why, wide }) {
-  const { number, unit } = split(form.at(path), kind);
-  const input = numberInput(idOf(path, "c"), number);
-  const select = kind ? unitSelect(label, kind, unit, percent, idOf(path, "u")) : null;
-  drawnFrom(input, form.at(path), select);
-  const write = () => form.put(path, taken(input, { kind, percent, select }));
-  input.addEventListener("input", write);
-  select?.addEventListener("change", () => {
-    changeUnit(select, [input], kind);
+  const made = entries(
+    [{ id: idOf(path, "c"), given: form.at(path) }],
+    { label, kind: kind ?? null, percent, unitId: idOf(path, "u") },
+    () => form.put(path, made.read(0).value),
+  );
+  return field(form, path, label, made.controls, why, { wide });
+}
+
+/**
+ * Return inputs of numbers with a unit that they share, and what is typed in them: {inputs, units, controls, read(n)}. ones: of each its
+ * value in the job and its name. range: whether a range may stand for a value. write: called whenever something else is typed.
+ * @param {{ id: string, given: unknown, title?: string }[]} ones
+ * @param {{ label: string, kind: string | null, percent?: boolean, range?: boolean, unitId: string }} looks @param {() => void} write
+ */
+export function entries(ones, { label, kind, percent = false, range = false, unitId }, write) {
+  const parts = ones.map(({ given }) => split(given, kind));
+  const unit = parts.find((one) => one.number !== "")?.unit ?? split(undefined, kind).unit;
+  const units = kind && ones.length ? unitSelect(label, kind, unit, percent, unitId) : null;
+  const inputs = ones.map(({ id, given, title }, n) => {
+    const input = numberInput(id, convert(parts[n].number, parts[n].unit, unit, kind), title);
+    drawnFrom(input, given, units);
+    input.addEventListener("input", () => write());
+    return input;
+  });
+  units?.addEventListener("change", () => {
+    changeUnit(units, inputs, kind);
     write();
   });
-  return field(form, path, label, select ? [input, select] : [input], why, { wide });
+  /** @param {number} n @returns {{ value?: string | number, ends?: string[] }} */
+  const read = (n) => {
+    const found = entered(inputs[n], { kind, percent, select: units, range });
+    return kind || found.ends ? found : { value: number(inputs[n]) };
+  };
+  return { inputs, units, controls: units ? [...inputs, units] : inputs, read };
 }
 
 /** Return a field of one of several words. Left out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
@@ -66,20 +89,22 @@ export function choice(
   if (!known) shown.push([String(given), String(given)]);
   const select = h(
     "select",
-    { id: idOf(path, "c") },
+    {
+      id: idOf(path, "c"),
+      onchange: () => {
+        form.put(
+          path,
+          select.value === ""
+            ? undefined
+            : (options.find((one) => String(one) === select.value) ?? select.value),
+        );
+        changed(select.value);
+      },
+    },
     shown.map(([value, text]) =>
       h("option", { value, selected: value === String(given ?? "") }, text),
     ),
   );
-  select.addEventListener("change", () => {
-    form.put(
-      path,
-      select.value === ""
-        ? undefined
-        : (options.find((one) => String(one) === select.value) ?? select.value),
-    );
-    changed(select.value);
-  });
   return field(form, path, label, [select], why);
 }
 
@@ -125,18 +150,18 @@ export function list(form, path, { label, why, example }) {
     value: text,
     autocomplete: "off",
     placeholder: Array.isArray(example) ? example.join(", ") : null,
-  });
-  input.addEventListener("input", () => {
-    const entries = input.value
-      .split(",")
-      .map((one) => one.trim())
-      .filter(Boolean);
-    form.put(
-      path,
-      entries.length
-        ? entries.map((one) => (Number.isFinite(Number(one)) ? Number(one) : one))
-        : undefined,
-    );
+    oninput: () => {
+      const entries = input.value
+        .split(",")
+        .map((one) => one.trim())
+        .filter(Boolean);
+      form.put(
+        path,
+        entries.length
+          ? entries.map((one) => (Number.isFinite(Number(one)) ? Number(one) : one))
+          : undefined,
+      );
+    },
   });
   return field(form, path, label, [input], `${why}; separated by commas`, { wide: true });
 }

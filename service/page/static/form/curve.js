@@ -22,7 +22,42 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDow
  * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[], steps: boolean }} given
  */
 export function curve({ read, write, titles, centres, steps }) {
-  const picture = svg("svg", { class: "curve-drawn", viewBox: `0 0 ${WIDTH} ${HEIGHT}` });
+  const picture = svg("svg", {
+    class: "curve-drawn",
+    viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+    onpointerdown: (event) => {
+      dragged = numberOf(event);
+      if (dragged < 0) return;
+      event.preventDefault();
+      picture.setPointerCapture(event.pointerId);
+    },
+    onpointermove: (event) => {
+      if (dragged >= 0) move(dragged, valuesAt(event));
+    },
+    ondblclick: (event) => {
+      const points = read();
+      if (numberOf(event) >= 0 || !points || !scales) return;
+      const [at, value] = valuesAt(event);
+      const added = /** @type {Page.Point} */ ([rounded(at, scales.x), rounded(value, scales.y)]);
+      if (points.some(([x]) => x === added[0])) return;
+      write([...points, added].sort(([one], [other]) => one - other));
+      draw();
+    },
+    onkeydown: (event) => {
+      const [n, points] = [numberOf(event), read()];
+      if (n < 0 || !points || !scales) return;
+      const way = WAYS[event.key];
+      if (way) {
+        event.preventDefault();
+        const step = [scales.x, scales.y].map(({ low, high }) => (high - low) / KEYS);
+        move(n, [points[n][0] + way[0] * step[0], points[n][1] + way[1] * step[1]]);
+      } else if (event.key === "Delete" && points.length > 2) {
+        event.preventDefault();
+        write(points.filter((_, other) => other !== n));
+        draw(Math.min(n, points.length - 2));
+      }
+    },
+  });
   const node = h(
     "figure",
     { class: "drawn-points" },
@@ -120,15 +155,6 @@ export function curve({ read, write, titles, centres, steps }) {
   /** @param {Event} event */
   const numberOf = ({ target }) =>
     target instanceof SVGElement && target.dataset.n !== undefined ? Number(target.dataset.n) : -1;
-  picture.addEventListener("pointerdown", (event) => {
-    dragged = numberOf(event);
-    if (dragged < 0) return;
-    event.preventDefault();
-    picture.setPointerCapture(event.pointerId);
-  });
-  picture.addEventListener("pointermove", (event) => {
-    if (dragged >= 0) move(dragged, valuesAt(event));
-  });
   for (const name of /** @type {const} */ (["pointerup", "pointercancel"])) {
     picture.addEventListener(name, () => {
       if (dragged < 0) return;
@@ -137,29 +163,6 @@ export function curve({ read, write, titles, centres, steps }) {
       draw(last);
     });
   }
-  picture.addEventListener("dblclick", (event) => {
-    const points = read();
-    if (numberOf(event) >= 0 || !points || !scales) return;
-    const [at, value] = valuesAt(event);
-    const added = /** @type {Page.Point} */ ([rounded(at, scales.x), rounded(value, scales.y)]);
-    if (points.some(([x]) => x === added[0])) return;
-    write([...points, added].sort(([one], [other]) => one - other));
-    draw();
-  });
-  picture.addEventListener("keydown", (event) => {
-    const [n, points] = [numberOf(event), read()];
-    if (n < 0 || !points || !scales) return;
-    const way = WAYS[event.key];
-    if (way) {
-      event.preventDefault();
-      const step = [scales.x, scales.y].map(({ low, high }) => (high - low) / KEYS);
-      move(n, [points[n][0] + way[0] * step[0], points[n][1] + way[1] * step[1]]);
-    } else if (event.key === "Delete" && points.length > 2) {
-      event.preventDefault();
-      write(points.filter((_, other) => other !== n));
-      draw(Math.min(n, points.length - 2));
-    }
-  });
   return { node, draw: () => draw() };
 }
 

@@ -31,7 +31,12 @@ export function field(
   const explained = explanation(`${id}-why`, label, why);
   const node = h(
     "div",
-    { class: wide ? "field wide" : "field" },
+    {
+      class: wide ? "field wide" : "field",
+      oninput: ({ target }) => {
+        if (target instanceof HTMLElement) target.dataset.touched = "yes";
+      },
+    },
     h(
       "div",
       { class: "field-label" },
@@ -43,9 +48,6 @@ export function field(
     explained?.text,
     error,
   );
-  node.addEventListener("input", ({ target }) => {
-    if (target instanceof HTMLElement) target.dataset.touched = "yes";
-  });
   if (register)
     form.register({
       path,
@@ -78,7 +80,16 @@ export function explanation(id, label, why) {
   if (!sentence) return null;
   const text = h(
     "p",
-    { class: "why", id, hidden: true },
+    {
+      class: "why",
+      id,
+      hidden: true,
+      onkeydown: (event) => {
+        if (event.key !== "Escape") return;
+        button.click();
+        button.focus();
+      },
+    },
     capital(sentence),
     name ? [" ", h("a", { href: `#/help/${name}` }, `More about ${label}`)] : null,
   );
@@ -90,18 +101,13 @@ export function explanation(id, label, why) {
       "aria-label": `What is ${label}?`,
       "aria-expanded": "false",
       "aria-controls": id,
+      onclick: () => {
+        text.hidden = !text.hidden;
+        button.setAttribute("aria-expanded", String(!text.hidden));
+      },
     },
     "?",
   );
-  button.addEventListener("click", () => {
-    text.hidden = !text.hidden;
-    button.setAttribute("aria-expanded", String(!text.hidden));
-  });
-  text.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    button.click();
-    button.focus();
-  });
   return { button, text };
 }
 

@@ -54,13 +54,16 @@ function rows(form, table, first, asked) {
   const what = table === "constraints" ? "requirement" : "objective";
   const add = h(
     "button",
-    { type: "button", id: `add-${what}-formula` },
+    {
+      type: "button",
+      id: `add-${what}-formula`,
+      onclick: () => {
+        if (!keys.includes("")) form.put([table, ""], structuredClone(first));
+        form.redraw(idOf([table, "formula", formulasOf(form, table).indexOf("")], "c"));
+      },
+    },
     `Add a formula as ${what === "objective" ? "an" : "a"} ${what}`,
   );
-  add.addEventListener("click", () => {
-    if (!keys.includes("")) form.put([table, ""], structuredClone(first));
-    form.redraw(idOf([table, "formula", formulasOf(form, table).indexOf("")], "c"));
-  });
   return [
     keys.length
       ? h(
@@ -89,6 +92,23 @@ function row(form, table, key, place, asked, what) {
     autocomplete: "off",
     class: "formula",
     placeholder: "offset - 2 * crank",
+    oninput: () => {
+      delete input.dataset.wrong;
+      delete input.dataset.said;
+      const typed = input.value.trim().replace(/^=\s*/, "");
+      const before = String(spot.path[1]);
+      if (typed === before) return form.put(spot.path, form.at(spot.path));
+      if (/^\d*$/.test(typed) && typed)
+        input.dataset.wrong = "A formula has a name in it, such as crank.";
+      else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
+        input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
+      else {
+        form.rename([table], before, typed, made);
+        spot.path = [table, typed];
+        return;
+      }
+      form.put(spot.path, form.at(spot.path)); // so that it is looked at again
+    },
   });
   const below = h("div", { class: "field-controls asked" });
   let kind = kindAt(form, spot.path);
@@ -122,28 +142,18 @@ function row(form, table, key, place, asked, what) {
     );
     if (focus) byId(focus)?.focus();
   };
-  const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
-  drop.addEventListener("click", () => {
-    form.put(spot.path, undefined);
-    form.redraw(`add-${what}-formula`);
-  });
-  input.addEventListener("input", () => {
-    delete input.dataset.wrong;
-    delete input.dataset.said;
-    const typed = input.value.trim().replace(/^=\s*/, "");
-    const before = String(spot.path[1]);
-    if (typed === before) return form.put(spot.path, form.at(spot.path));
-    if (/^\d*$/.test(typed) && typed)
-      input.dataset.wrong = "A formula has a name in it, such as crank.";
-    else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
-      input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
-    else {
-      form.rename([table], before, typed, made);
-      spot.path = [table, typed];
-      return;
-    }
-    form.put(spot.path, form.at(spot.path)); // so that it is looked at again
-  });
+  const drop = h(
+    "button",
+    {
+      type: "button",
+      "aria-label": `Remove ${label}`,
+      onclick: () => {
+        form.put(spot.path, undefined);
+        form.redraw(`add-${what}-formula`);
+      },
+    },
+    "Remove",
+  );
   const made = field(form, spot.path, label, [completing(input, form)], WHY, { wide: true });
   made.querySelector(".field-controls")?.after(below);
   draw();
@@ -196,16 +206,23 @@ export function namedFormulas(form) {
   const all = Object.entries(form.at(["quantity"]) ?? {})
     .filter(([, part]) => isTable(part) && "formula" in part)
     .map(([name]) => name);
-  const add = h("button", { type: "button", id: "add-named-formula" }, "Add a formula with a name");
-  add.addEventListener("click", () => {
-    const taken = Object.keys(form.at(["quantity"]) ?? {});
-    const name =
-      Array.from({ length: taken.length + 1 }, (_, n) => `formula_${n + 1}`).find(
-        (one) => !taken.includes(one),
-      ) ?? "formula";
-    form.put(["quantity", name], { formula: "" });
-    form.redraw(idOf(["quantity", all.length, "name"], "c"));
-  });
+  const add = h(
+    "button",
+    {
+      type: "button",
+      id: "add-named-formula",
+      onclick: () => {
+        const taken = Object.keys(form.at(["quantity"]) ?? {});
+        const name =
+          Array.from({ length: taken.length + 1 }, (_, n) => `formula_${n + 1}`).find(
+            (one) => !taken.includes(one),
+          ) ?? "formula";
+        form.put(["quantity", name], { formula: "" });
+        form.redraw(idOf(["quantity", all.length, "name"], "c"));
+      },
+    },
+    "Add a formula with a name",
+  );
   return [all.map((name, place) => named(form, name, place)), h("p", { class: "wide" }, add)];
 }
 
@@ -226,21 +243,21 @@ function named(form, name, place) {
     value: name,
     autocomplete: "off",
     spellcheck: "false",
-  });
-  called.addEventListener("change", () => {
-    const typed = called.value.trim();
-    delete called.dataset.wrong;
-    if (!NAME.test(typed))
-      called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
-    else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {}))
-      called.dataset.wrong = `Another formula is called “${typed}” already.`;
-    if (called.dataset.wrong) return form.put(path, form.at(path));
-    if (typed === name) return;
-    setTimeout(() => {
-      // once whatever has the focus next has it, and is not drawn anew before it is clicked
-      callIt(form, name, typed);
-      form.redraw();
-    });
+    onchange: () => {
+      const typed = called.value.trim();
+      delete called.dataset.wrong;
+      if (!NAME.test(typed))
+        called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
+      else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {}))
+        called.dataset.wrong = `Another formula is called “${typed}” already.`;
+      if (called.dataset.wrong) return form.put(path, form.at(path));
+      if (typed === name) return;
+      setTimeout(() => {
+        // once whatever has the focus next has it, and is not drawn anew before it is clicked
+        callIt(form, name, typed);
+        form.redraw();
+      });
+    },
   });
   const input = h("input", {
     type: "text",
@@ -249,10 +266,9 @@ function named(form, name, place) {
     autocomplete: "off",
     class: "formula",
     placeholder: "offset - crank",
+    oninput: ({ currentTarget }) =>
+      form.put([...path, "formula"], currentTarget.value.trim().replace(/^=\s*/, "")),
   });
-  input.addEventListener("input", () =>
-    form.put([...path, "formula"], input.value.trim().replace(/^=\s*/, "")),
-  );
   const made = field(form, [...path, "formula"], "formula", [completing(input, form)], WHY, {
     wide: true,
   });
@@ -263,11 +279,18 @@ function named(form, name, place) {
     () => [...path, "formula"],
     () => {},
   );
-  const drop = h("button", { type: "button", "aria-label": `Remove ${label}` }, "Remove");
-  drop.addEventListener("click", () => {
-    form.put(path, undefined);
-    form.redraw("add-named-formula");
-  });
+  const drop = h(
+    "button",
+    {
+      type: "button",
+      "aria-label": `Remove ${label}`,
+      onclick: () => {
+        form.put(path, undefined);
+        form.redraw("add-named-formula");
+      },
+    },
+    "Remove",
+  );
   return h(
     "fieldset",
     { class: "inner" },

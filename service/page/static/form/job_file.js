@@ -19,13 +19,13 @@ export function jobFile(form, taken) {
     rows: 16,
     spellcheck: "false",
     "aria-describedby": "job-text-error",
+    oninput: () => {
+      clearTimeout(timer);
+      timer = setTimeout(read, WAIT);
+    },
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
-  text.addEventListener("input", () => {
-    clearTimeout(timer);
-    timer = setTimeout(read, WAIT);
-  });
   function read() {
     let job = null;
     let problem = "";
@@ -50,11 +50,11 @@ export function jobFile(form, taken) {
     class: "hidden",
     tabindex: "-1",
     "aria-label": "Job file to import",
-  });
-  file.addEventListener("change", () => {
-    const [given] = file.files ?? [];
-    if (given) load(given);
-    file.value = "";
+    onchange: () => {
+      const [given] = file.files ?? [];
+      if (given) load(given);
+      file.value = "";
+    },
   });
   /** @param {File} given */
   async function load(given) {

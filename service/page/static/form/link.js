@@ -36,16 +36,18 @@ export function link(form, path, label) {
         : "mass";
   const select = h(
     "select",
-    { id: idOf(path, "c") },
+    {
+      id: idOf(path, "c"),
+      onchange: () => {
+        form.put(["variables", ...path], undefined);
+        form.put(path, structuredClone(WAYS[select.value].first));
+        form.redraw();
+      },
+    },
     Object.entries(WAYS).map(([key, { title }]) =>
       h("option", { value: key, selected: key === way }, title),
     ),
   );
-  select.addEventListener("change", () => {
-    form.put(["variables", ...path], undefined);
-    form.put(path, structuredClone(WAYS[select.value].first));
-    form.redraw();
-  });
   const { keys, more } = WAYS[way];
   /** @param {string[]} names */
   const fields = (names) =>

@@ -19,16 +19,19 @@ export function loads(form) {
   const all = Array.isArray(given) ? given : [];
   const add = h(
     "button",
-    { type: "button", id: "add-load" },
+    {
+      type: "button",
+      id: "add-load",
+      onclick: () => {
+        form.put(
+          ["load"],
+          [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)],
+        );
+        form.redraw(idOf(["load", all.length, "kind"]));
+      },
+    },
     all.length ? "Add another load" : "Add a load",
   );
-  add.addEventListener("click", () => {
-    form.put(
-      ["load"],
-      [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)],
-    );
-    form.redraw(idOf(["load", all.length, "kind"]));
-  });
   return [all.map((load, place) => one(form, load, place, all)), h("p", {}, add)];
 }
 
@@ -40,21 +43,30 @@ function one(form, load, place, all) {
   const known = every.filter((one) => one === kind || fits(form, one));
   const select = h(
     "select",
-    { id: idOf([...path, "kind"]) },
+    {
+      id: idOf([...path, "kind"]),
+      onchange: () => {
+        form.put(
+          path,
+          structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first),
+        );
+        form.redraw();
+      },
+    },
     known.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)),
   );
-  select.addEventListener("change", () => {
-    form.put(
-      path,
-      structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first),
-    );
-    form.redraw();
-  });
-  const drop = h("button", { type: "button", "aria-label": `Remove load ${place + 1}` }, "Remove");
-  drop.addEventListener("click", () => {
-    form.put(["load"], all.length > 1 ? all.filter((_, other) => other !== place) : undefined);
-    form.redraw("add-load");
-  });
+  const drop = h(
+    "button",
+    {
+      type: "button",
+      "aria-label": `Remove load ${place + 1}`,
+      onclick: () => {
+        form.put(["load"], all.length > 1 ? all.filter((_, other) => other !== place) : undefined);
+        form.redraw("add-load");
+      },
+    },
+    "Remove",
+  );
   const { properties, required } = kind.table;
   const columns = Object.entries(properties ?? {})
     .filter(([, node]) => node.type === "array")

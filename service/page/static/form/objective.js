@@ -1,11 +1,10 @@
 /** Objective on a quantity: a check box, and whether to minimise, to maximise, or to come near a value. */
 
 import { h } from "../lib/dom.js";
-import { changeUnit, number, numberInput, unitSelect } from "./controls.js";
+import { entries } from "./controls.js";
 import { explanation, field } from "./field.js";
 import { at, idOf } from "./path.js";
-import { drawnFrom, taken } from "./typed_field.js";
-import { kindOf, split } from "../lib/units.js";
+import { kindOf } from "../lib/units.js";
 
 const SENSES = [
   ["minimise", "minimise"],
@@ -18,13 +17,17 @@ export function objective(form, quantity) {
   const path = ["objectives", quantity.name];
   const given = form.at(path);
   const kind = kindOf(quantity.unit);
-  const box = h("input", { type: "checkbox", id: idOf(path, "c"), checked: given !== undefined });
-  box.addEventListener("change", () => {
-    form.put(
-      path,
-      box.checked ? (quantity.better === "high" ? "maximise" : "minimise") : undefined,
-    );
-    form.redraw();
+  const box = h("input", {
+    type: "checkbox",
+    id: idOf(path, "c"),
+    checked: given !== undefined,
+    onchange: () => {
+      form.put(
+        path,
+        box.checked ? (quantity.better === "high" ? "maximise" : "minimise") : undefined,
+      );
+      form.redraw();
+    },
   });
   const ask = explanation(idOf(path, "why"), quantity.title, {
     sentence: quantity.sentence,
@@ -61,33 +64,28 @@ export function wanted(form, spot, { title, kind, again }) {
       : String(given).replace("imize", "imise");
   const select = h(
     "select",
-    { id: idOf(spot.id, "s"), "aria-label": `${title}: what is wanted` },
+    {
+      id: idOf(spot.id, "s"),
+      "aria-label": `${title}: what is wanted`,
+      onchange: () => {
+        form.put(spot.path, select.value === "target" ? { target: "" } : select.value);
+        again();
+      },
+    },
     SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)),
   );
-  if (sense !== "target") {
-    select.addEventListener("change", () => {
-      form.put(spot.path, select.value === "target" ? { target: "" } : select.value);
-      again();
-    });
-    return [select];
-  }
+  if (sense !== "target") return [select];
   const target = at(given, ["target"]);
-  const { number: value, unit } = split(target === "" ? undefined : target, kind);
-  const input = numberInput(idOf(spot.id, "t"), value, `${title}: value to come near to`);
-  const units = kind ? unitSelect(title, kind, unit, false, idOf(spot.id, "u")) : null;
-  drawnFrom(input, target === "" ? undefined : target, units);
-  const write = () =>
-    form.put(spot.path, {
-      target: (units ? taken(input, { kind, select: units }) : number(input)) ?? "",
-    });
-  input.addEventListener("input", write);
-  units?.addEventListener("change", () => {
-    changeUnit(units, [input], kind);
-    write();
-  });
-  select.addEventListener("change", () => {
-    form.put(spot.path, select.value);
-    again();
-  });
-  return units ? [select, input, units] : [select, input];
+  const made = entries(
+    [
+      {
+        id: idOf(spot.id, "t"),
+        given: target === "" ? undefined : target,
+        title: `${title}: value to come near to`,
+      },
+    ],
+    { label: title, kind, unitId: idOf(spot.id, "u") },
+    () => form.put(spot.path, { target: made.read(0).value ?? "" }),
+  );
+  return [select, ...made.controls];
 }

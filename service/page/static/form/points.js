@@ -51,6 +51,10 @@ export function points(
     class: "points",
     spellcheck: "false",
     value: rows.join("\n"),
+    oninput: () => {
+      write();
+      picture.draw();
+    },
   });
   const drawn = text.value;
   const chosen = () => units.map((one) => one?.value ?? "");
@@ -105,10 +109,6 @@ export function points(
         units[0]?.value ?? "",
       ),
   });
-  text.addEventListener("input", () => {
-    write();
-    picture.draw();
-  });
   units.forEach((select, n) =>
     select?.addEventListener("change", () => {
       const { rows: before } = pointsOf(text.value, []);
@@ -162,23 +162,23 @@ function fromFile(form, path, columns) {
     class: "hidden",
     tabindex: "-1",
     "aria-label": "File of points",
-  });
-  input.addEventListener("change", async () => {
-    const [file] = input.files ?? [];
-    input.value = "";
-    if (!file) return;
-    const job = structuredClone(form.job);
-    const own = Object.entries(form.at(path) ?? {}).filter(
-      ([key]) => key !== "source" && !columns.some((one) => one.key === key),
-    );
-    put(job, path, { ...Object.fromEntries(own), file: file.name });
-    try {
-      const found = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
-      form.put(path, at(found.job, path)); // the units of its columns say which table it is
-      form.redraw();
-    } catch (problem) {
-      sayProblem(problem);
-    }
+    onchange: async () => {
+      const [file] = input.files ?? [];
+      input.value = "";
+      if (!file) return;
+      const job = structuredClone(form.job);
+      const own = Object.entries(form.at(path) ?? {}).filter(
+        ([key]) => key !== "source" && !columns.some((one) => one.key === key),
+      );
+      put(job, path, { ...Object.fromEntries(own), file: file.name });
+      try {
+        const found = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
+        form.put(path, at(found.job, path)); // the units of its columns say which table it is
+        form.redraw();
+      } catch (problem) {
+        sayProblem(problem);
+      }
+    },
   });
   const said = form.at([...path, "source"]);
   return h(

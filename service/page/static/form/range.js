@@ -38,7 +38,14 @@ export function range(
   const numbers = parts.map((one) => convert(one.number, one.unit, unit, kind));
   const select = h(
     "select",
-    { id: idOf(path, "c"), class: "mode" },
+    {
+      id: idOf(path, "c"),
+      class: "mode",
+      onchange: () => {
+        write(/** @type {Mode} */ (select.value));
+        form.redraw();
+      },
+    },
     MODES.filter(([value]) => fixed || value !== "fixed").map(([value, text]) =>
       h("option", { value, selected: value === mode }, text),
     ),
@@ -113,10 +120,6 @@ export function range(
         .join(", ");
     changeUnit(units, list ? [] : inputs, kind);
     write();
-  });
-  select.addEventListener("change", () => {
-    write(/** @type {Mode} */ (select.value));
-    form.redraw();
   });
   const [first, second, third] = inputs;
   /** @param {string} text */

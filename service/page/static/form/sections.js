@@ -245,17 +245,19 @@ function adding(form) {
   const left = form.judging().filter((one) => !taken.has(one.name) && fits(form, one));
   const select = h(
     "select",
-    { id: "add-requirement" },
+    {
+      id: "add-requirement",
+      onchange: () => {
+        if (!select.value) return;
+        const name = select.value;
+        const side = form.quantity(name).better === "high" ? "min" : "max";
+        form.put(["constraints", name], { [side]: "" });
+        form.redraw(`f-constraints-${name}-${side}`);
+      },
+    },
     h("option", { value: "" }, "choose a quantity …"),
     left.map(({ name, title }) => h("option", { value: name }, title)),
   );
-  select.addEventListener("change", () => {
-    if (!select.value) return;
-    const name = select.value;
-    const side = form.quantity(name).better === "high" ? "min" : "max";
-    form.put(["constraints", name], { [side]: "" });
-    form.redraw(`f-constraints-${name}-${side}`);
-  });
   return h(
     "p",
     { class: "row" },

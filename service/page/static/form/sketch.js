@@ -10,7 +10,16 @@ const TURN = 4000; // ms of a turn
 export function sketch(signal) {
   const place = h("div", { class: "sketch" });
   const caption = h("p", { class: "quiet" });
-  const button = h("button", { type: "button", hidden: true });
+  const button = h("button", {
+    type: "button",
+    hidden: true,
+    onclick: () => {
+      moving = !moving;
+      label();
+      if (moving) start();
+      else drawn.turn(angle);
+    },
+  });
   const node = h("div", {}, place, h("div", { class: "row" }, caption, button));
   const drawn = drawing(place, { label: "A linkage within the ranges" });
   let moving = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -24,12 +33,6 @@ export function sketch(signal) {
   let share = 0; // of its ways forth and back
   const label = () => (button.textContent = moving ? "Pause" : "Move");
   label();
-  button.addEventListener("click", () => {
-    moving = !moving;
-    label();
-    if (moving) start();
-    else drawn.turn(angle);
-  });
   /** @param {number} now */
   function step(now) {
     if (!moving || !shown || signal.aborted) {

@@ -1,19 +1,10 @@
 /** Crank speed and direction: a speed, whose sign is the direction, or a time and a direction. */
 
 import { h } from "../lib/dom.js";
-import {
-  byschema,
-  changeUnit,
-  choice,
-  number as counted,
-  numberInput,
-  unitSelect,
-} from "./controls.js";
+import { byschema, choice, entries } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { points } from "./points.js";
-import { taken } from "./typed_field.js";
-import { split } from "../lib/units.js";
 
 const TABLE = ["mechanism"];
 const DIRECTION = [...TABLE, "direction"];
@@ -71,13 +62,17 @@ export function speed(form) {
   const path = [...TABLE, key];
   const kind = KINDS[key];
   const signed = key === "speed"; // its sign is the direction
-  const { number, unit } = split(form.at(path), kind);
-  const backwards = signed ? number.startsWith("-") : form.at(DIRECTION) === "clockwise";
-  const input = numberInput(idOf(path, "c"), signed ? number.replace(/^[+-]/, "") : number);
-  const units = kind ? unitSelect(label, kind, unit, false, idOf(path, "u")) : null;
+  const given = form.at(path);
+  const backwards = signed ? /^\s*-/.test(String(given)) : form.at(DIRECTION) === "clockwise";
+  const made = entries(
+    [{ id: idOf(path, "c"), given: signed ? unsigned(given) : given }],
+    { label, kind, unitId: idOf(path, "u") },
+    write,
+  );
+  const [input] = made.inputs;
   const way = h(
     "select",
-    { id: idOf([...TABLE, "speed"], "way") },
+    { id: idOf([...TABLE, "speed"], "way"), onchange: write },
     [
       ["", "counter-clockwise"],
       ["-", "clockwise"],
@@ -85,23 +80,17 @@ export function speed(form) {
       h("option", { value: sign, selected: (sign === "-") === backwards }, text),
     ),
   );
-  const write = () => {
+  function write() {
     const typed = input.value.trim();
     if (/^[-−]/.test(typed)) {
       way.value = "-"; // as typed, so that nothing is turned round twice
       input.value = typed.slice(1);
     }
-    const found = kind ? taken(input, { kind, select: units }) : counted(input);
+    const found = made.read(0).value;
     form.put(DIRECTION, !signed && way.value ? "clockwise" : undefined);
     if (signed) form.put(path, found && way.value + found);
     else form.put(path, found ?? ""); // so that this one is reported as missing
-  };
-  input.addEventListener("input", write);
-  way.addEventListener("change", write);
-  units?.addEventListener("change", () => {
-    changeUnit(units, [input], kind);
-    write();
-  });
+  }
   const stated = choice(
     {
       ...form,
@@ -119,7 +108,7 @@ export function speed(form) {
   );
   return [
     stated,
-    field(form, path, label, units ? [input, units] : [input], WHY[key]),
+    field(form, path, label, made.controls, WHY[key]),
     field(
       form,
       [...TABLE, "speed", "direction"],
@@ -129,6 +118,12 @@ export function speed(form) {
       { register: false },
     ),
   ];
+}
+
+/** Return a speed of a job without its sign; a plain number is in rad/s. @param {unknown} given */
+function unsigned(given) {
+  if (typeof given === "number") return `${Math.abs(given)} rad/s`;
+  return typeof given === "string" ? given.replace(/^\s*[+-]/, "") : given;
 }
 
 /** State the speed by another key, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */

@@ -151,14 +151,17 @@ export function held(form, path, label) {
   if (form.at(varies) === undefined) {
     const button = h(
       "button",
-      { type: "button", "aria-label": `Let ${label} vary` },
+      {
+        type: "button",
+        "aria-label": `Let ${label} vary`,
+        onclick: () => {
+          const value = form.at(path);
+          form.put(varies, around(typeof value === "number" ? value : String(value ?? "")));
+          form.redraw();
+        },
+      },
       "Let it vary",
     );
-    button.addEventListener("click", () => {
-      const value = form.at(path);
-      form.put(varies, around(typeof value === "number" ? value : String(value ?? "")));
-      form.redraw();
-    });
     own?.querySelector(".field-controls")?.append(button);
     return [own];
   }

@@ -16,17 +16,19 @@ export function varying(form) {
   const left = numbers(form).filter(({ name }) => !taken.has(name) && !beside(form, name));
   const select = h(
     "select",
-    { id: "add-varying" },
+    {
+      id: "add-varying",
+      onchange: () => {
+        const chosen = left.find(({ name }) => name === select.value);
+        if (!chosen) return;
+        const path = ["variables", ...chosen.name.split(".")];
+        form.put(path, around(chosen.value));
+        form.redraw(idOf(path, 0));
+      },
+    },
     h("option", { value: "" }, "choose a number …"),
     left.map(({ name }) => h("option", { value: name }, titleOf(name))),
   );
-  select.addEventListener("change", () => {
-    const chosen = left.find(({ name }) => name === select.value);
-    if (!chosen) return;
-    const path = ["variables", ...chosen.name.split(".")];
-    form.put(path, around(chosen.value));
-    form.redraw(idOf(path, 0));
-  });
   return [
     all.length
       ? h(

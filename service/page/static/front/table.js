@@ -14,7 +14,7 @@ const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 /** Return {place, draw(), mark(), numbers()} of the table of an explorer. @param {Explorer} explorer */
 export function designTable(explorer) {
   const head = h("thead");
-  const body = h("tbody");
+  const body = h("tbody", { onkeydown: keys });
   const caption = h("caption", { class: "hidden" }, "The chosen designs");
   const pages = h("nav", { class: "row pages", "aria-label": "Pages of designs" });
   const place = h(
@@ -23,7 +23,6 @@ export function designTable(explorer) {
     h("div", { class: "scroll" }, h("table", { class: "designs" }, caption, head, body)),
     pages,
   );
-  body.addEventListener("keydown", keys);
 
   function rows() {
     const { chosen, data, limits } = explorer;

@@ -124,7 +124,13 @@ function confirmed(question, consequence, yes) {
   return new Promise((answer) => {
     const dialog = h(
       "dialog",
-      { "aria-labelledby": "question" },
+      {
+        "aria-labelledby": "question",
+        onclose: () => {
+          dialog.remove();
+          answer(dialog.returnValue === "yes");
+        },
+      },
       h("h2", { id: "question" }, question),
       h("p", {}, consequence),
       h(
@@ -134,10 +140,6 @@ function confirmed(question, consequence, yes) {
         h("button", { value: "yes", class: "danger" }, yes),
       ),
     );
-    dialog.addEventListener("close", () => {
-      dialog.remove();
-      answer(dialog.returnValue === "yes");
-    });
     document.body.append(dialog);
     dialog.showModal();
   });

@@ -19,6 +19,15 @@ export function menu(title, content, { name, opened, act } = {}) {
         if (node.open) document.addEventListener("pointerdown", elsewhere);
         else document.removeEventListener("pointerdown", elsewhere);
       },
+      onkeydown: (event) => {
+        if (event.key !== "Escape" || !node.open) return;
+        node.open = false;
+        summary.focus();
+      },
+      onfocusout: (event) => {
+        if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget))
+          node.open = false;
+      },
     },
     summary,
     content,
@@ -28,14 +37,5 @@ export function menu(title, content, { name, opened, act } = {}) {
     if (!(event.target instanceof Node && node.isConnected && node.contains(event.target)))
       node.open = false;
   };
-  node.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || !node.open) return;
-    node.open = false;
-    summary.focus();
-  });
-  node.addEventListener("focusout", (event) => {
-    if (event.relatedTarget instanceof Node && !node.contains(event.relatedTarget))
-      node.open = false;
-  });
   return node;
 }

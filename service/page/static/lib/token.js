@@ -24,7 +24,13 @@ function ask() {
     const wrong = h("p", { class: "error", role: "alert" });
     const dialog = h(
       "dialog",
-      { "aria-labelledby": "locked" },
+      {
+        "aria-labelledby": "locked",
+        onclose: () => {
+          dialog.remove();
+          told(dialog.returnValue === "in");
+        },
+      },
       h("h2", { id: "locked" }, "This service asks for its token"),
       h(
         "p",
@@ -56,10 +62,6 @@ function ask() {
           ? "That was not the token of this service."
           : "The service does not answer; try again when it is back.";
     }
-    dialog.addEventListener("close", () => {
-      dialog.remove();
-      told(dialog.returnValue === "in");
-    });
     document.body.append(dialog);
     dialog.showModal();
   });

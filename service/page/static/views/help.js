@@ -69,6 +69,10 @@ function overview(place, quantities, sought) {
     value: sought,
     autocomplete: "off",
     placeholder: "torque, error, stroke …",
+    oninput: () => {
+      draw();
+      keep({ search: search.value });
+    },
   });
   const draw = () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -89,10 +93,6 @@ function overview(place, quantities, sought) {
       ? `${found.length} of ${quantities.length} quantities`
       : "No quantity has these words.";
   };
-  search.addEventListener("input", () => {
-    draw();
-    keep({ search: search.value });
-  });
   fill(
     place,
     h(

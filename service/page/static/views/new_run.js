@@ -284,25 +284,44 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
 
   const from = h(
     "select",
-    { id: "preset" },
+    {
+      id: "preset",
+      onchange: () => {
+        const chosen = shipped.find(({ name }) => name === from.value);
+        if (!chosen) return;
+        take(begin(chosen.job, `preset ${chosen.name}`));
+        from.value = "";
+      },
+    },
     h("option", { value: "" }, "choose …"),
     shipped.map(({ name, title: text }) => h("option", { value: name }, text)),
   );
-  from.addEventListener("change", () => {
-    const chosen = shipped.find(({ name }) => name === from.value);
-    if (!chosen) return;
-    take(begin(chosen.job, `preset ${chosen.name}`));
-    from.value = "";
-  });
-  const over = h("button", { type: "button" }, "Start over");
-  over.addEventListener("click", () => {
-    take(begin(firstJob(system()), ""));
-    keepDraft(null);
-  });
+  const over = h(
+    "button",
+    {
+      type: "button",
+      onclick: () => {
+        take(begin(firstJob(system()), ""));
+        keepDraft(null);
+      },
+    },
+    "Start over",
+  );
 
   const whole = h(
     "form",
-    { class: "new-run", novalidate: true, autocomplete: "off", onsubmit: submit },
+    {
+      class: "new-run",
+      novalidate: true,
+      autocomplete: "off",
+      onsubmit: submit,
+      ondragover: (event) => event.preventDefault(),
+      ondrop: (event) => {
+        event.preventDefault();
+        const [given] = event.dataTransfer?.files ?? [];
+        if (given) file.load(given);
+      },
+    },
     h(
       "div",
       { class: "head" },
@@ -333,12 +352,6 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   );
   whole.addEventListener("value-of", (event) => {
     if (event instanceof CustomEvent) event.detail.value = valueOf(form, event.detail.name);
-  });
-  whole.addEventListener("dragover", (event) => event.preventDefault());
-  whole.addEventListener("drop", (event) => {
-    event.preventDefault();
-    const [given] = event.dataTransfer?.files ?? [];
-    if (given) file.load(given);
   });
   fill(place, whole);
   redraw(null);
