@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -30,11 +29,8 @@ from slidercrank.service.render.formatting import plain_blocks
 from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
 from tests.doors.scripts import JOBS
-from tests.service import sized
+from tests.service.machines import SORTS, Random, linkage_of, some_design, some_problem
 
-Random = np.random.Generator
-SORTS = ("turn", "engine", "cylinders", "loose", "sized", "swing")
-"""A press with friction, four strokes (720 deg), two cylinders along a speed profile, a motor, bars, a swing."""
 METRIC = "|".join(
     sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
 )
@@ -50,38 +46,6 @@ OTHER_KEYS = {
     "greatest_pressure_bar": ("greatest_pressure_psi", _PSI),
 }
 """Key and factor in inches of what has no unit of one kind alone."""
-
-
-def some_problem(sort: str, random: Random) -> sc.Problem:
-    """Return the problem of a machine with a speed, masses and forces of its own."""
-    tables = sized.TABLES if sort == "sized" else tomllib.loads((JOBS / f"{sort}.toml").read_text(encoding="utf-8"))
-    tables = {key: table for key, table in json.loads(json.dumps(tables)).items() if key != "constraints"}
-    tables["variables"].pop("mechanism.slider.mass", None)
-    mechanism = tables["mechanism"]
-    if sort != "swing":
-        speed, unit = mechanism["speed"].split()
-        mechanism["speed"] = f"{float(speed) * random.uniform(0.3, 1.3):.6g} {unit}"
-    mechanism["slider"] = {**mechanism["slider"], "mass": f"{random.uniform(0.1, 9.0):.6g} kg"}
-    mechanism["counterweight"] = {"mass": f"{random.uniform(0.1, 3.0):.4g} kg", "radius": "41.3 mm"}
-    if random.random() < 0.3 and sort in ("turn", "loose"):
-        mechanism["slider"] |= {"touch_distance": "7.3 mm", "dwell_distance": "1.7 mm"}
-    return sc.problem(tables, require_feasible=False)
-
-
-def linkage_of(problem: sc.Problem, design: Sequence[float]) -> sc.Linkage:
-    return sc.Linkage(design[0], design[1], design[2], problem.mechanism.nominal.branch)
-
-
-def some_design(problem: sc.Problem, random: Random) -> list[float]:
-    """Return a design in the ranges that turns fully, or swings."""
-    for _ in range(1000):
-        design = [float(random.uniform(ends.lower, ends.upper)) for ends in problem.ranges.values()]
-        linkage = linkage_of(problem, design)
-        if problem.motion is None and linkage.rotates_fully and linkage.least_transmission_angle > 0.2:
-            return design
-        if problem.motion is not None and np.isfinite(problem.evaluate([design])).all():
-            return design
-    raise AssertionError("no design of the ranges turns or swings")
 
 
 def some_inputs(question: Question, problem: sc.Problem, design: Sequence[float], random: Random) -> dict[str, Any]:

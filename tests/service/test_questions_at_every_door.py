@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Iterator
 from importlib import metadata
 from inspect import cleandoc
@@ -18,19 +17,24 @@ from typer.testing import CliRunner
 import slidercrank as sc
 from slidercrank.model.errors import InputError, NotFound
 from slidercrank.optimise.problem import questions as announced
+from slidercrank.service.agents.call import Call
+from slidercrank.service.agents.questions import ask
+from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
 from slidercrank.service.questions.inputs import Input
+from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.doors.scripts import JOBS
 from tests.service import fronts, sized
 from tests.service.alike import assert_same
 from tests.service.api.fixed_front import API, Solved, served
+from tests.service.machines import some_design, some_tables
 
-MACHINES = (JOBS / "loose.toml", JOBS / "cylinders.toml")
+MACHINES = ("loose", "cylinders", "engine")
 """Between them they have every topic but the press, whose distance is given."""
 TOUCH, RATED = 0.0125, 55.5
 SIZING = tuple(name for name, command in COMMANDS.items() if command.sizes)
@@ -50,15 +54,11 @@ def client(address: str) -> Iterator[Client]:
         yield client
 
 
-def some_design(problem: sc.Problem, seed: int) -> list[float]:
-    """Return a design in the ranges that turns fully; its lengths are the same numbers in mm, m and as text."""
-    random = np.random.default_rng(seed)
-    while True:
-        lengths = [round(8e3 * random.uniform(ends.lower, ends.upper)) / 8.0 for ends in problem.ranges.values()]
-        design = [length / 1e3 for length in lengths]
-        linkage = sc.Linkage(design[0], design[1], design[2])
-        if linkage.rotates_fully and linkage.least_transmission_angle > 0.3:
-            return design
+def by_agent(place: Path, **inputs: Any) -> dict[str, Any]:
+    """Return what the tool `ask` of agents answers, as they get it."""
+    call = Call(place, frozenset(), lambda: False, lambda _: None)
+    found: dict[str, Any] = json_ready(Tool("ask", ask).answer(call, inputs).record)
+    return found
 
 
 def told(problem: sc.Problem, question: str, design: list[float], given: dict[str, Any]) -> dict[str, Any] | str:
@@ -70,23 +70,24 @@ def told(problem: sc.Problem, question: str, design: list[float], given: dict[st
 
 
 @pytest.mark.slow
-def test_every_topic_has_the_same_answer_in_python_on_the_command_line_and_in_the_api(
-    address: str, tmp_path: Path
-) -> None:
-    answered: set[str] = set()
-    for job in MACHINES:
-        tables = tomllib.loads(job.read_text(encoding="utf-8"))
-        tables.pop("clearance", None)  # its simulation takes 15 s
+def test_every_topic_of_random_machines_has_the_same_answer_at_every_door(address: str, tmp_path: Path) -> None:
+    random, answered = np.random.default_rng(5), set[str]()
+    for sort in MACHINES:
+        tables = some_tables(sort, random)
         file = tmp_path / "job.json"
         file.write_text(json.dumps(tables), encoding="utf-8")
         problem = sc.load_job(file, require_feasible=False)
-        design = some_design(problem, 5)
+        design = some_design(problem, random)
         sizes = {name: f"{1e3 * length!r} mm" for name, length in zip(("crank", "rod", "offset"), design, strict=True)}
         options = [word for name, text in sizes.items() for word in (f"--{name}", text)]
-        inputs = ["--touch-distance", f"{TOUCH!r} m", "--rated-torque", f"{RATED!r} N m"]
-        done = CliRunner().invoke(command_line, ["analyse", str(file), *options, "--show", "all", *inputs, "--json"])
+        options += ["--touch-distance", f"{TOUCH!r} m", "--rated-torque", f"{RATED!r} N m", "--show", "all", "--json"]
+        done = CliRunner().invoke(command_line, ["analyse", str(file), *options])
         assert done.exit_code == 0, done.stderr
         printed = json.loads(done.stdout)
+        press = {"touch_distance": f"{TOUCH!r} m", "rated_torque": f"{RATED!r} N m"}
+        agent = by_agent(tmp_path, job=tables, **sizes, topics=["all"], inputs=press)
+        assert list(agent) == list(printed)
+        assert agent == printed
         sent = httpx.post(f"{address}{API}/analyse", json={"job": tables, **sizes, "show": ["all"]}, timeout=60.0)
         for name in TOPICS:
             given = {"touch_distance": TOUCH, "rated_torque": f"{RATED!r} N m"} if name == "press" else {}
@@ -99,6 +100,10 @@ def test_every_topic_has_the_same_answer_in_python_on_the_command_line_and_in_th
                 assert answer == printed[name]
             if not given:
                 assert f"{name}: {answer}" in sent.json()["notes"] or answer == sent.json()["analysis"][name]
+        inches = CliRunner().invoke(command_line, ["analyse", str(file), *options, "--units", "inch"])
+        assert by_agent(tmp_path, job=tables, **sizes, topics=["all"], inputs=press, units="inch") == json.loads(
+            inches.stdout
+        )
     assert answered == TOPICS.keys() - {"clearance"}
 
 
@@ -134,6 +139,10 @@ def test_random_motions_have_the_same_crank_angles_at_every_door(solved: Solved,
         options = [f"--slider-position={position!r} mm", f"--slider-velocity={velocity!r} m/s"]
         printed = printed_by("inverse", solved, row, *options, f"--slider-acceleration={acceleration!r} m/s^2")
         assert_same(printed, expected)
+        texts = {"slider_velocity": f"{velocity!r} m/s", "slider_acceleration": f"{acceleration!r} m/s^2"}
+        inputs = {"slider_position": f"{position!r} mm", **texts}
+        place = {"run": solved.folder.name, "design": row + 1}
+        assert by_agent(solved.folder.parent, **place, topics=["inverse"], inputs=inputs) == printed
         rates_in_api = {"velocity_m_s": velocity, "acceleration_m_s2": acceleration}
         assert client.inverse(solved.number, row + 1, position_mm=position, **rates_in_api) == expected
 
@@ -148,7 +157,11 @@ def test_random_swings_have_the_same_numbers_at_every_door(solved: Solved, clien
         inputs = {"start": f"{start!r} deg", "end": float(np.radians(end)), "law": law, "duration": duration}
         assert_same(front.ask("swing", row, **inputs), expected)
         options = [f"--from={start!r} deg", f"--to={end!r} deg", "--law", law, f"--duration={duration!r} s"]
-        assert_same(printed_by("swing", solved, row, *options), expected)
+        printed = printed_by("swing", solved, row, *options)
+        assert_same(printed, expected)
+        texts = {"start": f"{start!r} deg", "end": f"{end!r} deg", "law": law, "duration": f"{duration!r} s"}
+        place = {"run": solved.folder.name, "design": row + 1}
+        assert by_agent(solved.folder.parent, **place, topics=["swing"], inputs=texts) == printed
         assert client.swing(solved.number, row + 1, **given) == expected
 
 
@@ -187,6 +200,12 @@ def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, 
         done = CliRunner().invoke(command_line, [COMMANDS[name].called or name, str(job), *options, "--json"])
         assert done.exit_code == 0, done.stderr
         assert json.loads(done.stdout) == expected
+        words = {one.name: text for one, text in texts.items()}
+        size = {
+            of: f"{length!r} m"
+            for of, length in zip(("crank", "rod", "offset"), front.dimensions[row].tolist(), strict=True)
+        }
+        assert by_agent(job.parent, job=sized.TABLES, **size, topics=[name], inputs=words) == expected
 
 
 @pytest.mark.parametrize(
