@@ -14,6 +14,7 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+import slidercrank
 from benchmarks.moving_picture import visits
 from slidercrank.service.cli import app
 from tests.optimise.problems import shipped_front
@@ -111,6 +112,15 @@ def test_the_front_of_the_first_page_is_that_of_the_feeder(root: Path) -> None:
     assert f"\n {front.knee() + 1} " in text
     for sentence in front.trade_offs(front.knee())[:2]:
         assert sentence in text
+
+
+def test_bibtex_says_what_the_citation_file_says(root: Path) -> None:
+    (entry,) = blocks(page(root, "start.md"), "bibtex")
+    fields = dict(re.findall(r"(\w+) += \{+([^}]+)\}+", entry))
+    cited = (root / "CITATION.cff").read_text(encoding="utf-8")
+    stated = dict(re.findall(r"^(?:  - )?(\w+): (\S.*)$", cited, re.MULTILINE))
+    assert fields == {"author": stated["name"], **{key: stated[key] for key in ("title", "version", "license")}}
+    assert fields["version"] == slidercrank.__version__
 
 
 def test_the_readme_quotes_a_trade_off_of_the_knee(readme: str) -> None:

@@ -1,4 +1,4 @@
-"""docs/loads.md: every example is a job, `check` reports of it what the page says, and every kind of load is there."""
+"""docs/loads.md: every example is a job, `check` reports what the page says, and no kind of load is missing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SWINGS = {"torque_per_angle"}
 
 
 def job_of(example: Example) -> dict[str, Any]:
-    """Return the whole job with an example: of tables that both have, the keys of both count, but for a swing's."""
+    """Return the whole job with an example; tables that both have are merged, except for a swing."""
     whole = whole_job()
     job = {**whole, **example.tables}
     for name, table in example.tables.items():

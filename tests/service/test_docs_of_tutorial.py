@@ -23,7 +23,7 @@ def blocks() -> Iterator[tuple[str, str]]:
 
 
 def changed(job: str, part: str) -> str:
-    """Return a job with the tables of a part in place of its own of the same head, or at its end."""
+    """Return a job with the tables of a part replacing its own with the same heading, or appended."""
     for table in re.split(r"^(?=\[)", part, flags=re.MULTILINE)[1:]:
         head = re.escape(table.splitlines()[0])
         verbatim = table.replace("\\", r"\\")
