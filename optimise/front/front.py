@@ -153,11 +153,9 @@ class ParetoFront:
         of, `front.ask("round", 3, to="0.5 mm")`; all others of a design: `front.ask("press", front.knee())`. Raises
         `InputError` for an unknown question, row or input, and for what the front does not have.
         """
-        if subject_of(question) == "front":
+        if row is None or subject_of(question) == "front":
             answer: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
             return answer
-        if row is None:
-            raise InputError(f"the question {question} is of one design; got none; name the row of one of the front")
         return self.part(row).ask(question, self.dimensions[row], **inputs)
 
     @property

@@ -297,8 +297,11 @@ class Problem:
         warn_of_lengths(self, sizes, self._greatest)
         return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
 
-    def ask(self, question: str, design: ArrayLike, /, **inputs: object) -> dict[str, Any]:
+    def ask(self, question: str, design: ArrayLike | None = None, /, **inputs: object) -> dict[str, Any]:
         """Return the answer of a design (3 + k,) to a question, as JSON has it: `problem.ask("press", design)`.
+
+        Without a design a question to the job: `problem.ask("sweep", over="offset=0 mm..20 mm:5", of="peak_torque")`
+        gives `rows` as the command prints them; lengths that the job leaves open are given besides, `crank="40 mm"`.
 
         question: a topic of `analyse --show`, "inverse", "swing", "allocate", "counterweight" (the command `balance`),
         "sections", or one that another installed package has. inputs: those that it takes, in SI or as text with a
@@ -306,6 +309,9 @@ class Problem:
         `InputError` for an unknown question or input, for what the design does not have, and as `analyse` does.
         """
         self._require_chosen()
+        if design is None:
+            told: dict[str, Any] = question_to("job", question).answer_of(self, None, inputs)
+            return told
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)

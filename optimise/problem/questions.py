@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 GROUP = "slidercrank.questions"
 _REMEDIES = {
-    "design": "name one: problem.ask(question, design) or front.ask(question, row)",
     "front": "write it like front.ask(question)",
     "job": "write it like problem.ask(question)",
     "runs": "compare them by the command",
@@ -84,5 +83,9 @@ def subject_of(name: str) -> str:
 def question_to(subject: str, name: str) -> Any:
     """Return a question to a design, a front or a job. Raises `InputError` as `subject_of`, and for one to others."""
     if (of := subject_of(name)) != subject:
+        if of == "design":
+            raise InputError(
+                f"the question {name} is of one design; got none; name one, as a row of a front or lengths"
+            )
         raise InputError(f"the question {name} is asked of a {of}; got a {subject}; {_REMEDIES[of]}")
     return questions()[name]

@@ -112,6 +112,17 @@ class Design:
             raise InputError(f"a design is of a run or of a job; got {got}; give one of them")
         return self._of_job(call) if self.run is None else self._of_run(call, self.run)
 
+    def stated(self, call: Call) -> Problem:
+        """Return the problem of the job. Raises `InputError` for none."""
+        if self.job is None or self.run is not None:
+            raise InputError("a question to a job needs one; got none; give a job, without a run")
+        return call.problem(tables_of(self.job, self.files), feasible=False)
+
+    @property
+    def lengths(self) -> dict[str, str]:
+        """Lengths that are given."""
+        return {name: length for name in DIMENSIONS if (length := getattr(self, name)) is not None}
+
     def front(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
         """Return the folder of the run, its front and the row of the design. Raises `InputError` for no run."""
         if self.run is None or self.job is not None:
@@ -126,11 +137,8 @@ class Design:
         return folder, front_of(call.problem_of_run(folder, result), result), row
 
     def _require_no_lengths(self) -> None:
-        besides = [name for name in DIMENSIONS if getattr(self, name) is not None]
-        if besides:
-            raise InputError(
-                f"a design of a run has its dimensions; got run and {besides[0]}; leave out one of the two"
-            )
+        for name in self.lengths:
+            raise InputError(f"a design of a run has its dimensions; got run and {name}; leave out one of the two")
 
     def _of_run(self, call: Call, run: str) -> Machine:
         self._require_no_lengths()
@@ -142,8 +150,7 @@ class Design:
 
     def _of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
-        lengths = {name: getattr(self, name) for name in DIMENSIONS}
-        return Machine(problem.mechanism.nominal, Dimensions(**lengths).linkage(problem, str), problem)
+        return Machine(problem.mechanism.nominal, Dimensions(**self.lengths).linkage(problem, str), problem)
 
 
 @dataclass(frozen=True)

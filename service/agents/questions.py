@@ -179,14 +179,20 @@ def _alone(name: str, of: Machine, question: Asked) -> Answer:
 
 
 def _wider(call: Call, subject: Design, question: Asked, of: WiderQuestion) -> Answer:
-    """Ask the front of a run."""
+    """Ask the front of a run, or a job."""
     from ..render.terminal import print_blocks
 
-    folder, front, row = subject.front(call)
-    with ending_own(front.problem):
-        answer = of.ask(front, question.inputs, row=row, watch=Watch(cancelled=call.cancelled))
+    place, row, inputs = dict[str, Any](), None, question.inputs
+    if of.subject == "job":
+        asked: Any = subject.stated(call)
+        problem, inputs = asked, subject.lengths | inputs
+    else:
+        folder, asked, row = subject.front(call)
+        problem, place = asked.problem, {"run": path_text(folder)}
+    with ending_own(problem):
+        answer = of.ask(asked, inputs, row=row, watch=Watch(cancelled=call.cancelled))
     text = text_of(lambda screen: print_blocks(screen, answer.blocks, question.units))
-    record = {"run": path_text(folder)} | answer.record(question.units)
+    record = place | answer.record(question.units)
     return Answer(record, "\n".join((text, *answer.notes)), is_error=not answer.met)
 
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
 from ..questions.discovery import WIDER
+from ..questions.plain_input import Plain
 from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
@@ -24,7 +25,9 @@ LONGEST_PROOF = 20.0
 """s, for the search of a proof."""
 QUESTION = WIDER["certify"]
 _LIMITED = [
-    replace(one, usual="10.0", limits={**one.limits, "le": LONGEST_PROOF}) if one.name == "seconds" else one
+    replace(one, usual="10.0", limits={**one.limits, "le": LONGEST_PROOF})
+    if isinstance(one, Plain) and one.name == "seconds"
+    else one
     for one in QUESTION.inputs
 ]
 Given = Annotated[dict[str, Any], inputs_in_address(_LIMITED, map(parameter_of, _LIMITED))]

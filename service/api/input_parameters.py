@@ -33,7 +33,7 @@ def parameter_of(one: Input, before: str = "") -> inspect.Parameter:
 
 def body_of(question: WiderQuestion, name: str, **more: Any) -> Any:
     """Return the model of a body with the inputs of a question. more: further fields, as `create_model` takes them."""
-    fields: dict[str, Any] = {one.name: _field(one) for one in question.inputs}
+    fields: dict[str, Any] = {one.name: _field(one) for one in question.inputs if isinstance(one, Plain)}
     told = f"What `{question.name}` is asked with. {question.help.partition(chr(10))[0]}"
     return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=told, **fields, **more)
 

@@ -36,6 +36,8 @@ class Designs:
         of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
         """
         if question in WIDER:
+            if not WIDER[question].path:
+                raise InputError(f"a service is not asked {question}; use the command of that name, or problem.ask")
             return self._ask_wider(WIDER[question], number, design, inputs)
         if design is None:
             raise InputError(f"{question} is of one design; got none; give its number")

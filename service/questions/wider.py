@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ...model.errors import InputError
 from ..runs.result import json_ready
-from .inputs import read_inputs
-from .plain_input import Plain
+from .inputs import Input, read_inputs
 
 if TYPE_CHECKING:
     from ...objectives.kinds import System
@@ -56,7 +55,7 @@ class WiderQuestion:
     package: str
     subject: Literal["front", "runs", "job"]
     help: str
-    inputs: tuple[Plain, ...]
+    inputs: tuple[Input, ...]
     row: Literal["none", "may", "must"] = "none"
     place: int = 0
     path: str = ""

@@ -35,7 +35,6 @@ FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 UNDECLARED = {
     "compare": ("runs", "service/designs/comparing.py service/commands/compare.py service/api/comparison.py"),
-    "sweep": ("job", "service/commands/sweep.py"),
     "check": ("job", "service/preview/preview.py service/commands/job.py service/api/preview.py"),
     "what-if": ("design", "service/designs/variation.py service/api/what_if.py"),
     "trade-offs": ("design", "service/designs/trade_offs.py"),
@@ -90,7 +89,8 @@ def _doors(name: str, paths: list[str], commands: set[str], drawn: bool) -> Iter
         yield "API"
     if name in announced() or hasattr(ParetoFront, name) or hasattr(sc.Problem, name):
         yield "Python"
-    if name in QUESTIONS or hasattr(Client, form.replace("-", "_")):
+    served = name in QUESTIONS and bool(getattr(QUESTIONS[name], "path", True))
+    if served or hasattr(Client, form.replace("-", "_")):
         yield "client"
     if name in TOPICS or name in COMMANDS or name in SHOWN or drawn:
         yield "page"

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.sweep import Axis, sweep
-from slidercrank.service.commands.sweep import parse_axis
+from slidercrank.service.questions.sweep.analysis import parse_axis
 from slidercrank.service.questions.sweep.figure import sweep_figure, sweep_grid
 from tests.model.cases import SMOOTH
 from tests.service.conftest import Command

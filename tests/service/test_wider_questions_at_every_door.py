@@ -235,12 +235,87 @@ def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: D
         done = other.command("certify", None, {})
         assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {sentence}")
         force = float(np.median(other.front.values[:, 0]))
-        assert_alike(other, "wish", None, {"at": {"peak_actuator_force": f"{force!r} N"}})
+        given = {"at": {"peak_actuator_force": f"{force!r} N"}}
+        wished = other.front.ask("wish", **given)
+        assert_same(other.printed("wish", None, given), wished)
+        reached = other.client.ask(other.number, None, "wish", **given)["objectives"][0]["reached"]
+        assert reached == pytest.approx(wished["objectives"][0]["reached"], rel=1e-3)  # a flat valley
     else:
         assert assert_alike(other, "certify", None, {})["infeasible"]
         (sentence,) = set(other.refusals("wish", None, {"at": {"time_ratio": "1.2"}}))
         assert sentence.startswith("a wish needs the designs of a front; got none: ")
         assert other.command("wish", None, {"at": {"time_ratio": "1.2"}}).exit_code == 3
+
+
+def test_a_random_sweep_has_the_same_rows_in_python_by_the_command_and_for_agents(tmp_path: Path) -> None:
+    random = np.random.default_rng(35)
+    job = tmp_path / "job.toml"
+    job.write_text(fronts.JOB, encoding="utf-8")
+    problem = sc.load_job(job)
+    for units in ("metric", "inch"):
+        crank, offset = float(random.uniform(30, 60)), float(random.uniform(0, 30))
+        given = {
+            "over": [f"rod={crank!r} mm..300 mm:7", "speed=100 rpm, -30 rpm"],
+            "of": ["stroke,peak_torque", "crank + rod"],
+        }
+        lengths = {"crank": f"{crank!r} mm", "offset": f"{offset!r} mm"}
+        done = CliRunner().invoke(
+            command_line, ["sweep", str(job), *options("sweep", given | lengths), "--json", "--units", units]
+        )
+        assert done.exit_code == 0, done.stderr
+        agent = ASK.answer(
+            call_in(tmp_path), {"job": fronts.JOB, **lengths, "topics": ["sweep"], "inputs": given, "units": units}
+        )
+        assert json_ready(agent.record) == {"rows": json.loads(done.stdout)}
+        assert len(agent.record["rows"]) == 14
+        if units == "metric":
+            in_si = {"crank": crank / 1e3, "offset": offset / 1e3}
+            assert_same(problem.ask("sweep", **given, **in_si), json_ready(agent.record))
+            stroke = problem.ask("sweep", over=given["over"][0], of="stroke", **lengths)["rows"][-1]["stroke_mm"]
+            assert stroke == pytest.approx(1e3 * float(sc.Linkage(crank / 1e3, 0.3, offset / 1e3).stroke))
+
+
+SWEEPS: list[tuple[dict[str, Any], str]] = [
+    ({"over": "rod=80 mm, 90 mm"}, 'sweep needs of; got none; give it like "crank + rod"'),
+    (
+        {"over": "rod=80 mm, 90 mm", "of": "stroke", "to": 1},
+        "sweep is asked with over, of, crank, rod, offset; got to; ",
+    ),
+    ({"over": "mass=1 kg, 2 kg", "of": "stroke"}, "a sweep is over crank, rod, offset, speed; got 'mass'; "),
+    ({"over": "rod=80", "of": "stroke"}, 'over rod must be a length with its unit; got "80"; write it like '),
+    ({"over": "rod=80 mm, 90 mm", "of": "stroke"}, 'crank is needed; write it like crank "40 mm"'),
+    (
+        {"over": "rod=80 mm, 90 mm", "of": "stroke", "rod": "3 mm"},
+        "rod is swept by over and given by rod; leave out one",
+    ),
+    (
+        {"over": "rod=80 mm, 90 mm", "of": "stroke", "crank": "3 kg"},
+        'crank must be a length; got "3 kg", which is a mass',
+    ),
+    (
+        {"over": ["rod=80 mm", "crank=3 mm", "offset=3 mm"], "of": "stroke"},
+        "a sweep is over one or two parameters; got 3",
+    ),
+]
+
+
+@pytest.mark.parametrize(("given", "sentence"), SWEEPS)
+def test_a_wrong_sweep_is_refused_in_the_same_sentence(tmp_path: Path, given: dict[str, Any], sentence: str) -> None:
+    problem = sc.problem(tomllib.loads(fronts.JOB))
+    said = refusal(lambda: problem.ask("sweep", **given))
+    assert said.startswith(sentence)
+    asked = {"job": fronts.JOB, "topics": ["sweep"], "inputs": given}
+    assert refusal(lambda: ASK.answer(call_in(tmp_path), asked)) == said
+
+
+def test_a_job_that_swings_is_swept_at_no_door(tmp_path: Path) -> None:
+    given = {"over": "rod=80 mm, 90 mm", "of": "stroke"}
+    done = CliRunner().invoke(command_line, ["sweep", "runs/support.toml", *options("sweep", given)])
+    said = refusal(lambda: sc.load_job("runs/support.toml").ask("sweep", **given))
+    assert said == refusal(
+        lambda: ASK.answer(call_in(tmp_path), {"job": "support", "topics": ["sweep"], "inputs": given})
+    )
+    assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {said}")
 
 
 WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
@@ -288,8 +363,15 @@ def test_what_is_wrong_is_refused_in_the_same_sentence(
 def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
     front = doors.front
     assert refusal(lambda: front.ask("press")) == (
-        "the question press is of one design; got none; name the row of one of the front"
+        "the question press is of one design; got none; name one, as a row of a front or lengths"
     )
+    assert refusal(lambda: front.problem.ask("certify")) == (
+        "the question certify is asked of a front; got a job; write it like front.ask(question)"
+    )
+    assert refusal(lambda: front.ask("sweep", of="stroke")) == (
+        "the question sweep is asked of a job; got a front; write it like problem.ask(question)"
+    )
+    assert refusal(lambda: doors.client.ask(doors.number, None, "sweep")).startswith("a service is not asked sweep; ")
     assert refusal(lambda: front.problem.ask("certify", front.dimensions[0])) == (
         "the question certify is asked of a front; got a design; write it like front.ask(question)"
     )

@@ -19,7 +19,7 @@ from ...designs.selection import value_of
 from ...designs.shown_units import record_in
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, joined, recorded, words
 from ..design_table import title_and_unit
-from ..plain_input import texts_by_name
+from ..plain_input import Plain, texts_by_name
 from ..wider import Answer, Watch
 from . import QUESTION
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ....optimise.front.rounding_search import Stage
     from ....optimise.problem.problem import Problem
 
-_TO, _ALLOW, _ = QUESTION.inputs
+_TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, Plain) and one.example)
 
 
 def answer(front: ParetoFront, *, row: int, watch: Watch, words: Mapping[str, str], **inputs: Any) -> Answer:

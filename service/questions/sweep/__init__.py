@@ -1,1 +1,37 @@
-"""Quantities over one or two parameters: text and figure."""
+"""Quantities over one or two parameters: numbers, text and figure."""
+
+from ....objectives.kinds import LENGTH
+from ..inputs import Input
+from ..plain_input import Plain
+from ..wider import WiderQuestion
+
+QUESTION = WiderQuestion(
+    package=__name__,
+    subject="job",
+    place=1005,
+    help="""Sweep quantities over one or two of crank, rod, offset and speed.
+
+    Where the linkage does not turn there is no value, nor of torques and forces where friction locks it; the reason
+    is given instead.""",
+    inputs=(
+        Plain(
+            "over",
+            type=list[str],
+            help='What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.',
+            example='"offset=0 mm..20 mm:5"',
+            metavar="RANGE",
+            required=True,
+        ),
+        Plain(
+            "of",
+            type=list[str],
+            help='Quantity or formula to compute, such as peak_torque or "crank + rod". Repeatable.',
+            example='"crank + rod"',
+            metavar="QUANTITY",
+            required=True,
+        ),
+        Input("crank", LENGTH, help='Crank, such as "40 mm", unless JOB fixes it.', sign="positive"),
+        Input("rod", LENGTH, help="Connecting rod, likewise.", sign="positive"),
+        Input("offset", LENGTH, help='Offset of the slider line, such as "-20 mm", likewise.'),
+    ),
+)

@@ -1,0 +1,127 @@
+"""Quantities of a job over one or two of crank, rod, offset and speed: a row for each point."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+
+from ....model.errors import InputError
+from ....model.linkage.dimensions import DIMENSIONS
+from ....objectives.keys import kind_of_key
+from ....objectives.kinds import ANGULAR_SPEED, LENGTH
+from ....objectives.tables.sweep import Axis, Parameter, sweep
+from ....objectives.units import closest
+from ...designs.selection import value_of
+from ...designs.shown_units import rows_in
+from ...designs.turning import require_turning
+from ...render.blocks import Table, Value, column, recorded
+from ...runs.result import Row, rows_of
+from ...text.options import length_option
+from ..wider import Answer
+
+if TYPE_CHECKING:
+    from ....objectives.quantity import Quantity
+    from ....optimise.problem.problem import Problem
+
+_FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
+_LIST = re.compile(r"\s*(\w+)\s*=\s*([^.:]*(?:\.\d[^.:]*)*)", re.ASCII | re.DOTALL)
+MOST_VALUES = 10_000
+
+
+def answer(
+    problem: Problem, *, words: Mapping[str, str], over: Sequence[str], of: Sequence[str], **given: Any
+) -> Answer:
+    """Return the rows of the sweep. given: lengths that are not swept, m.
+
+    over: one or two of "offset=0 mm..20 mm:5". of: names and formulas, several in a text between commas. Raises
+    `InputError`, also for a problem that swings.
+    """
+    require_turning(problem.motion, "sweep")
+    axes = [parse_axis(text, words["over"]) for text in over]
+    if len(axes) > 2:
+        raise InputError(f"a sweep is over one or two parameters; got {len(axes)} {words['over']}; leave out some")
+    swept = {axis.parameter for axis in axes}
+    for name in DIMENSIONS:
+        if name in swept and given.get(name) is not None:
+            raise InputError(f"{name} is swept by {words['over']} and given by {words[name]}; leave out one of the two")
+    usual = dict.fromkeys(swept, 1.0) | given
+    lengths = [
+        usual[name] if name in usual else length_option(name, None, problem, words.__getitem__) for name in DIMENSIONS
+    ]
+    names = [name for text in of for name in _names(text)]
+    quantities = [problem.quantity(name) for name in names]
+    table = sweep(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
+    rows = rows_of(table.to_dict("list"))
+    stuck = [row["reason"] for row in rows if row["reason"]]
+    return Answer(
+        record=lambda units: {"rows": rows_in(rows, units)},
+        blocks=[_table(rows, axes, quantities)],
+        notes=[f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}"] if stuck else [],
+        found=(table, axes, quantities),
+    )
+
+
+def _names(text: str) -> list[str]:
+    """Return the parts between commas; those within brackets are of a function."""
+    parts, depth = [""], 0
+    for sign in text:
+        depth += (sign == "(") - (sign == ")")
+        if sign == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += sign
+    return [part.strip() for part in parts if part.strip()]
+
+
+def _table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity]) -> Table:
+    """Return a row for each point, from metric rows."""
+
+    def value(row: Row, of: Quantity) -> Value:
+        number = row[of.field]
+        assert isinstance(number, float)
+        return Value(number / of.unit.factor, of.kind, missing="-")
+
+    keys = [f"{axis.parameter}_{'rpm' if axis.parameter == 'speed' else 'mm'}" for axis in axes]
+    heads = [column(axis.parameter, kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
+    heads += [column(of.title, of.kind) for of in quantities]
+    cells = ((*(recorded(row, key) for key in keys), *(value(row, of) for of in quantities)) for row in rows)
+    return Table(tuple(heads), tuple(cells))
+
+
+def parse_axis(text: str, word: str = "over") -> Axis:
+    """Return the axis of a sweep from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`.
+
+    word: what the door calls it.
+    """
+    known, asked = get_args(Parameter), text.partition("=")[0].strip()
+    example = f'{word} "offset=0 mm..20 mm:5" or {word} "offset=0 mm, 10 mm, 20 mm"'
+    if "=" in text and asked and asked not in known:
+        near = closest(asked, known)
+        meant = f"; did you mean {near}?" if near else ""
+        raise InputError(
+            f"a sweep is over {', '.join(known)}; got {asked!r}{meant}; another number of a job is set by analyse "
+            "--set, or varies in [variables]"
+        )
+    match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
+    if match is None and (several is None or not several[2].strip()):
+        raise InputError(
+            f"a sweep is a name, its ends with units and the number of values; got {text!r}; write it like {example}"
+        )
+    name = (match or several)[1]  # type: ignore[index]
+    kind = ANGULAR_SPEED if name == "speed" else LENGTH
+    sign = "positive" if name in ("crank", "rod") else "any"
+    option = f"{word} {name}"
+    if match is None:
+        assert several is not None
+        values = [value_of(option, part, kind, sign=sign) for part in several[2].split(",")]
+        return Axis(name, tuple(values))  # type: ignore[arg-type]
+    first, last = (value_of(option, part, kind, sign=sign) for part in match.group(2, 3))
+    count = int(match[4])
+    if not 2 <= count <= MOST_VALUES or first == last:
+        raise InputError(
+            f"a range has two different ends and 2 to {MOST_VALUES:,} values; got {text!r}; write it like {example}"
+        )
+    return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]
