@@ -17,7 +17,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, face
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
-from ...render.blocks import Block, NamedNumber, Value, number_list, recorded
+from ...render.blocks import Block, NamedNumber, number_list, recorded
 from ..answers import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=face("bar", 1e-5))
@@ -89,8 +89,8 @@ def blocks(numbers: Indicator) -> list[Block]:
         shown: list[NamedNumber] = [
             ("least volume", recorded(one, "least_volume_cm3"), ""),
             ("greatest volume", recorded(one, "greatest_volume_cm3"), ""),
-            ("least pressure", Value(one["least_pressure_bar"] / _BAR, _GAS_PRESSURE), ""),
-            ("greatest pressure", Value(one["greatest_pressure_bar"] / _BAR, _GAS_PRESSURE), ""),
+            ("least pressure", recorded(one, "least_pressure_bar"), ""),
+            ("greatest pressure", recorded(one, "greatest_pressure_bar"), ""),
         ]
         valve, falls = "a valve opens", "the pressure falls from its peak"
         for name, event in (("expansion", valve), ("compression", valve), ("burning", falls)):
