@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -10,6 +11,8 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ..designs.comparing import compared_in_words
 from ..jobs.differences import differences
+from ..render.blocks import Block, Sentence, Table, column, heading, sentence
+from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .models import LARGEST, PLAIN_DIGITS, UnitsAsked
 from .problems import problem_responses
@@ -30,11 +33,12 @@ class DifferenceModel(BaseModel):
 
 
 class ComparisonModel(BaseModel):
-    """Runs against each other. sentences: who is better where; only of runs with designs."""
+    """Runs against each other. sentences: who is better where; only of runs with designs. blocks: all of it."""
 
     jobs: list[int] = Field(examples=[[1, 2]])
     differences: list[DifferenceModel]
     sentences: list[str] = Field(examples=[["run 2 matches or beats every design of run 1, to 2 % of each range"]])
+    blocks: list[AnswerBlock]
 
 
 @router.get("/comparison")
@@ -51,8 +55,23 @@ def compare_runs(
     results = [(f"run {number}", fronts.of(number).result) for number in job]
     solved = [(name, result) for name, result in results if result.designs]
     names, known = [name for name, _ in solved], [result for _, result in solved]
+    sentences = compared_in_words(names, known, units) if len(solved) > 1 else []
     return ComparisonModel(
         jobs=job,
         differences=[DifferenceModel(place=place, values=list(values)) for place, values in places],
-        sentences=compared_in_words(names, known, units) if len(solved) > 1 else [],
+        sentences=sentences,
+        blocks=answer_blocks([*map(_spoken, sentences), *_differing(job, places)]),
     )
+
+
+def _spoken(words: str) -> Sentence:
+    return sentence("{text}", text=f"{words[:1].upper()}{words[1:]}.")
+
+
+def _differing(jobs: Sequence[int], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:
+    """Return what differs between jobs, as a table."""
+    title = heading("What differs between the jobs")
+    if not places:
+        return [title, sentence("The jobs are the same but for their names.")]
+    columns = (column(head, left=True) for head in ("Place in the job", *(f"run {number}" for number in jobs)))
+    return [title, Table(tuple(columns), tuple((place, *(one or "–" for one in values)) for place, values in places))]

@@ -65,3 +65,15 @@ export function besideOf(query, number) {
     .filter((one) => Number.isInteger(one) && one > 0 && one !== number)
     .slice(0, 2);
 }
+
+/**
+ * Return the objectives of all designs of a front, as rows by column.
+ * @param {string} job @param {Api.Front} front @param {AbortSignal} signal @returns {Promise<Api.Row[]>}
+ */
+export async function loadFront(job, front, signal) {
+  const keys = front.objectives.map(({ column }) => column);
+  const { values, count } = await get(`jobs/${job}/columns`, { columns: keys.join(",") }, signal);
+  return Array.from({ length: count }, (_, n) =>
+    Object.fromEntries(keys.map((key) => [key, values[key][n]])),
+  );
+}

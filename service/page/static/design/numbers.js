@@ -3,11 +3,11 @@
 import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { text, unitOf, withUnit } from "../lib/numbers.js";
-import { groupsOf } from "./groups.js";
 import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
 
+const QUALITY = ["status", "residual"];
 const MET = 1e-8; // of a bound: designs meet their constraints to this
 
 /**
@@ -271,4 +271,22 @@ function quality(designs, columns) {
         ),
       ),
   );
+}
+
+/**
+ * Return [{title, columns}]: every column of a design but those of constraints and of the optimum, by the groups that the service gives.
+ * @param {Api.Column[]} columns
+ */
+function groupsOf(columns) {
+  /** @type {Map<string, { title: string, columns: Api.Column[] }>} */
+  const groups = new Map();
+  for (const column of columns
+    .filter(({ key }) => !key.startsWith("slack_") && !QUALITY.includes(key))
+    .sort((a, b) => (a.group_place ?? 0) - (b.group_place ?? 0))) {
+    const title = column.group ?? "Further quantities";
+    const { columns: found } = groups.get(title) ?? { columns: /** @type {Api.Column[]} */ ([]) };
+    found.push(column);
+    groups.set(title, { title, columns: found });
+  }
+  return [...groups.values()];
 }

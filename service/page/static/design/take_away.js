@@ -4,7 +4,7 @@ import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { say } from "../lib/notices.js";
-import { printWhole } from "../lib/printing.js";
+import { printWhole } from "../lib/near.js";
 import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [

@@ -1,10 +1,11 @@
-/** Bounds of a requirement: exactly, at least, at most, or between two; each a value or a formula. */
+/** A requirement on a quantity, and its bounds: exactly, at least, at most, or between two; each a value or a formula. */
 
 import { h } from "../lib/dom.js";
 import { completing } from "./completion.js";
 import { entries } from "./controls.js";
+import { field, replace } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { spread } from "../lib/units.js";
+import { kindOf, spread } from "../lib/units.js";
 
 const ANY = ["any", "any"];
 const MODES = [
@@ -17,6 +18,30 @@ const MODES = [
 const KEYS = { any: [], equals: ["equals"], min: ["min"], max: ["max"], between: ["min", "max"] };
 /** What is asked of a bound, in words. @type {Record<string, string>} */
 export const SAID = { equals: "exactly", min: "at least", max: "at most" };
+
+/**
+ * Return the field of the requirement on a quantity {name, title, unit, sentence}.
+ * @param {Form.Whole} form @param {Api.Quantity} quantity @param {{ label?: string, place?: Form.Path }} given
+ */
+export function requirement(
+  form,
+  quantity,
+  { label = quantity.title, place = ["constraints"] } = {},
+) {
+  const path = [...place, quantity.name];
+  const here = () => replace(form, made, () => requirement(form, quantity, { label, place }));
+  const { controls, mode } = bounds(
+    form,
+    { path, id: path },
+    { label, kind: kindOf(quantity.unit), any: true, again: () => form.redraw(), here },
+  );
+  const made = field(form, path, label, controls, {
+    sentence: quantity.sentence,
+    name: quantity.name,
+  });
+  made.classList.toggle("two", mode === "between");
+  return made;
+}
 
 /**
  * Return the controls of the bounds that stand at a spot, and what they are: {mode, keys, inputs, controls}.

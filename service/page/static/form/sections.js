@@ -10,7 +10,7 @@ import { fits, motion, swings } from "./motion.js";
 import { objective } from "./objective.js";
 import { isTable } from "./path.js";
 import { range } from "./range.js";
-import { requirement } from "./requirement.js";
+import { requirement } from "./bounds.js";
 import { words } from "./schema.js";
 import { speedProfile } from "./speed.js";
 import { solving } from "./solving.js";

@@ -1,8 +1,8 @@
 /** Parts of a view that are computed once they come near, or before they are printed. */
 
-import { beforePrinting } from "./printing.js";
-
 const NEAR = "300px"; // before it is in sight
+/** What completes the parts that are in a view. @type {Set<() => Promise<unknown>>} */
+const parts = new Set();
 
 /**
  * Begin once, when a place comes near.
@@ -17,6 +17,14 @@ export function whenNear(place, begin, signal) {
     { rootMargin: NEAR },
   );
   watcher.observe(place);
-  beforePrinting(once, signal);
-  signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
+  parts.add(once);
+  signal.addEventListener("abort", () => [watcher.disconnect(), parts.delete(once)], {
+    once: true,
+  });
+}
+
+/** Complete the view, then print it. */
+export async function printWhole() {
+  await Promise.all([...parts].map((complete) => complete()));
+  window.print();
 }

@@ -4,12 +4,12 @@ import { badge } from "../jobs/states.js";
 import { go, keep, link } from "../lib/address.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { isConstant } from "../lib/constant.js";
+import { blocks } from "../lib/blocks.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
 import { sentenceOf } from "../lib/refusals.js";
-import { capital } from "../lib/words.js";
-import { headedRow, headsOf, numberCell, table as tableOf } from "../lib/table.js";
+import { headedRow, numberCell, table as tableOf } from "../lib/table.js";
 
 export const title = "Compare runs";
 
@@ -58,13 +58,7 @@ export async function show(place, { query, signal }) {
   const axes = { x: chosen("x", shared[0]), y: chosen("y", shared[1]) };
   const picture = h("div");
   const readout = h("p", { class: "quiet readout" });
-  const words = h("ul");
-  const differences = h("div", {
-    class: "scroll",
-    tabindex: 0,
-    role: "region",
-    "aria-label": "Table of differences",
-  });
+  const words = h("div");
   const table = h("div", { class: "scroll" });
 
   /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
@@ -209,30 +203,9 @@ export async function show(place, { query, signal }) {
         { job: runs.map(({ job }) => String(job.id)), units: apiSystem() },
         signal,
       );
-      fill(
-        words,
-        found.sentences.map((sentence) => h("li", {}, `${capital(sentence)}.`)),
-      );
-      if (!found.differences.length)
-        return fill(
-          differences,
-          h("p", { class: "quiet" }, "The jobs are the same but for their names."),
-        );
-      fill(
-        differences,
-        tableOf(
-          "What differs between the jobs",
-          headsOf(["Place in the job", ...runs.map(({ job }) => `run ${job.id}`)], () => false),
-          found.differences.map(({ place, values }) =>
-            headedRow(
-              place,
-              values.map((value) => h("td", {}, value ?? "–")),
-            ),
-          ),
-        ),
-      );
+      fill(words, blocks(found.blocks, title));
     } catch (problem) {
-      if (!isAbort(problem)) fill(words, h("li", { class: "error" }, sentenceOf(problem)));
+      if (!isAbort(problem)) fill(words, h("p", { class: "error" }, sentenceOf(problem)));
     }
   }
 
@@ -305,12 +278,6 @@ export async function show(place, { query, signal }) {
             { class: "panel", "aria-labelledby": "words-title" },
             h("h2", { id: "words-title" }, "Who is better where"),
             words,
-          ),
-          h(
-            "section",
-            { class: "panel", "aria-labelledby": "differences-title" },
-            h("h2", { id: "differences-title" }, "What differs between the jobs"),
-            differences,
           ),
         ),
   );

@@ -2,14 +2,13 @@
 
 import { analyses } from "../design/analyses.js";
 import { endsOf } from "../design/extremes.js";
-import { besideOf, cycleOf, loadDesign } from "../design/loading.js";
+import { besideOf, cycleOf, loadDesign, loadFront } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
 import { question } from "../design/question.js";
 import { rounding } from "../design/rounding.js";
 import { stage } from "../design/stage.js";
-import { loadFront } from "../design/surroundings.js";
 import { takeAway } from "../design/take_away.js";
 import { goOn, top } from "../design/top.js";
 import { turning } from "../mechanism/turning.js";
