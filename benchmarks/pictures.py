@@ -22,10 +22,13 @@ from playwright.sync_api import Page, expect
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.optimise.job import load_job
+from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.solve import solve
+from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.figures.front import draw_front
+from slidercrank.service.figures.painting import drawing_figure
 from slidercrank.service.figures.panels import save_sheet
+from slidercrank.service.figures.style import save
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.indicator import analysis as indicator
@@ -79,6 +82,18 @@ def python_example(folder: Path) -> None:
         exec(code.replace('"torque.png"', repr(str(folder / "torque.png"))), {})
 
 
+def sealer(folder: Path) -> None:
+    """Draw the design that docs/tutorial.md decides for."""
+    page = (FOLDER / "tutorial.md").read_text(encoding="utf-8")
+    (job,) = re.findall(r"^```toml\n# sealer\.toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    lengths = re.search(r"crank ([\d.]+) mm, rod ([\d.]+) mm, offset (-[\d.]+) mm", page)
+    assert lengths is not None
+    crank, rod, offset = (1e-3 * float(length) for length in lengths.groups())
+    linkage = Linkage(crank, rod, offset)
+    drawn = linkage_drawing(parse_job(tomllib.loads(job)).mechanism, linkage, name="Carton sealer", design="design 1")
+    save(drawing_figure(drawn), folder / "sealer.png")
+
+
 def page(folder: Path) -> None:
     """Take the run and its knee on the page."""
     with _feeder() as (opened, job, design):
@@ -108,6 +123,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "press_knee.png": partial(knee, "press"),
     "compressor_indicator.png": compressor,
     "compressor_cylinders.png": compressor,
+    "sealer.png": sealer,
     "torque.png": python_example,
     "page_front.png": page,
     "page_design.png": page,

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 Schema = Mapping[str, Any]
+Titles = Mapping[str, str]
+"""Headings of named schemas; one that is missing has its name."""
 _LONGEST = 80  # characters of an example
 
 
@@ -17,19 +20,19 @@ def definitions(shapes: Mapping[str, Schema], level: int) -> Iterator[str]:
         yield from described(shapes[name])
 
 
-def described(schema: Schema) -> Iterator[str]:
+def described(schema: Schema, titles: Titles = MappingProxyType({})) -> Iterator[str]:
     """Yield what a schema says of itself, and the table of its fields."""
     if schema.get("description"):
         yield f"{schema['description'].strip()}\n"
     fields: Mapping[str, Schema] = schema.get("properties", {})
     if not fields:
-        yield f"{kind(schema)}\n"
+        yield f"{kind(schema, titles)}\n"
         return
     required = schema.get("required", ())
     yield "| key | value | meaning | default |\n|---|---|---|---|"
     for name, field in fields.items():
         default = "required" if name in required else f"`{json.dumps(field['default'])}`" if "default" in field else ""
-        yield f"| `{name}` | {cell(kind(field))} | {cell(meaning(field))} | {cell(default)} |"
+        yield f"| `{name}` | {cell(kind(field, titles))} | {cell(meaning(field))} | {cell(default)} |"
     yield ""
 
 
@@ -42,25 +45,25 @@ def meaning(field: Schema) -> str:
     return f"{said}; such as `{example}`".removeprefix("; ")
 
 
-def kind(schema: Schema) -> str:
+def kind(schema: Schema, titles: Titles = MappingProxyType({})) -> str:
     """Return in words which values a schema takes."""
     if "$ref" in schema:
         name = schema["$ref"].rsplit("/", 1)[1]
-        return f"[{name}](#{name.lower()})"
+        return f"[{titles.get(name, name)}](#{name.lower()})"
     for key in ("anyOf", "oneOf"):
         if key in schema:
-            return " or ".join(dict.fromkeys(kind(part) for part in schema[key]))
+            return " or ".join(dict.fromkeys(kind(part, titles) for part in schema[key]))
     if "allOf" in schema:
-        return " and ".join(kind(part) for part in schema["allOf"])
+        return " and ".join(kind(part, titles) for part in schema["allOf"])
     if "const" in schema:
         return f"`{json.dumps(schema['const'])}`"
     if "enum" in schema:
         return ", ".join(f"`{json.dumps(value)}`" for value in schema["enum"])
     found = schema.get("type", "anything")
     if found == "array":
-        return f"list of {kind(schema.get('items', {}))}"
+        return f"list of {kind(schema.get('items', {}), titles)}"
     if found == "object" and isinstance(schema.get("additionalProperties"), Mapping):
-        return f"table of {kind(schema['additionalProperties'])}"
+        return f"table of {kind(schema['additionalProperties'], titles)}"
     if found == "string" and "pattern" in schema:
         return "text" if "\\d" not in schema["pattern"] else "number with unit"
     words = {"string": "text", "boolean": "true or false", "integer": "whole number", "object": "table"}

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import re
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
 from mkdocs.config import load_config
 
 import slidercrank
+from benchmarks.load_pictures import whole_job
 from docs.site import hooks
 from docs.site.api_reference import api_reference
 from docs.site.doctests import with_code
-from docs.site.job_reference import job_reference
+from docs.site.job_reference import headings, job_reference
 from docs.site.python_reference import folder_reference, front_door_reference
 from docs.site.quantity_reference import quantity_reference, requirement, section
 from docs.site.schema_tables import kind
 from slidercrank.objectives.registry import FACTS
-from slidercrank.optimise.job import job_schema
+from slidercrank.optimise.job import job_schema, parse_job, with_files
 
 
 def places(nav: Any) -> list[str]:
@@ -40,6 +42,31 @@ def test_reference_of_jobs_names_every_table_and_key() -> None:
     schema, page = job_schema(), job_reference()
     names = {*schema["properties"], *(key for part in schema["$defs"].values() for key in part.get("properties", ()))}
     assert [name for name in sorted(names) if f"| `{name}` |" not in page] == []
+
+
+def test_examples_of_the_reference_of_jobs_are_parts_of_jobs(tmp_path: Path) -> None:
+    whole = whole_job()
+    (tmp_path / "trace.csv").write_text("crank angle (deg),force (kN)\n0,-0.2\n180,0\n")
+    blocks = re.findall(r"^```toml\n(.*?)^```$", job_reference(), re.MULTILINE | re.DOTALL)
+    assert len(blocks) > 25
+    for block in blocks:
+        part = tomllib.loads(block)
+        ((name, table),) = part.items()
+        swings = name == "load" and "torque_per_angle" in table[0]
+        merged = {**whole[name], **table} if isinstance(whole.get(name), dict) and name != "objectives" else table
+        if not swings:
+            assert (
+                parse_job(with_files({**whole, name: merged}, tmp_path), require_feasible=False).name == whole["name"]
+            ), block
+
+
+def test_headings_of_the_reference_of_jobs_say_where_a_job_has_them() -> None:
+    found = headings(job_schema())
+    assert set(found) == set(job_schema()["$defs"])
+    assert len(set(found.values())) == len(found)
+    assert found["OpposingForce"] == "`[[load]]` with `opposes`"
+    assert found["SectionLink"] == "`[mechanism] crank, rod` with `width`"
+    assert found["LengthBounds"] == "Bounds: length"
 
 
 def test_reference_of_quantities_has_a_section_and_a_row_for_each() -> None:

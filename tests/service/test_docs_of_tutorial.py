@@ -70,5 +70,8 @@ def test_the_tutorial_goes_as_it_is_written(tmp_path: Path, monkeypatch: pytest.
                 compared += 1
     assert commands >= 12
     assert compared >= 24
+    lengths = re.search(r"This is design 1: (crank .* mm)\.", PAGE.read_text(encoding="utf-8"))
+    assert lengths is not None
+    assert lengths[1] in (tmp_path / "sealer.svg").read_text(encoding="utf-8").replace("−", "-")
     for name in ("sealer.dxf", "sealer.svg", "sealer.csv", "sealer.html"):
         assert (tmp_path / name).stat().st_size > 5_000
