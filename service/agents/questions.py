@@ -104,8 +104,8 @@ def describe(
 def ask(call: Call, *, subject: Design, question: Asked) -> Answer:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
-    The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics, such as
-    wish, are of the front of a run.
+    The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics are of
+    the front of a run, such as wish, or of a job, such as sweep.
     """
     if question.alone in WIDER:
         return _wider(call, subject, question, WIDER[question.alone])

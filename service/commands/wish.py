@@ -66,7 +66,8 @@ def wish(
     with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
         keep_wish(folder, told_wishes(front, found.found.wishes), number)
     if json:
-        give(json_text({"run": path_text(folder), "wishes": found.asked} | found.record(units)))
+        wishes = QUESTION.read(inputs, row, QUESTION.flags)["at"]
+        give(json_text({"run": path_text(folder), "wishes": wishes} | found.record(units)))
     elif found.met:
         print_blocks(console(), found.blocks, units)
     if not found.met:

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 class Answer:
     """An answer. record: numbers for JSON, by system of units. blocks: for people. met: whether it is what was asked.
 
-    message: what was found, in short. found: what the search gives, for what a command does with it besides. asked: the
-    input that JSON repeats.
+    message: what was found, in short. found: what the search gives, for what a command does with it besides.
     """
 
     record: Callable[[System], dict[str, Any]]
@@ -30,7 +29,6 @@ class Answer:
     message: str = ""
     notes: Sequence[str] = ()
     found: Any = None
-    asked: Any = None
 
 
 @dataclass(frozen=True, kw_only=True)

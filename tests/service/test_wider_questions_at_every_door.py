@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
+import subprocess
+import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -110,7 +113,9 @@ def other(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     """Yield a run without designs, and one of a crank that swings."""
     place = tmp_path_factory.mktemp("other")
     if request.param == "a swing":
-        text = Path("runs/support.toml").read_text(encoding="utf-8").replace("designs = ", "designs = 4 #")
+        text = (
+            Path("runs/support.toml").read_text(encoding="utf-8").replace("designs = ", "designs = 4\nsamples = 128 #")
+        )
     else:
         text = fronts.JOB.replace('"40 deg"', '"80 deg"')
     (place / "job.toml").write_text(text, encoding="utf-8")
@@ -139,6 +144,7 @@ def assert_alike(doors: Doors, name: str, row: int | None, given: dict[str, Any]
     return answer
 
 
+@pytest.mark.slow
 def test_random_wishes_have_the_same_design_at_every_door(doors: Doors) -> None:
     front, random = doors.front, np.random.default_rng(31)
     for _ in range(3):
@@ -184,6 +190,7 @@ def test_random_steps_round_a_design_alike_at_every_door(doors: Doors) -> None:
             )
 
 
+@pytest.mark.slow
 def test_a_random_limit_gives_a_like_design_at_every_door(doors: Doors) -> None:
     random = np.random.default_rng(34)
     for row in random.choice(len(doors.front), 2, replace=False).tolist():
@@ -194,6 +201,7 @@ def test_a_random_limit_gives_a_like_design_at_every_door(doors: Doors) -> None:
         assert like["moved"]["rod_mm"] == pytest.approx(moved)
 
 
+@pytest.mark.slow
 def test_what_no_design_meets_is_an_answer_at_every_door(doors: Doors) -> None:
     impossible = {"where": ["transmission_angle >= 89 deg"]}
     answer = doors.front.ask("like", 1, **impossible)
@@ -217,6 +225,7 @@ def test_a_random_proof_is_the_same_at_every_door(doors: Doors) -> None:
     assert all(row["stroke_mm"] == pytest.approx(280.0) for row in proof["added"])
 
 
+@pytest.mark.slow
 def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> None:
     given = {"at": {"time_ratio": "1.3"}}
     for units, unit, key in (("metric", "mm", "crank_mm"), ("inch", "in", "crank_in")):
@@ -228,6 +237,7 @@ def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> No
         assert line.split() == ["crank", unit, f"{answer.record['design'][key]:.6g}"]
 
 
+@pytest.mark.slow
 def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: Doors) -> None:
     if len(other.front):
         (sentence,) = set(other.refusals("certify", None, {}))
@@ -247,6 +257,7 @@ def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: D
         assert other.command("wish", None, {"at": {"time_ratio": "1.2"}}).exit_code == 3
 
 
+@pytest.mark.slow
 def test_a_random_sweep_has_the_same_rows_in_python_by_the_command_and_for_agents(tmp_path: Path) -> None:
     random = np.random.default_rng(35)
     job = tmp_path / "job.toml"
@@ -384,3 +395,48 @@ def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
     ):
         inputs = {"topics": ["certify"], **subject}
         assert refusal(partial(ASK.answer, call_in(doors.folder.parent), inputs)).startswith(sentence)
+
+
+ADDED = """
+import json, sys
+import slidercrank.service.questions as package
+package.__path__.append(sys.argv[1])
+from pathlib import Path
+from slidercrank.service.agents.server import TOOLS
+from slidercrank.service.designs.stored_designs import front_of
+from slidercrank.service.runs.stored_runs import problem_of, read_run
+from tests.service.test_wider_questions_at_every_door import ASK, call_in
+
+folder = Path(sys.argv[2])
+front = front_of(problem_of(folder, read_run(folder)), read_run(folder))
+inputs = {"column": "rod_mm"}
+asked = {"run": folder.name, "topics": ["reach"], "inputs": inputs, "units": "inch"}
+agent = ASK.answer(call_in(folder.parent), asked)
+print(json.dumps([front.ask("reach", **inputs), agent.record, agent.text]))
+"""
+
+
+@pytest.mark.slow
+def test_the_recipe_adds_a_question_that_python_and_agents_have(
+    doors: Doors, pytestconfig: pytest.Config, tmp_path: Path
+) -> None:
+    root = pytestconfig.rootpath
+    page = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
+    section = page.split("## A new question to a front or a job")[1].split("\n## ")[0]
+    (tmp_path / "reach").mkdir()
+    codes = re.findall(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
+    for name, code in zip(("__init__.py", "analysis.py"), codes, strict=True):
+        (tmp_path / "reach" / name).write_text(code, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", ADDED, str(tmp_path), str(doors.folder)],
+        cwd=root,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    answer, record, text = json.loads(done.stdout)
+    rods = doors.front.columns["rod_mm"]
+    assert answer == {"least_rod_mm": rods.min(), "greatest_rod_mm": rods.max()}
+    assert record["greatest_rod_in"] == pytest.approx(rods.max() / 25.4)
+    assert text == f"{rods.min() / 25.4:.6g} in to {rods.max() / 25.4:.6g} in"

@@ -54,7 +54,6 @@ def answered(found: Wished, at: Mapping[str, object]) -> Answer:
         met=bool(rows),
         message=found.message,
         found=found,
-        asked=dict(at),
     )
 
 
