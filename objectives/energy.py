@@ -19,7 +19,7 @@ from .needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
 from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
-_ROUNDING = 1e-12  # fraction of the friction heat below which the work on the loads is rounding error
+_ROUNDING = 1e-12  # fraction of the friction heat below which the work done on the loads is rounding error
 
 
 def _circle(slot: int) -> Formula:
@@ -138,7 +138,8 @@ EFFICIENCY = Efficiency(
     place=436,
     group=Group.DRIVE,
     sentence=(
-        "Work output divided by work input over a cycle. The output is the work on the loads if the crank is driven, "
+        "Work output divided by work input over a cycle. The output is the work done on the loads if the crank is "
+        "driven, "
         "or the work at the crank if the loads drive it, as in an engine. The rest is friction heat in guide and pins."
     ),
     advice=(

@@ -41,7 +41,7 @@ PEAK_GUIDE_FORCE = _force(
     name="peak_guide_force",
     signal=Signal.GUIDE_FORCE,
     place=170,
-    sentence="The greatest force of the guide on the slider, normal to the slider line: what wears the guide.",
+    sentence="The greatest guide force on the slider, normal to the slider line: what wears the guide.",
     advice="A small transmission angle makes it large.",
     formula="max |N|, N = -B_y - m_s g_y",
     picture="guide force",

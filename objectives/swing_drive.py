@@ -17,7 +17,7 @@ PEAK_ACTUATOR_FORCE = _peak(
     driver="slider",
     instead="peak_actuator_torque",
     place=310,
-    sentence="The greatest force that the actuator needs on the slider, on the way forth or back.",
+    sentence="The greatest force that the actuator needs on the slider, on the forward or return stroke.",
     advice="It grows without bound towards a dead point.",
     formula="max over the swing of |P|",
     example="20 kN",
@@ -29,7 +29,7 @@ PEAK_ACTUATOR_TORQUE = _peak(
     driver="crank",
     instead="peak_actuator_force",
     place=311,
-    sentence="The greatest torque that the drive needs on the swinging crank, on the way forth or back.",
+    sentence="The greatest torque that the drive needs on the swinging crank, on the forward or return stroke.",
     formula="max over the swing of |T|",
 )
 HOLDING_FORCE = _peak(
@@ -100,7 +100,7 @@ SWING_ENERGY = SwingIntegral(
     group=Group.DRIVE,
     picture="power",
     place=315,
-    sentence="The work of the drive on the way forth: below zero where it has to brake.",
+    sentence="The work of the drive on the forward stroke: below zero where it has to brake.",
     formula="integral of P dx, or T dtheta, over the way forth",
 )
 SWING_EFFICIENCY = SwingIntegral(

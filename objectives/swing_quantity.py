@@ -65,7 +65,8 @@ class SwingQuantity(Quantity):
                 return reason
             if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
                 return (
-                    'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+                    "a position error needs tolerances; this job has none; add for example [tolerances] crank = "
+                    '"0.05 mm"'
                 )
         if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
             return (
@@ -123,7 +124,7 @@ class SwingLeast(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingIntegral(SwingQuantity):
-    """A number from the work of the drive. of: the work on the way forth, or the share of it without friction."""
+    """A number from the work of the drive. of: the work on the forward stroke, or the share of it without friction."""
 
     of: Literal["work", "share"]
 

@@ -60,7 +60,7 @@ def solve(
     """
     require_problem(problem, "solve")
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
-        raise InputError(f"progress is True, for a bar, or a function that is called; got {progress!r}")
+        raise InputError(f"progress must be True, for a bar, or a function; got {progress!r}")
     require_fit(problem)
     require_gradients(problem)
     require_ranking(problem)
@@ -147,7 +147,7 @@ def _with_values(problem: Problem, one: _One) -> ParetoFront:
             evaluators = one.evaluators(problem)
         return discrete_front(problem, one.solve, nothing, run.stage("judging combinations"))
     except Cancelled:
-        return nothing("cancelled", "cancelled while combinations of discrete values were judged")
+        return nothing("cancelled", "cancelled while evaluating combinations of discrete values")
 
 
 def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
@@ -169,24 +169,24 @@ def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> Pareto
             return front
     message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _THIN
     if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage("proving"), 0, 1)):
-        message += "; proven: no design of the ranges meets them all"
+        message += "; proven: no design within the ranges meets them all"
     return empty(problem, evaluators, run, "infeasible", message)
 
 
 _DIAGNOSING = "diagnosing"
 _THIN = (
-    "designs that meet all requirements to rounding exist, but none that meets the equalities exactly; "
-    "widen the ranges a little"
+    "some designs meet all requirements within rounding, but none meets the equalities exactly; widen the ranges "
+    "a little"
 )
 
 _NOT_KNOWN = (
-    "{} found no design that meets all requirements; whether there is one is not known where a quantity has no "
-    "gradient; allow more evaluations, or relax a requirement"
+    "{} found no design that meets all requirements; whether one exists is unknown, because a quantity has "
+    "no gradient; allow more evaluations, or relax a requirement"
 )
 
 _MISSED = (
-    "{} found no design that meets all requirements, though such designs exist; allow it more evaluations, "
-    "or use the method auto"
+    "{} found no design that meets all requirements, although such designs exist; allow more evaluations, or "
+    "use the method auto"
 )
 
 

@@ -91,7 +91,7 @@ class Commands(TyperGroup):
                 say(_MORE_MEMORY)
                 raise typer.Exit(WRONG_INPUT) from None
             if isinstance(error, OSError) and is_full(error):
-                say(f"slidercrank: what is computed is written to disks; {full_places(error)}; make room")
+                say(f"slidercrank: Disk full: {full_places(error)}; free some space")
                 raise typer.Exit(WRONG_INPUT) from None
             say(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "

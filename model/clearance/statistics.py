@@ -53,7 +53,7 @@ class ClearanceSummary:
     penetration: greatest in a turn, m. fastest_impact: of all, m/s; None if there was none.
     input_work, load_work, dissipated, stored: in a turn, J: work of the drive, work of the loads on the slider, loss in
     the joint, gain of kinetic, potential and elastic energy.
-    energy_residual: greatest error of the energy balance in a turn, J.
+    energy_residual: greatest energy balance error in a turn, J.
     """
 
     turns: int

@@ -96,8 +96,8 @@ class TorqueTable:
         for before, after in pairwise(self.speeds):
             if after <= before:
                 raise InputError(
-                    f"speeds of a torque table must increase; got {after:g} after {before:g}; sort the table and drop "
-                    "what repeats"
+                    f"speeds of a torque table must increase; got {after:g} after {before:g}; sort the table and "
+                    "remove repeated points"
                 )
         if self.speeds[0] > 0.0:
             raise InputError(
@@ -127,7 +127,7 @@ Motor = ConstantTorque | LinearMotor | TorqueTable
 class Drive:
     """A motor, a lossless gear, and what turns with them.
 
-    flywheel: inertia on the crank shaft, kg m^2. motor_inertia: of rotor and whatever turns at motor speed, kg m^2.
+    flywheel: inertia on the crankshaft, kg m^2. motor_inertia: of rotor and whatever turns at motor speed, kg m^2.
     gear_ratio: turns of the motor for one of the crank; the motor's torque acts on the crank times the ratio, its
     inertia times the square of it.
     """

@@ -76,9 +76,7 @@ def _slot_of(path: str) -> tuple[int, str]:
         slot, unit = _LOAD[load[2]]
         return Raw.END + LOAD_SLOTS * int(load[1]) + slot, unit
     if path not in _SLOTS:
-        raise InputError(
-            f"no quantity of a design follows smoothly from {path!r}, so it cannot vary; let it be a choice instead"
-        )
+        raise InputError(f"no quantity depends smoothly on {path!r}, so it cannot vary; make it a choice instead")
     return _SLOTS[path]
 
 

@@ -48,7 +48,7 @@ class Strength:
     """Material of the bars of a machine, and its pins.
 
     crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
-    net section of an eye. criterion: how mean stresses count in fatigue. wear_coefficient: volume worn off over force
+    net section of an eye. criterion: fatigue criterion for mean stresses. wear_coefficient: volume worn off over force
     and sliding distance, m^2/N (Archard); None if it is not known.
     """
 

@@ -34,7 +34,7 @@ class SwingPeaks:
     """Local peaks of n designs, highest first.
 
     values: (n, k), SI, -inf beyond the last peak; NaN for a design that cannot swing as asked, +inf where friction
-    locks it. places: (n, k), share of the time of the way, 1 more on the way back. gradients: (n, k, v), by the
+    locks it. places: (n, k), share of the time of the way, 1 more on the return stroke. gradients: (n, k, v), by the
     design's numbers; None unless asked for.
     """
 
@@ -45,7 +45,7 @@ class SwingPeaks:
 
 @dataclass(frozen=True)
 class _Curve:
-    """A state over both ways, or over one: places are shares of the time, 1 more on the way back.
+    """A state over both ways, or over one: places are shares of the time, 1 more on the return stroke.
 
     toward: the sign (n,) that it is judged by; None for its size.
     """

@@ -50,7 +50,7 @@ def graded() -> tuple[Array, Array]:
 
 
 def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
-    """Return the work of the drive on the way forth, J, for designs (n, 3 + k)."""
+    """Return the work of the drive on the forward stroke, J, for designs (n, 3 + k)."""
     return _gathered(mechanism, swing, designs, gradients, lambda rows: _forth(mechanism, swing, rows, gradients))
 
 

@@ -68,9 +68,9 @@ class Transient:
 
     @property
     def imbalance(self) -> float:
-        """Greatest error of the energy balance, as a share of the greatest energy or work; 0 if all are 0.
+        """Greatest energy balance error, as a share of the greatest energy or work; 0 if all are 0.
 
-        Kinetic energy gained + potential gained - (work of the motor - work on the loads - heat of friction).
+        Kinetic energy gained + potential gained - (work of the motor - work done on the loads - heat of friction).
         """
         stored = self.kinetic - self.kinetic[0] + self.potential - self.potential[0]
         error = np.abs(stored - self.motor_work + self.load_work + self.friction_work).max()

@@ -67,11 +67,11 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     """Return the curves of one fully turning linkage at crank angles (n,), rad; the angle comes first.
 
     Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
-    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive, of several cylinders
-    together over the angle of the shaft; all else is of one over that of its own crank. Without a crank
-    speed, velocity, acceleration and jerk are those of one radian per second: derivatives by the crank angle; there is
-    no power (NaN). Position errors are NaN without tolerances. What is given where a load jumps, and what is raised:
-    see `model.cycle.cycle`.
+    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive, with several
+    cylinders over the angle of the shaft; all else is of one over that of its own crank. Without a crank speed,
+    velocity, acceleration and jerk are those of one radian per second: derivatives by the crank angle; there is no
+    power (NaN). Position errors are NaN without tolerances. What is given where a load jumps, and what is raised: see
+    `model.cycle.cycle`.
     """
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)

@@ -32,7 +32,7 @@ class Axis:
 
     def __post_init__(self) -> None:
         if self.parameter not in get_args(Parameter):
-            raise InputError(f"a sweep is over {', '.join(get_args(Parameter))}; got {self.parameter!r}")
+            raise InputError(f"a sweep must be over one of {', '.join(get_args(Parameter))}; got {self.parameter!r}")
         if not self.values or not all(math.isfinite(value) for value in self.values):
             raise InputError(f"a sweep needs at least one value of the {self.parameter}, all finite")
 
@@ -53,7 +53,7 @@ def sweep(
     if not names or not quantities:
         raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")
     if len(set(names)) < len(names):
-        raise InputError(f"a sweep is over different parameters; got {', '.join(names)}; leave out the second")
+        raise InputError(f"a sweep must be over different parameters; got {', '.join(names)}; leave out the second")
     count = math.prod(len(axis.values) for axis in over)
     if count > MOST:
         raise InputError(f"a sweep has at most {MOST:,} combinations; got {count:,}; take fewer values")

@@ -38,7 +38,7 @@ def why_not(name: str, swing: Swing | None) -> str | None:
         return None
     if swing is None:
         return (
-            'it is of a crank that swings; got one that turns through; add [motion] kind = "swing" with from and to, '
+            'needs a swinging crank; this crank rotates fully; add [motion] kind = "swing" with from and to, '
             "or leave it out"
         )
     return fact.unfit(swing)
@@ -102,7 +102,7 @@ def swinging(own: Sequence[Quantity]) -> tuple[Quantity, ...]:
 
 
 def columns_of(mechanism: Mechanism, dimensions: Array, own: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
-    """Return the columns (n,) of designs (n, 3 + k) that swing, as `analysis.columns_of` of those that turn."""
+    """Return the columns (n,) of designs (n, 3 + k) that swing, as `analysis.columns_of` of those that rotate fully."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
     columns: dict[str, NDArray[Any]] = {

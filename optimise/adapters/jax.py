@@ -30,7 +30,8 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         raise require("jax", error) from None
     if not jax.config.jax_enable_x64:
         raise InputError(
-            'designs need double precision; got JAX in single; call jax.config.update("jax_enable_x64", True) first'
+            'designs need double precision; JAX is set to single; first call jax.config.update("jax_enable_x64", '
+            "True) first"
         )
     width = 3 + len(problem.mechanism.varying)
     names = [o.quantity for o in problem.objectives] if quantities is None else list(quantities)
@@ -58,7 +59,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         given = jax.numpy.asarray(x)
         if given.shape[-1:] != (width,):
             raise InputError(
-                f"designs need {width} numbers each, as the last axis; got an array of shape {given.shape}"
+                f"the last axis must have {width} numbers, one design; got an array of shape {given.shape}"
             )
         values: jax.Array = found(given)
         return values

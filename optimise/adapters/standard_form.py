@@ -160,7 +160,7 @@ class StandardForm:
             worst[~np.isfinite(found.F).all(axis=1)] = np.inf
             if not np.isfinite(worst).any():
                 what = "makes the swing" if self._sheet is None else "meets the equalities"
-                raise InputError(f"no design of the ranges {what}; got none of 4,096; widen the ranges")
+                raise InputError(f"no design within the ranges {what}; 4,096 were tried; widen the ranges")
             return np.asarray(grid[np.argmin(worst)])
         middle = 0.5 * (self.lower + self.upper)
         near = min(max(0.0, self.lower[2]), self.upper[2])
@@ -172,8 +172,8 @@ class StandardForm:
             if self.arrays(start).G[:2].max() <= 0.0:
                 return start
         raise InputError(
-            "no design of the ranges turns fully; got a rod of at most "
-            f"{1e3 * self.upper[1]:g} mm; allow a longer rod or a shorter crank"
+            f"no design within the ranges rotates fully; got a rod of at most {1e3 * self.upper[1]:g} mm; allow a "
+            "longer rod or a shorter crank"
         )
 
     @property
@@ -205,12 +205,12 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
     require_problem(problem, "standard_form")
     if problem.variants:
         raise InputError(
-            f"other optimisers take no choices ({', '.join(problem.choices)}); got {len(problem.variants)} variants; "
-            "take one of problem.parts()"
+            f"other optimisers cannot handle choices ({', '.join(problem.choices)}); got {len(problem.variants)} "
+            "variants; use one of problem.parts()"
         )
     if problem.discrete:
         raise InputError(
-            "other optimisers take ranges; got values of "
+            "other optimisers need ranges; got discrete values of "
             f"{', '.join(item.name for item in problem.discrete)}; leave out step, series and values"
         )
     if elimination_branch is not None and not eliminate:
@@ -267,7 +267,9 @@ def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
             "eliminate=False"
         )
     if not found[branch].free:
-        raise InputError("the equalities and ranges leave nothing free; got no unknown; widen a range, or use solve")
+        raise InputError(
+            "the equalities and ranges must leave something free; no unknown is left; widen a range, or use solve"
+        )
     return found[branch]
 
 

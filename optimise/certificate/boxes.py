@@ -50,14 +50,12 @@ def covered(problem: Problem, objective: Objective) -> str:
         profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
         return f"{quantity.title}{profile} has no bound over a range of designs"
     if quantity.signal.needs_forces and problem.mechanism.friction.acts:
-        return f"{quantity.title} has no bound over a range of designs where there is friction"
+        return f"{quantity.title} has no bound over a range of designs with friction"
     if not cranks_of(problem.mechanism, quantity.signal):
-        shaft = (
-            "with a speed profile" if problem.mechanism.speed_profile is not None else "of several cylinders together"
-        )
+        shaft = "with a speed profile" if problem.mechanism.speed_profile is not None else "with several cylinders"
         return f"{quantity.title} {shaft} has no bound over a range of designs"
     if objective.sense != "minimise":
-        return f"{quantity.title} is bounded from below only, so it can be certified as minimised, not otherwise"
+        return f"{quantity.title} only has a lower bound, so it can only be certified if it is minimised"
     return ""
 
 
@@ -111,8 +109,8 @@ class Boxes:
             reason = covered(problem, objective)
             if reason:
                 raise InputError(
-                    f"no certificate for this job: {reason}; leave this objective out; the residuals of the front tell "
-                    "how near its designs are to optimal"
+                    f"this job cannot be certified: {reason}; leave this objective out; the residuals of the front "
+                    "show how close its designs are to optimal"
                 )
         asked = restated_constraints(problem)
         least = max(c.lower or 0.0 for c in asked if c.quantity == TRANSMISSION_ANGLE.name)
@@ -216,7 +214,9 @@ class Boxes:
             for upper in (True, False)
         ]
         least, other = [
-            np.where(l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan)  # of those that turn fully
+            np.where(
+                l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan
+            )  # of those that rotate fully fully
             for r, l, a in (least_at, most_at)
         ]
         least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)

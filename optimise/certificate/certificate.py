@@ -72,7 +72,7 @@ def message_of(
         return f"{100.0 * value:.3g} %"
 
     if not np.isfinite(proven):
-        return "nothing is proven yet: some of the design box has no bound; allow more time"
+        return "nothing is proven yet: part of the design box has no bound; allow more time"
     some = f"the {designs} designs" if designs > 1 else "the design"
     whole = f"{some} and {added} added ones" if added else some
     most = f"at most {share(proven)} of each objective's range"
@@ -80,7 +80,7 @@ def message_of(
     if added:
         text += f"; {some} alone: {share(delivered)}"
         if gap > asked:
-            text += f", and a design {share(gap)} beyond {'them' if designs > 1 else 'it'} is known"
+            text += f", and a design that is better by {share(gap)} is known"
     if status == "out of budget":
-        text += f"; {share(asked)} was asked, allow more time or a larger epsilon"
+        text += f"; {share(asked)} was requested; allow more time or a larger epsilon"
     return f"interrupted; {text}" if status == "cancelled" else text

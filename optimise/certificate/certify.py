@@ -46,20 +46,20 @@ def certify_designs(
     """
     if problem.motion is not None:
         raise InputError(
-            "a certificate is of a crank that turns through; got a swing; the residuals of the front tell how near its "
+            "a certificate needs a rotating crank; this crank swings; the residuals of the front show how close its "
             "designs are to optimal"
         )
     listed = (f"the values of {item.name}" for item in problem.discrete)
     more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
     if more:
         raise InputError(
-            f"a certificate is over crank, rod and offset; got {', '.join(more)} as well; give them their values in "
-            "the job and certify that"
+            f"only crank, rod and offset may vary in a certificate; got {', '.join(more)} as well; fix their values "
+            "in the job and certify that"
         )
     if not len(dimensions):
-        raise InputError("an empty front cannot be certified; its message says why nothing is feasible")
+        raise InputError("a certificate needs a front with designs; this one is empty; its message says why")
     if not 0.0 < epsilon < 1.0:
-        raise InputError(f"epsilon is a share of the objectives' ranges, more than 0 and less than 1; got {epsilon:g}")
+        raise InputError(f"epsilon must be a fraction of the objectives' ranges, above 0 and below 1; got {epsilon:g}")
     if not seconds > 0.0:
         raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
     search = Search(problem, dimensions, epsilon, seconds, cancelled)

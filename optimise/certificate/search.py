@@ -220,9 +220,9 @@ class Search:
         for constraint in restated_constraints(self.problem):
             quantity = self.problem.quantity(constraint.quantity)
             if not usable(self.problem, constraint):
-                found.append(f"the bounds do not use the requirement on {quantity.title}")
+                found.append(f"the bounds ignore the requirement on {quantity.title}")
             elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
-                found.append(f"the bounds do not use that {quantity.title} has a least value")
+                found.append(f"the bounds ignore the minimum of {quantity.title}")
         return tuple(found)
 
     def _thin(self, needy: Array) -> None:

@@ -60,13 +60,13 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
     Raises `InputError` for fewer than two fronts, an empty one, or different numbers of objectives.
     """
     if len(fronts) < 2:
-        raise InputError(f"a comparison needs two fronts or more; got {len(fronts)}")
+        raise InputError(f"a comparison needs at least two fronts; got {len(fronts)}")
     if any(not len(front) for front in fronts):
-        raise InputError("a front without designs cannot be compared; leave it out")
+        raise InputError("a front to compare must have designs; got an empty one; leave it out")
     if len({front.shape[1] for front in fronts}) > 1:
-        raise InputError("fronts compare only with the same objectives; got different numbers of them")
+        raise InputError("fronts to compare must have the same objectives; got different numbers of them")
     if not (math.isfinite(tolerance) and tolerance >= 0.0):
-        raise InputError(f"the tolerance is a share of the range, zero or more; got {tolerance:g}")
+        raise InputError(f"the tolerance must be a fraction of the range, zero or more; got {tolerance:g}")
     everything = np.concatenate(list(fronts))
     ideal, span = _scaling(everything)
     scaled = [np.asarray((front - ideal) / span) for front in fronts]

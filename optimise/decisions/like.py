@@ -104,7 +104,7 @@ def like(
     for item in constraints:
         if not isinstance(item, Constraint):
             raise InputError(
-                f"a requirement of like is a Constraint; got {item!r}; write it like "
+                f"a requirement for like must be a Constraint; got {item!r}; write it like "
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
     ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
@@ -129,7 +129,7 @@ def extended(
         of = problem.quantity(added.quantity)
         if ends is None:
             assert own is not None
-            both = f"{_words((own.lower, own.upper), of.unit.factor, of.unit.symbol)} is asked already"
+            both = f"{_words((own.lower, own.upper), of.unit.factor, of.unit.symbol)} is required already"
             contradictions.append(
                 f"{of.title} {_words((added.lower, added.upper), of.unit.factor, of.unit.symbol)}, where {both}"
             )
@@ -147,7 +147,7 @@ def extended(
             assert ends[0] is not None
             assert ends[1] is not None
             dimensions[name] = Range(lower=ends[0], upper=ends[1])
-    remedy = [f"ask for other values, or change {' and '.join(keys)} in the job and solve it again"] if keys else []
+    remedy = [f"choose other values, or change {' and '.join(keys)} in the job and solve it again"] if keys else []
     # The search serves to come near, whatever method made the front.
     settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
     return (
@@ -180,16 +180,17 @@ def _require_new(
         columns.append((of.field, of.unit.factor, (item.lower, item.upper)))
     for name, ends in ranges.items():
         if name not in DIMENSIONS:
-            raise InputError(f"a range is that of crank, rod or offset; got {name!r}; name one of them")
+            raise InputError(f"a range must name crank, rod or offset; got {name!r}; name one of them")
         if ends[0] is not None and ends[1] is not None and ends[0] > ends[1]:
             raise InputError(
-                f"a range of {name} rises; got {1e3 * ends[0]:g} mm to {1e3 * ends[1]:g} mm; put the smaller end first"
+                f"the range of {name} must be ascending; got {1e3 * ends[0]:g} mm to {1e3 * ends[1]:g} mm; put the "
+                "smaller end first"
             )
         columns.append((f"{name}_mm", 1e3, ends))
     if not columns:
-        raise InputError("say what is to be different: add a constraint or a range")
+        raise InputError("nothing differs from the given design; add a constraint or a range")
     if all(key in row and _within(row[key], ends, factor) for key, factor, ends in columns):
-        raise InputError("the design already meets what is added; ask for more of it")
+        raise InputError("the design already meets the added conditions; make them stricter")
 
 
 def _within(value: object, ends: Ends, factor: float) -> bool:

@@ -38,5 +38,5 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
 
 
 def _needs(of: Quantity) -> str:
-    table = [f"it comes from the table [{of.table}]"] if of.table else []
+    table = [f"it needs the table [{of.table}]"] if of.table else []
     return "; ".join(dict.fromkeys([*table, *(need.rule for need in of.needs)]))

@@ -60,11 +60,11 @@ class Wishes:
         require_front(front, "a wish")
         if len(front.objectives) < 2:
             raise InputError(
-                f"a wish is for several objectives; got one, {front.objectives[0].quantity}; its best design is the "
-                "front"
+                f"a wish needs at least two objectives; got one, {front.objectives[0].quantity}; its best design is "
+                "the front"
             )
         if not len(front):
-            raise InputError(f"a wish needs the designs of a front; got none: {front.message}")
+            raise InputError(f"a wish needs a front with designs; this one is empty: {front.message}")
         require_gradients(front.problem, "a wish")
         self.front = front
         self.ideal = front.values.min(axis=0)
@@ -190,7 +190,7 @@ class Wishes:
                 best = self.front.columns[of.field][int(np.argmin(self.front.values[:, column]))]
                 allowed = f"{(wish.value or 0.0) * of.unit.factor:.4g} {of.unit.symbol}".rstrip()
                 has = f"{best:.4g} {of.unit.symbol}".rstrip()
-                told.append(f"{of.title} {allowed} or better, where the front has {has} at best")
+                told.append(f"{of.title} {allowed} or better, but the best on the front is {has}")
         return f"no design was found with {' and '.join(told)}; allow more"
 
 

@@ -125,11 +125,11 @@ class Wished:
         wished = [outcome for outcome in self.outcomes if outcome.kind == "value"]
         if not wished:
             if any(outcome.kind == "improve" and outcome.gained for outcome in self.outcomes):
-                return "what is to improve does so as far as the rest allows"
-            return "nothing improves while the rest keeps what it is to keep"
+                return "the objectives to improve do so as far as the others allow"
+            return "nothing improves while the other objectives stay as required"
         if not self.possible:
-            one = "no design has what is wished" if len(wished) == 1 else "no design has all that is wished"
-            return f"{one}; this one comes nearest"
+            one = "no design reaches the desired value" if len(wished) == 1 else "no design reaches all desired values"
+            return f"{one}; this one is nearest"
         if all(cast(float, outcome.short) < -_ROUNDING * outcome.range_ for outcome in wished):
             return "the wish can be had, and better" + (" in all of it" if len(wished) > 1 else "")
         return "the wish can be had"

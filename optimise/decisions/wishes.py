@@ -47,12 +47,16 @@ def read_wishes(front: ParetoFront, given: Mapping[str, object], row: int | None
     unit, what wishes nothing, and what contradicts itself.
     """
     if not isinstance(given, Mapping):
-        raise InputError(f"wishes come by objective; got {given!r}; write them like {{'peak_torque': '110 N m'}}")
+        raise InputError(
+            f"wishes must be a dict by objective; got {given!r}; write them like {{'peak_torque': '110 N m'}}"
+        )
     found = dict.fromkeys(range(len(front.objectives)), FREE)
     for name, text in given.items():
         column = _column(front, name)
         if found[column] is not FREE:
-            raise InputError(f"one wish for each objective; got two for {front.objectives[column].quantity}")
+            raise InputError(
+                f"an objective may have only one wish; got two for {front.objectives[column].quantity}; leave out one"
+            )
         wish = _read(front, column, text)
         found[column] = Wish("free") if wish.kind == "free" else wish
     wishes = tuple(found.values())
@@ -65,7 +69,7 @@ def _column(front: ParetoFront, name: object) -> int:
         return front.column_of(str(name))
     except InputError:
         names = ", ".join(objective.quantity for objective in front.objectives)
-        raise InputError(f"a wish is for one of the objectives {names}; got {name!r}; name one of them") from None
+        raise InputError(f"a wish must name one of the objectives {names}; got {name!r}; name one of them") from None
 
 
 def _read(front: ParetoFront, column: int, given: object) -> Wish:
@@ -84,7 +88,7 @@ def _read(front: ParetoFront, column: int, given: object) -> Wish:
     try:
         value = to_si(value, kind, plain=not isinstance(given, str))
     except InputError as error:
-        words = "" if text[:1] in _VALUE else f"; a wish is {_WORDS.format(example=kind.example)}"
+        words = "" if text[:1] in _VALUE else f"; a wish must be {_WORDS.format(example=kind.example)}"
         raise InputError(f"the wish for {of.name} {error}{words}") from None
     turning = front.problem.motion is None or isinstance(of, SwingQuantity)  # below one, proportions may swing
     if turning and of.domain is not None and value > of.domain.upper:  # degrees without their unit, a share in percent
@@ -99,19 +103,19 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
     names = [objective.quantity for objective in front.objectives]
     if "value" not in kinds and "improve" not in kinds:
         raise InputError(
-            f"nothing is wished; give one of {', '.join(names)} a value, or let it improve on a design of the front"
+            f"no wish was given; give one of {', '.join(names)} a value, or let it improve on a design of the front"
         )
     relative = [name for name, kind in zip(names, kinds, strict=True) if kind in ("improve", "keep")]
     if row is None:
         if relative:
             raise InputError(
-                f"{relative[0]} is to improve or to keep what a design has; got no design; name one of the front"
+                f"{relative[0]}: improve and keep need a reference design; got none; name one of the front"
             )
         return
     if len(relative) == len(names):
         raise InputError(
-            f"design {row + 1} is Pareto-optimal: none improves while all others keep; got improve or keep for "
-            "every objective; let one be free, or worsen to a value"
+            f"design {row + 1} is Pareto-optimal: nothing can improve unless another objective is freed or allowed to "
+            "worsen; got improve or keep for every objective; free one, or let it worsen to a value"
         )
     for column, wish in enumerate(wishes):
         of = front.problem.quantity(names[column])
@@ -120,7 +124,7 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
             raise InputError(
                 f"{names[column]} may worsen to a value worse than that of design {row + 1}; got "
                 f"{wish.value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()  # type: ignore[operator]
-                + ", which is better; write the value alone to wish for it"
+                + ", which is better; write only the value to wish for it"
             )
 
 

@@ -56,7 +56,7 @@ def discrete_front(
             return nothing("infeasible", missed_in_words(problem, found))
     continuous = search(replace(problem, discrete=()))
     if continuous.status == "cancelled":
-        return nothing("cancelled", "cancelled before designs of the discrete values were looked at")
+        return nothing("cancelled", "cancelled before any design with discrete values was evaluated")
     if not exact and not len(continuous):
         return replace(continuous, problem=problem)
     if not whole:

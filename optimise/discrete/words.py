@@ -22,10 +22,10 @@ def found_in_words(front: ParetoFront) -> str:
     assert answer is not None
     rules = rules_in_words(problem)
     if not len(front):
-        return f"no design of {_many(answer.judged)} of {rules} keeps every requirement"
+        return f"no design among {_many(answer.judged)} of {rules} meets every requirement"
     count = counted(len(front), "design")
     if len(front) >= problem.settings.designs:
-        count += ", as many as are asked for"
+        count += ", as many as requested"
     if answer.exact:
         text = (
             f"{count}, exact: {'all ' if answer.combinations > 1 else ''}{_many(answer.combinations)} of {rules} judged"
@@ -33,7 +33,7 @@ def found_in_words(front: ParetoFront) -> str:
     else:
         some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
         left = answer.combinations - answer.judged
-        text = f"{count}, {answer.how}: {some} judged, the other {left} not looked at"
+        text = f"{count}, {answer.how}: {some} evaluated, the other {left} not"
     told = []
     for place, wanted in enumerate(front.objectives if answer.continuous else ()):
         of = problem.quantity(wanted.quantity)
@@ -53,7 +53,7 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
         f"none of {_many(found.judged)} of {rules}" if found.judged != 1 else f"not even the one combination of {rules}"
     )
     if found.nearest is None:
-        return f"{none} turns fully with every quantity that is asked; give smaller steps or wider ranges"
+        return f"{none} rotates fully and has all required quantities; give smaller steps or wider ranges"
     told_of = {*DIMENSIONS, *(item.name for item in problem.discrete)}
     columns = columns_of_numbers(found.part.mechanism.varying).items()
     sizes = ", ".join(
@@ -74,7 +74,7 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
             told = f"{of.title} {shown}, {off} {'above' if here > asked else 'below'} what is asked"
             remedy = "ask for a range instead of one value" if item.equality else "relax it"
     remedies = f"{remedy}, or give smaller steps or other ranges"
-    return f"{none} keeps every requirement; the nearest, {sizes}, has {told}; {remedies}"
+    return f"{none} meets every requirement; the nearest, {sizes}, has {told}; {remedies}"
 
 
 def _many(count: int) -> str:

@@ -61,12 +61,12 @@ class Cluster:
         if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
             shown = f"***@{address.rpartition('@')[2]}" if "@" in address else address  # before it may be a password
             raise InputError(
-                f"a scheduler's address is like tcp://host:8786 or tls://host:8786, without a user; got {shown!r}; "
-                "correct it"
+                "a scheduler's address must look like tcp://host:8786 or tls://host:8786, without a user; got "
+                f"{shown!r}; correct it"
             )
         if (scheme == "tls") != (tls is not None):
             raise InputError(
-                f"certificates belong to an address with tls://, and it needs them; got {address} "
+                f"an address with tls:// needs certificates, and no other may have them; got {address} "
                 f"{'with' if tls else 'without'}; give authority, certificate and key with tls:// only"
             )
         if not patience >= 0.0:
@@ -100,10 +100,10 @@ class Cluster:
                 self.close()
                 if time.monotonic() - self._reached >= self.patience:
                     raise EngineError(
-                        f"the scheduler must be reached within {self.patience:g} s; {self.address} was not "
+                        f"the scheduler must answer within {self.patience:g} s; {self.address} did not "
                         f"({_said(error)}); start it, or correct the address"
                     ) from None
-                _log.warning("scheduler %s lost (%s); connecting again", self.address, _said(error))
+                _log.warning("connection to scheduler %s lost (%s); reconnecting", self.address, _said(error))
                 delay = _DELAYS[0] if lost else min(2.0 * delay, _DELAYS[1])
                 _pause(delay, poll)
         return [found[index] for index in range(len(items))]
@@ -145,7 +145,7 @@ class Cluster:
                 done = [future for future in pending if future.done()]
                 states = {future.status for future in done}
                 if client.status != "running" or states & {"cancelled", "lost"}:
-                    raise _Lost("it does not know this client any more")
+                    raise _Lost("it no longer knows this client")
                 self._reached = time.monotonic()
                 good = [future for future in done if future.status == "finished"]
                 for future, result in zip(good, client.gather(good), strict=True):
@@ -159,9 +159,9 @@ class Cluster:
                         killed[index] += 1
                         if killed[index] >= MOST_KILLED:
                             raise EngineError(
-                                f"workers must outlive what they evaluate; {4 * MOST_KILLED} of them died at the same "
-                                f"designs (chunk {index + 1} of {len(items)}); look for a lack of memory or a crash "
-                                "in a function of your own"
+                                f"workers must survive an evaluation; {4 * MOST_KILLED} of them died at the same "
+                                f"designs (chunk {index + 1} of {len(items)}); check for too little memory or a crash "
+                                "in a custom function"
                             )
                         again.append(index)
                 if again:
@@ -176,8 +176,8 @@ class Cluster:
                     heard = now if threads else heard
                     if not threads and not waits:
                         _log.warning(
-                            "waiting for a worker of the cluster: the scheduler at %s has none; given up after %g s; "
-                            "start some: dask worker %s",
+                            "waiting for a worker: the scheduler at %s has none; giving up after %g s; start some: "
+                            "dask worker %s",
                             *(self.address, self.patience, self.address),
                         )
                     waits = not threads
@@ -212,8 +212,8 @@ def _call(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
     versions, function, item = task
     if versions != _versions():
         raise EngineError(
-            f"workers must have the versions of who asks; got {', '.join(_versions())} for {', '.join(versions)}; "
-            "install the same"
+            f"workers must have the same versions as the client; got {', '.join(_versions())} for "
+            f"{', '.join(versions)}; install the same"
         )
     return function(item)
 
@@ -228,7 +228,7 @@ def _told(error: BaseException) -> BaseException:
     if isinstance(error, SlidercrankError) or not isinstance(error, ImportError | AttributeError | RuntimeError):
         return error
     return EngineError(
-        f"scheduler and workers must have the same software as here; got {_said(error)}; install the same there"
+        f"scheduler and workers must have the same software as this machine; got {_said(error)}; install the same there"
     )
 
 

@@ -33,7 +33,9 @@ class Processes:
     def __init__(self, workers: int | None = None) -> None:
         """Take how many, the number of processors if not given. Raises `InputError` for fewer than one."""
         if workers is not None and workers < 1:
-            raise InputError(f"there must be at least one process; got {workers}; leave it out for one a processor")
+            raise InputError(
+                f"the number of processes must be at least one; got {workers}; leave it out for one per processor"
+            )
         self.workers = workers or os.cpu_count() or 1
         self._pool: ProcessPoolExecutor | None = None
         self._refused = 0.0
@@ -62,9 +64,9 @@ class Processes:
                 breaks[index] += len(broken) == 1
                 if breaks[index] >= MOST_BREAKS:
                     raise EngineError(
-                        f"a process that evaluates must not end by itself; got {MOST_BREAKS} that did at the same "
-                        f"designs (chunk {index + 1} of {len(items)}); look for a lack of memory or a crash in a "
-                        "function of your own, or evaluate without processes"
+                        f"an evaluation process must not exit by itself; {MOST_BREAKS} did at the same designs (chunk "
+                        f"{index + 1} of {len(items)}); check for too little memory or a crash in a custom function, "
+                        "or evaluate without processes"
                     )
         return [found[index] for index in range(len(items))]
 
@@ -139,8 +141,8 @@ class Processes:
             except BrokenProcessPool:
                 pool.shutdown()
         raise EngineError(
-            f"processes must be able to start; got {_STARTS} that ended at once; a script that asks for them needs "
-            'its own work under if __name__ == "__main__", else look for a lack of memory'
+            f"evaluation processes must be able to start; {_STARTS} exited immediately; put the work of the calling "
+            'script under if __name__ == "__main__", or check for too little memory'
         )
 
 

@@ -22,7 +22,7 @@ from .relaxation import Relaxation, missed, relaxations
 from .swinging import unswung
 from .valueless import valueless
 
-_UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank turns fully; lengthen the rod's range"
+_UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank rotates fully; allow a longer rod"
 _SAMPLES = 16384
 _RANKED = 2048
 _STARTS = 24
@@ -81,12 +81,13 @@ def diagnose(
         if best(loose) is not None:
             other = "inward" if problem.slow_stroke == "outward" else "outward"
             sentences.append(
-                f"slow stroke {problem.slow_stroke} is asked, with the {other} one slow or neither all else can be kept"
+                f"slow stroke {problem.slow_stroke} is required; all other requirements can be met if the {other} "
+                "stroke is slow, or neither"
             )
     if sentences:
         message = "no design meets all requirements: " + "; ".join(sentences)
     else:
-        message = f"no design meets all requirements, and giving up any single one is not enough; {nearest}"
+        message = f"no design meets all requirements, and dropping any single one is not enough; {nearest}"
     return Diagnosis(feasible, tuple(found), message)
 
 
@@ -132,4 +133,4 @@ def _together(problem: Problem, variant: int, design: Array) -> str:
     labels = problem.variants[variant].labels if problem.variants else ()
     chosen = "".join(f"{name} {label}, " for name, label in zip(problem.choices, labels, strict=True))
     sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))
-    return f"nearest to all of them is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"
+    return f"the nearest design is {chosen}{sizes}; ask for {' and '.join(found)}, or widen the ranges"

@@ -59,7 +59,7 @@ class Relaxation:
         reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
         asked = "is kept where a job sets none" if self.standing else "is asked"
         requirement = f"{self.title} {self.relation} {self._number_asked()}"
-        return f"{requirement} {asked}, {reach} {self.with_unit} can be had with {kept} kept"
+        return f"{requirement} {asked}, {reach} {self.with_unit} is possible with {kept} met"
 
     def instead(self) -> str:
         """Return the reachable requirement to ask for instead, in words."""

@@ -53,23 +53,24 @@ def unswung(problem: Problem) -> str:
         asked = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
     if not closing and motion.of == "slider":
         return (
-            f"no design of the ranges makes {asked} with the crank pin on the {motion.side} of the line to the slider "
-            "pin: the slider must be between |rod - crank| and rod + crank from the crank pivot at both ends; change "
-            "the ranges, the places, crank_side or the branch"
+            f"no design within the ranges reaches {asked} with the crank pin on the {motion.side} of the line to "
+            "the slider pin: at both ends the slider's distance from the crank pivot must be between |rod - crank| "
+            "and rod + crank; change the ranges, the positions, crank_side or the branch"
         )
     if not closing:
         return (
-            f"no design of the ranges closes over {asked}: rod > |offset - crank sin(crank angle)|; "
-            "lengthen the rod's range, let the offset come nearer to the crank pin, or swing less far"
+            f"no design within the ranges closes over {asked}, which needs rod > |offset - crank sin(crank "
+            "angle)|; allow a longer rod or an offset nearer to the crank pin, or swing less far"
         )
     if not passing:
         return (
-            f"in every design of the ranges that closes, {asked} has a dead point, where crank and rod are in line and "
-            "a slider cannot drive the crank; stay on one side of it, change the ranges, or drive the crank"
+            f"in every design within the ranges that closes, {asked} passes a dead point, where crank and rod are "
+            "in line and the slider cannot drive the crank; stay on one side of it, change the ranges, or drive the "
+            "crank"
         )
     return (
-        f"friction may lock every design of the ranges that can make {asked}; {_too_much(stuck, motion)}lessen the "
-        "friction, lengthen the rod, or drive the other end"
+        f"friction may lock every design within the ranges that can make {asked}; {_too_much(stuck, motion)}reduce "
+        "the friction, lengthen the rod, or drive the other end"
     )
 
 

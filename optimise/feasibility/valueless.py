@@ -28,7 +28,7 @@ def valueless(part: Problem, designs: Array) -> str:
             continue
         remedy = "correct the formula, or change the ranges" if isinstance(of, FormulaQuantity) else "change the ranges"
         why = f": {of.blank}" if of.blank else ""
-        return f"{of.title} has no value for any of {counted(len(designs), 'design')} of the ranges{why}; {remedy}"
+        return f"{of.title} has no value for any of {counted(len(designs), 'design')} within the ranges{why}; {remedy}"
     return ""
 
 
@@ -55,6 +55,6 @@ def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
             of = problem.quantity(name)
             count = f"all {len(values)} designs" if len(values) > 1 else "the only design"
             raise InputError(
-                f"objectives.{name}: {of.title} is infinite for {count} of the ranges that were tried: {of.endless}; "
-                "leave it out"
+                f"objectives.{name}: {of.title} is infinite for {count} tried within the ranges: {of.endless}; leave "
+                "it out"
             )

@@ -109,7 +109,7 @@ class ParetoFront:
     def plot(self) -> Figure:
         """Return a matplotlib figure of every objective against the first. Raises `InputError` for an empty front."""
         if not len(self):
-            raise InputError(f"a figure needs designs; got none: {self.message}")
+            raise InputError(f"a figure needs designs; this front is empty: {self.message}")
         return figure(self._shown(), self._labels(), self.problem.name)
 
     def _labels(self) -> list[str]:
@@ -138,7 +138,7 @@ class ParetoFront:
             known = False
         if not known:
             has = f"rows 0 to {len(self) - 1}" if len(self) else "no design"
-            raise InputError(f"a row must be one of the front, which has {has}; got {row!r}")
+            raise InputError(f"a row must be one of the front's, which are {has}; got {row!r}")
         return self.problem.part(self.variants[row] if self.variants else 0)
 
     def mechanism(self, row: int) -> Mechanism:
@@ -211,7 +211,7 @@ class ParetoFront:
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
         for item in order:
             if not isinstance(item, Priority):
-                raise InputError(f"a ranking is of names and of Priority(...); got {item!r}; name an objective")
+                raise InputError(f"a ranking may only contain names and Priority(...); got {item!r}; name an objective")
         given = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
         return lexicographic(self.values, given, size=self._sizes)
 
@@ -225,7 +225,7 @@ class ParetoFront:
         names = [objective.quantity for objective in self.objectives]
         plain = ["".join(item.split()) for item in names]  # a formula is the same with other spaces
         if "".join(str(name).split()) not in plain:
-            raise InputError(f"pick by one of the objectives {', '.join(names)}; got {name!r}")
+            raise InputError(f"pick must name one of the objectives {', '.join(names)}; got {name!r}")
         return plain.index("".join(str(name).split()))
 
     def pick(self, best: str, **bounds: tuple[float | None, float | None]) -> int:
@@ -237,20 +237,20 @@ class ParetoFront:
         """
         objective = self.column_of(best)
         if not len(self):
-            raise InputError(f"a pick needs the designs of a front; got none: {self.message}")
+            raise InputError(f"a pick needs a front with designs; this one is empty: {self.message}")
         keep, there = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
             least, greatest = pair(column, ends)
             values = self.columns[column] if column in self.columns else self._of(column)
             if values.dtype.kind not in "fiu":
-                raise InputError(f"bounds are of numbers; got {column}, a column of words; see front.designs")
+                raise InputError(f"bounds may only be on numbers; got {column}, a column of words; see front.designs")
             if least is not None:
                 keep &= values >= least
             if greatest is not None:
                 keep &= values <= greatest
             there.append(f"{column} is {values.min():.6g} to {values.max():.6g}")
         if not keep.any():
-            raise InputError(f"no design of the front lies within {bounds}, whose {' and '.join(there)}; widen a bound")
+            raise InputError(f"no design of the front is within {bounds}, whose {' and '.join(there)}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
 
@@ -308,7 +308,7 @@ class ParetoFront:
         stay = []
         for name, label in zip(self.problem.choices, labels, strict=True):
             least = self.columns[key][row] if (key := least_field(name)) in self.columns else label
-            also = f"; the least that also serves the given design is {least}" if least not in ("", label) else ""
+            also = f"; the least that also suffices for the given design is {least}" if least not in ("", label) else ""
             stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
         yield (yield from rounding(part, given, span, to, count=count, allow=allow, notes=stay))
@@ -428,7 +428,7 @@ def pair(name: str, ends: object) -> tuple[float | None, float | None]:
     given = tuple(ends) if isinstance(ends, tuple | list) else ()
     if len(given) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in given):
         raise InputError(
-            f"bounds of {name} are (least, greatest), numbers or None; got {ends!r}; for example (1.0, None)"
+            f"bounds of {name} must be (least, greatest), numbers or None; got {ends!r}; write for example (1.0, None)"
         )
     return given
 
@@ -436,4 +436,4 @@ def pair(name: str, ends: object) -> tuple[float | None, float | None]:
 def require_front(front: object, what: str) -> None:
     """Refuse what is no front. what: takes one."""
     if not isinstance(front, ParetoFront):
-        raise InputError(f"{what} takes a front; got {type(front).__name__}; solve(problem) gives one")
+        raise InputError(f"{what} needs a front; got {type(front).__name__}; solve(problem) returns one")

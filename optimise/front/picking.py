@@ -111,7 +111,7 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
     _require_designs(values)
     columns = [column for column, _, _ in order]
     if not columns or len(set(columns)) < len(columns):
-        raise InputError("a ranking names at least one objective, each once; name what matters most first")
+        raise InputError("a ranking must name at least one objective, each once; put the most important first")
     span, scaled = spread(values, size=size), by_range(values, size=size)
     rows = np.arange(len(values))
     for place, (column, absolute, share) in enumerate(order):
@@ -129,4 +129,4 @@ def _first(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
 
 def _require_designs(values: Array) -> None:
     if not len(values):
-        raise InputError("the front is empty; see its message for what contradicts what")
+        raise InputError("the front is empty; its message says why")

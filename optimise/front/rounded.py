@@ -92,23 +92,23 @@ class Rounded:
     def message_in(self, system: System) -> str:
         """Return the result of the search in words. system: of its units."""
         if not self.judged:
-            return f"no rounded design within {counted(self.reach, 'step')} turns fully; give smaller steps"
+            return f"no rounded design within {counted(self.reach, 'step')} rotates fully; give smaller steps"
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
         if self.reach < REACHES[0]:
-            near += f" (not {REACHES[0]}, as {len(self.steps)} numbers are rounded together)"
+            near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
             within = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._beyond(row)) for row in range(len(self)))
-            lose = "others lose clearly less and miss" if missing > 1 else "another one loses clearly less and misses"
+            lose = "others lose clearly less but miss" if missing > 1 else "another one loses clearly less but misses"
             more = f"; {lose} little" if missing else ""
             return f"{self.kept} of {near} {keep} every requirement{within}{more}"
         none = f"none of {near}"
         if not len(self):
-            return f"{none} has a value of everything that is required; give smaller steps"
+            return f"{none} has a value for every requirement; give smaller steps"
         beyond = [self.problem.quantity(name).title for name in self._beyond(0)]
         more = "a greater miss" if set(self._beyond(0)) & set(self.allowed) else "a miss"
-        return f"{none} keeps every requirement; these are the nearest; allow {more} of {' and '.join(beyond)}"
+        return f"{none} meets every requirement; these are the nearest; allow {more} of {' and '.join(beyond)}"
 
     @cached_property
     def violations(self) -> Array:

@@ -71,11 +71,11 @@ def rounding(
     told = [*notes, *_stays(given, ranges, steps)]
     own = {item.name: item.rule for item in part.discrete if item.name in moved}
     moved = {name: step for name, step in moved.items() if name not in own}
-    told += [f"{name} has values of the job, {rule}, and stays" for name, rule in own.items()]
+    told += [f"{name} has discrete values in the job, {rule}, and stays as it is" for name, rule in own.items()]
     if not moved:
         raise InputError(
-            f"a step is for a number that varies; got {', '.join(steps)}, fixed in this job or with values of its own; "
-            "name another"
+            f"a step may only be given for a number that varies over a range; got {', '.join(steps)}, fixed or with "
+            "discrete values in this job; name another"
         )
     search = RoundingSearch(part, given, span, moved, allowed)
     best = yield from search.best(int(count))
@@ -131,7 +131,7 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
                 f"{shown(name)}; name one of them"
             )
         if names[name] in found:
-            raise InputError(f"each requirement is allowed one miss; got two for {names[name]}; leave out one")
+            raise InputError(f"a requirement may have only one allowed miss; got two for {names[name]}; leave out one")
         try:
             found[names[name]] = _miss(value, known[names[name]], constraints[names[name]])
         except InputError as error:
@@ -142,7 +142,9 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
 def _require_names(given: Mapping[str, float | str]) -> Mapping[str, float | str]:
     """Return allowed misses. Raises `InputError` where they do not come by quantity."""
     if not isinstance(given, Mapping):
-        raise InputError(f'what may be missed comes by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}')
+        raise InputError(
+            f'allowed misses must be a dict by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}'
+        )
     return given
 
 
@@ -162,10 +164,10 @@ def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
     ranges = part.ranges
     steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(DIMENSIONS, to)
     if not steps:
-        raise InputError("say what to round: a step for all lengths, or one by name")
+        raise InputError("rounding needs a step for all lengths, or steps by name; got none; give one")
     for name, step in steps.items():
         if name not in ranges:
-            raise InputError(f"a step is for one of {', '.join(ranges)}; got {name!r}; name one of them")
+            raise InputError(f"a step must be for one of {', '.join(ranges)}; got {name!r}; name one of them")
         if isinstance(step, bool) or not isinstance(step, Real) or not (math.isfinite(step) and step > 0.0):
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
@@ -187,5 +189,7 @@ def _stays(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]
         elif ends.fixed:
             place = value / steps[name]
             if abs(place - round(place)) > FEASIBLE * max(1.0, abs(place)):
-                told.append(f"{name} is fixed in this job and stays, though it is no multiple of the step")
+                told.append(
+                    f"{name} is fixed in this job and stays as it is, although it is not a multiple of the step"
+                )
     return told

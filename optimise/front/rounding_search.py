@@ -177,8 +177,8 @@ class RoundingSearch:
         fitting = [reach for reach in every if math.prod(map(len, self._ladders(reach))) <= self.most]
         if not fitting:
             raise InputError(
-                f"at most {int(math.log2(self.most))} numbers are rounded together; got {len(self.steps)}; leave some "
-                "without a step"
+                f"at most {int(math.log2(self.most))} numbers may be rounded together; got {len(self.steps)}; leave "
+                "some without a step"
             )
         return [reach for reach in fitting if reach >= REACHES[0]] or fitting[-1:]
 
@@ -218,7 +218,7 @@ class RoundingSearch:
         ahead, judged = np.argsort(misses, kind="stable"), np.zeros(0, dtype=np.int64)
         ahead = ahead[least[ahead] <= most]
         while len(ahead) and not ((len(found) or math.isfinite(most)) and len(judged) >= _NEAREST):
-            yield Stage("looking for the nearest", len(judged), max(_NEAREST, len(judged)))
+            yield Stage("searching for the nearest", len(judged), max(_NEAREST, len(judged)))
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
             rows = rows[~known[rows]]

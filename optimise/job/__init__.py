@@ -59,7 +59,7 @@ def load_job(
     read, does not follow the schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
-        raise JobError(f"a job file is named by its path; got {type(path).__name__}; tables are read by problem")
+        raise JobError(f"a job file must be given by its path; got {type(path).__name__}; for tables use problem")
     data = read_job(path)
     with _named(path):
         problem = parse_job(

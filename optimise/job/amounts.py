@@ -39,7 +39,7 @@ class _Read(Physical):
 def _named(amounts: dict[str, Any]) -> dict[str, Any]:
     for name in amounts:
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
-            raise InputError(f"an amount must have a name of its own; got {name}; choose another name")
+            raise InputError(f"an amount must have a unique name; got {name}; choose another name")
         require_name(name)
     return amounts
 
@@ -82,8 +82,8 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection
         for name, kind in kinds_of_amounts(options).items():
             if name in owners:
                 raise JobError(
-                    f"choice {shown(choice)}: an amount must have a name of its own; got {name}, which {owners[name]} "
-                    "has too; rename one; a formula adds the two"
+                    f"choice {shown(choice)}: an amount must have a unique name; got {name}, which {owners[name]} has "
+                    "too; rename one; a formula can add the two"
                 )
             owners[name] = f"the choice {shown(choice)}"
             found[name] = Amount(

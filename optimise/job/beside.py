@@ -42,17 +42,17 @@ def text_beside(files: Files, key: str, file: str) -> str:
 def unread(file: str, instead: str) -> InputError:
     """Return the refusal of a file that nobody read. instead: what may be given in its place."""
     return InputError(
-        "a file lies beside the job file, or its content is sent with the job (API: files), and is instead of "
-        f"{instead}; got file {shown(file)}; send it, or give the {instead} alone"
+        f"a file must lie beside the job file, or be sent with the job (API: files), and replaces {instead}; got file "
+        f"{shown(file)}; send it, or give only the {instead}"
     )
 
 
 def require_point_count(count: int, name: str, least: int) -> None:
     """Raise `InputError` for more points than a job takes, or fewer than `least`. name: of the file, for messages."""
     if count < least:
-        raise InputError(f"{name} must have {least} different points at least; got {count}; add rows")
+        raise InputError(f"{name} must have at least {least} different points; got {count}; add rows")
     if count > MOST_POINTS:
         raise InputError(
-            f"{name} must have at most {MOST_POINTS:,} points that count; got {count:,}; smooth the curve, or keep one "
-            f"line in {-(-count // MOST_POINTS)} and the last one"
+            f"{name} must have at most {MOST_POINTS:,} significant points; got {count:,}; smooth the curve, or keep "
+            f"one line in {-(-count // MOST_POINTS)} and the last one"
         )

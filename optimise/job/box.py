@@ -86,8 +86,8 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise InfeasibleError if nothing is left."""
     if box.offset.upper == 0.0:
         raise InfeasibleError(
-            f"constraints.{ROD_TO_OFFSET.name}: it needs an offset; got offset fixed at 0; give "
-            "variables.offset a range"
+            f"constraints.{ROD_TO_OFFSET.name}: needs an offset; the offset is fixed at 0; give variables.offset a "
+            "range"
         )
     _require_within(ROD_TO_OFFSET, constraint, box, problem)
     least, greatest = constraint.lower or 0.0, constraint.upper or math.inf
@@ -148,7 +148,7 @@ def _possible(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]
         kept = (constraint, *narrowing)
         (found, _), active = _nearest(problem, constraint, kept), [*narrowing]
     if found is None:
-        return f"{ranges} it is not possible", []
+        return f"{ranges} it is impossible", []
     rules = [_in_words(problem, rule) for rule in active]
     rules += [_OTHERS] if len(kept) > 1 + len({rule.quantity for rule in active}) else []
     held = f" and with {' and '.join(rules)}," if rules else ""
@@ -224,8 +224,8 @@ def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | No
             what = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"
             return f"{held}{held_too} {what}{f', or {other}' if other else ''}"
         if other:
-            return f"{held}{held_too} no linkage has it; got {_bounds(ratio)}; {other}"
-    return f"{held} no linkage has it; got {_bounds(ratio)}; lower both"
+            return f"{held}{held_too} no linkage reaches it; got {_bounds(ratio)}; {other}"
+    return f"{held} no linkage reaches it; got {_bounds(ratio)}; lower both"
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:

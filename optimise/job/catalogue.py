@@ -140,9 +140,8 @@ def _catalogue(table: TableFile, own: frozenset[str], tables: Mapping[str, Any] 
     found = screened(used, cells, tables or {}, where)
     if len(found.searched) > MOST_OPTIONS:
         raise JobError(
-            f"{where} must have at most {MOST_OPTIONS} rows that no other one beats in everything; got "
-            f"{len(found.searched)} of {len(table)}; leave out rows that you would not buy, or columns that do not "
-            "matter"
+            f"{where} must have at most {MOST_OPTIONS} non-dominated rows; got {len(found.searched)} of {len(table)}; "
+            "leave out rows that you would not buy, or columns that do not matter"
         )
     return Catalogue(
         options=[_option(used, cells[row], searched=row in found.searched) for row in found.order],
@@ -188,8 +187,8 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
         if cell.startswith("=") or len(cell) > _LONGEST_NOTE or not (cell.isprintable() or not cell):
             raise JobError(
                 f"{table.at(number, column.place)}: must be a number, or a text of at most {_LONGEST_NOTE} characters "
-                f"on one line, no formula; got {shown(cell)}; correct it, or let the column begin with # to pass it "
-                "over"
+                f"on one line, no formula; got {shown(cell)}; correct it, or let the column name begin with # to skip "
+                "it"
             )
     return replace(column, kind=None)
 
@@ -201,8 +200,8 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
         if column.kept and isinstance(machine, Mapping) and isinstance(machine.get(column.name), str | int | float):
             behind = f" ({column.unit})" if column.unit else ""
             raise JobError(
-                f"{name}, column {shown(column.header)}: it would be kept with designs and change nothing; did you "
-                f"mean mechanism.{column.name}{behind}? rename it, or let it begin with # to pass it over"
+                f"{name}, column {shown(column.header)}: it would be stored with designs but have no effect; did you "
+                f"mean mechanism.{column.name}{behind}? rename it, or let it begin with # to skip it"
             )
         if column.word is None and not column.kept and column.name not in DIMENSIONS:
             try:

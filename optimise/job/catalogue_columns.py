@@ -102,7 +102,7 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
 def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
     parts = _COLUMN.fullmatch(text)
     if parts is None:
-        raise JobError(f"{where}: {_RULE}; a column to be passed over begins with #")
+        raise JobError(f"{where}: {_RULE}; a column that begins with # is skipped")
     name, word, unit = parts["name"].strip(), parts["word"], (parts["unit"] or parts["other"] or "").strip()
     if word is not None:
         try:
@@ -112,7 +112,7 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
             if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *own)) is not None:
                 raise JobError(f"{where}: {error}") from None
             raise JobError(
-                f"{where}: a limit is one on a quantity; got {shown(name)}, which is none; name the column "
+                f"{where}: a limit must be on a quantity; got {shown(name)}, which is not one; name the column "
                 f'"{name}{f" ({unit})" if unit else ""}" and bound {key} in [constraints]'
             ) from None
         if kind is not None:
@@ -148,8 +148,7 @@ def _require_kept(text: str, name: str, unit: str, where: str, own: frozenset[st
         word = _LIMIT[(misplaced["first"] or misplaced["last"]).casefold()]
         limited = misplaced["after"] or misplaced["before"]
         raise JobError(
-            f"{where}: min, max or equals stands after the quantity, in small letters; got it otherwise; write "
-            f"{limited} {word}{behind}"
+            f"{where}: min, max or equals must follow the quantity, in lower case; write {limited} {word}{behind}"
         )
     known = _quantities().get(identifier(name), name)
     if known in FACTS or known in own:
@@ -158,20 +157,20 @@ def _require_kept(text: str, name: str, unit: str, where: str, own: frozenset[st
         )
     own_path = name.removeprefix("variables.")
     if own_path != name and _PATH.fullmatch(own_path):
-        raise JobError(f"{where}: a number of the job has its own path; got {name}; write {own_path}{behind}")
+        raise JobError(f"{where}: a number of the job must be named by its path; got {name}; write {own_path}{behind}")
     for formula in (name, text):  # text: the brackets at its end may be those of a function
         if _is_known(formula, own):
             limited, _ = _limited(formula, own)
             raise JobError(f"{where}: a formula needs min, max or equals; got none; write {limited} max for its limit")
     key = identifier(name)
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
-        raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to pass it over")
+        raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
     peak = f"peak_{identifier(misplaced['after'] or '')}" if misplaced is not None else ""
     near = [peak] if peak in _quantities() else difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
-            f"{where}: must be spelled as a quantity is, or have a name that none resembles; did you mean "
-            f"{_quantities()[near[0]]}? rename it, or let it begin with # to pass it over"
+            f"{where}: must be the name of a quantity, or a name unlike any; did you mean {_quantities()[near[0]]}? "
+            "rename it, or let it begin with # to skip it"
         )
 
 

@@ -113,7 +113,7 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
         compared += [] if column.word is None and wanted is None else [column.said.partition(" (")[0]]
         if wanted is not None:
-            without = f"no {column.name.replace('_', ' ')}, which the job asks for"
+            without = f"no {column.name.replace('_', ' ')}, which the job requires"
             blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), without)
             beyond |= _beyond(constraints.get(column.name), column, values, rows)
             floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
@@ -128,7 +128,7 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
     complete = np.array([row not in excluded for row in range(len(rows))], np.bool_)
     if not complete.any():
         names = " and ".join(asked)
-        raise JobError(f"{where} must have a row with {names}, which the job asks for; got none; fill the cells")
+        raise JobError(f"{where} must have a row with {names}, which the job requires; got none; fill the cells")
     order = _order(columns, rows)
     rank = np.empty(len(rows))
     rank[order] = np.arange(len(rows))

@@ -72,7 +72,7 @@ def _require_one_density(problem: Problem) -> None:
         stated = isinstance(bar, Bar) and f"{name}.density" not in free
         if stated and not math.isclose(bar.density, density, rel_tol=_ONE_MATERIAL):
             raise JobError(
-                f"mechanism.{name}.density: a bar is of [sections.material], and its density within "
+                f"mechanism.{name}.density: a bar must be of the material in [sections.material], its density within "
                 f"{100.0 * _ONE_MATERIAL:.0f} % of that; got "
                 f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
             )
@@ -104,9 +104,9 @@ def _undelivered(part: Problem) -> str:
         most = swept * (1.0 / grown - load.clearance)
         if load.clearance_volume >= most:
             return (
-                f"load #{k + 1}.clearance_volume: must be below {1e6 * most:.4g} cm^3, else nothing is delivered at "
-                f"{load.high / load.low:.4g} times the suction pressure by a stroke of {1e3 * stroke:.6g} mm, the "
-                f"longest one of the job; got {1e6 * load.clearance_volume:.6g} cm^3; reduce it or the pressure ratio, "
+                f"load #{k + 1}.clearance_volume: must be below {1e6 * most:.4g} cm^3, otherwise a stroke of "
+                f"{1e3 * stroke:.6g} mm, the longest in the job, delivers nothing at {load.high / load.low:.4g} times "
+                f"the suction pressure; got {1e6 * load.clearance_volume:.6g} cm^3; reduce it or the pressure ratio, "
                 "or allow longer strokes"
             )
     return ""
@@ -162,8 +162,8 @@ def _require_free(problem: Problem, name: str) -> None:
     )
     if held is not None:
         raise JobError(
-            f"objectives.{name}: a quantity that is held at one value cannot be an objective too; "
-            f"got {key_of(['constraints', held.quantity])} with equals; leave out one of the two"
+            f"objectives.{name}: a quantity with a fixed value cannot also be an objective; got "
+            f"{key_of(['constraints', held.quantity])} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
@@ -216,7 +216,7 @@ def require_slow_stroke(problem: Problem) -> None:
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)
         raise InfeasibleError(
-            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {floor:g} on, unless "
-            f"the job asks for another one; got ranges of crank, rod and offset that allow {greatest:.6g} at most; "
-            f"let crank or offset be greater, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"
+            f"constraints.slow_stroke: a stroke counts as slow from a time ratio of {floor:g} unless the job sets "
+            f"another; the ranges of crank, rod and offset allow at most {greatest:.6g}; allow a longer crank or a "
+            f"larger offset, or set constraints.{TIME_RATIO.name} = {{ min = {least:.4g} }}"
         )

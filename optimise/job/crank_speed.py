@@ -45,8 +45,8 @@ class _CrankSpeed(Within):
         found = super().read(value)
         if found == 0.0:
             raise InputError(
-                "must not be 0, because its sign says which way the crank turns; got 0; "
-                'give a very slow machine a small speed, for example "0.1 rpm"'
+                "must not be 0, because its sign gives the direction of rotation; got 0; for a very slow machine give "
+                'a small speed, for example "0.1 rpm"'
             )
         if abs(found) < 2.0 * math.pi / _SLOWEST * (1.0 - _ROUNDING):
             raise InputError(f"must be {self.rule}; got {shown(value)}; {self.hint}")
@@ -66,7 +66,7 @@ class CrankSpeedPart(Part):
     """Crank speed and its variation over the turn."""
 
     speed: Annotated[float, _SPEED] | None = optional(
-        "of the crank, positive counter-clockwise, negative clockwise; a swing has none",
+        "crank speed, positive counter-clockwise, negative clockwise; not for a swing",
         "300 rpm",
     )
     cycle_time: Annotated[float, _CYCLE_TIME] | None = optional(
@@ -74,13 +74,15 @@ class CrankSpeedPart(Part):
     )
     strokes_per_minute: Annotated[float, _STROKES] | None = optional("instead of speed: crank turns per minute", 30)
     direction: Direction | None = optional(
-        "of crank rotation, with cycle_time or strokes_per_minute; counter-clockwise if left out", "clockwise"
+        "direction of rotation, with cycle_time or strokes_per_minute; default counter-clockwise", "clockwise"
     )
     acceleration: AngularAcceleration = optional(
-        "of the crank, the same at every crank angle", "20 rad/s^2", default=0.0
+        "angular acceleration of the crank, the same at every crank angle",
+        "20 rad/s^2",
+        default=0.0,
     )
     speed_profile: SpeedProfilePart | None = optional(
-        "how the speed varies with the crank angle; applies to all quantities except stresses and wear",
+        "variation of the speed with the crank angle; applies to all quantities except stresses and wear",
         {"cosines": [0.0, 0.05]},
     )
 
@@ -112,8 +114,8 @@ class CrankSpeedPart(Part):
     def _require_one_speed(self) -> CrankSpeedPart:
         if len(self.speed_keys) > 1:
             raise InputError(
-                f"only one of {', '.join(SPEED_KEYS)} may state how fast the crank turns; got "
-                f"{' and '.join(self.speed_keys)}; leave out all but one"
+                f"only one of {', '.join(SPEED_KEYS)} may set the crank speed; got {' and '.join(self.speed_keys)}; "
+                "leave out all but one"
             )
         if self.speed is not None and self.direction not in (None, _direction(self.speed)):
             raise InputError(

@@ -92,7 +92,7 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
     again = np.flatnonzero((np.diff(at) == 0.0) & (np.diff(values) == 0.0))
     at, values = np.delete(at, again + 1), np.delete(values, again + 1)
     if len(at) < 2:
-        raise InputError(f"{table.name} must have two points at least; got {len(at)}; add rows")
+        raise InputError(f"{table.name} must have at least two points; got {len(at)}; add rows")
     curve = Curve(table.name, x, y, at, values, (table.understood([x.place, y.place]),))
     return _rising(curve, table) if x.kind is not TIME else curve
 
@@ -153,8 +153,8 @@ def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     what = f"{table.name} must have one column of {choice}"
     if not found:
         raise InputError(
-            f"{what}, its unit in brackets or at the end of its name; got {', '.join(map(shown, table.heads[:6]))}; "
-            + _remedy(table.heads, kinds)
+            f"{what}, with its unit in brackets or at the end of its name; got "
+            f"{', '.join(map(shown, table.heads[:6]))}; " + _remedy(table.heads, kinds)
         )
     raise InputError(
         f"{what}; got {' and '.join(shown(head.text) for head in found[:3])}; let the names of the others begin with #"
@@ -170,13 +170,13 @@ def _rising(curve: Curve, table: TableFile) -> Curve:
     if curve.over.kind is ANGLE:
         wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.turn)])
         if wraps[-1]:
-            at, said = at + curve.turn * wraps, (*said, "angles counted on beyond a turn")
+            at, said = at + curve.turn * wraps, (*said, "angles continue beyond one turn")
     wrong = np.flatnonzero(np.diff(at) < 0.0)
     if len(wrong):
         n = int(wrong[0])
         raise InputError(
             f"{table.name}: {shown(curve.over.text)} must increase; got {at[n + 1]:g} after {at[n]:g}; sort the rows, "
-            "and keep one stroke of a position that goes back and forth"
+            "and keep only one stroke if the position moves back and forth"
         )
     return replace(curve, at=at, values=values, said=said)
 
@@ -211,8 +211,8 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         step = float(np.median(np.diff(curve.at))) / curve.turn
         if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.span <= 2.0:
             raise InputError(
-                f"{curve.name} must cover one turn or two, unless the job gives the cycle; got {curve.span:.4g} turns; "
-                'give cycle = "360 deg" or "720 deg", of which the file has the first one'
+                f"{curve.name} must cover one or two turns unless the job gives the cycle; got {curve.span:.4g} turns; "
+                'give cycle = "360 deg" or "720 deg"; the first cycle in the file is used'
             )
         if turns == 2:
             curve = replace(curve, said=(*curve.said, "two turns, a cycle of 720 deg"))
@@ -240,10 +240,10 @@ def opened(curve: Curve) -> Curve:
     first, last = curve.values[0], curve.values[-1]
     if abs(last - first) > _CLOSE * np.ptp(curve.values):
         raise InputError(
-            f"{curve.name}: the last row is the first one a turn later, and must have its value; got {first:g} and "
+            f"{curve.name}: the last row is one turn after the first and must have the same value; got {first:g} and "
             f"{last:g} {curve.of.unit}; correct one of them, or leave out the last row"
         )
-    said = (*curve.said, "the last row repeats the first one and is left out")
+    said = (*curve.said, "the last row repeats the first and is ignored")
     return replace(curve, at=curve.at[:-1], values=curve.values[:-1], said=said)
 
 
@@ -271,5 +271,5 @@ def thinned(curve: Curve) -> Curve:
             left += [(a, a + far), (a + far, b)]
     count = int(kept.sum())
     share = f"{bound:.3g} {curve.of.unit}, {100.0 * SHARE:g} % of its range"
-    said = f"{count:,} points kept, which changes no value by more than {share}"
+    said = f"{count:,} points kept; no value changes by more than {share}"
     return replace(curve, at=curve.at[kept], values=curve.values[kept], said=(*curve.said, said))

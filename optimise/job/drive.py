@@ -28,7 +28,7 @@ class ConstantMotor(Built[model.Motor]):
 
     makes = model.ConstantTorque
 
-    torque: DrivingTorque = required("at every speed; zero if a load alone drives the crank", "20 N m")
+    torque: DrivingTorque = required("at every speed; zero if only a load drives the crank", "20 N m")
 
 
 class LineMotor(Built[model.Motor]):
@@ -57,7 +57,7 @@ class TableMotor(Checked[model.Motor]):
     makes = model.TorqueTable
 
     speeds: tuple[AngularSpeed, ...] = required(
-        "of the motor, increasing, the first one standstill or below",
+        "motor speeds, increasing; the first must be zero or negative",
         ["0 rpm", "750 rpm", "1500 rpm"],
         min_length=2,
         max_length=1000,
@@ -95,10 +95,12 @@ class DrivePart(Built[model.Drive]):
     makes = model.Drive
 
     motor: AnyMotor = required(
-        "torque over the motor's own speed",
+        "motor torque over motor speed",
         {"stall_torque": "60 N m", "no_load_speed": "400 rpm"},
         {"torque": "20 N m"},
     )
-    flywheel: Inertia = optional("inertia on the crank shaft", "0.5 kg m^2", default=0.0)
-    motor_inertia: Inertia = optional("of the rotor and all that turns at motor speed", "0.004 kg m^2", default=0.0)
-    gear_ratio: PositiveRatio = optional("turns of the motor for one turn of the crank", 5.0, default=1.0)
+    flywheel: Inertia = optional("inertia on the crankshaft", "0.5 kg m^2", default=0.0)
+    motor_inertia: Inertia = optional(
+        "of the rotor and everything that turns at motor speed", "0.004 kg m^2", default=0.0
+    )
+    gear_ratio: PositiveRatio = optional("motor turns per crank turn", 5.0, default=1.0)

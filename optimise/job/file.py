@@ -33,20 +33,22 @@ _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_
 def read(path: Path) -> dict[str, Any]:
     """Return the tables of a job file, TOML or JSON by its ending. Raises JobError."""
     if path.suffix.casefold() not in (".toml", ".json"):
-        raise JobError(f"a job file ends in .toml or .json; got {shown(path.suffix or path.name)}; rename the file")
+        raise JobError(
+            f"the name of a job file must end in .toml or .json; got {shown(path.suffix or path.name)}; rename the file"
+        )
     content = _bytes(path)
     if b"\0" in content:
-        raise JobError("a job file is plain UTF-8 text; got a binary or UTF-16 file; save it as UTF-8")
+        raise JobError("a job file must be plain UTF-8 text; got a binary or UTF-16 file; save it as UTF-8")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
         raise JobError(
-            f"line {line}: a job file must be saved as UTF-8; got byte 0x{content[error.start]:02x}, which is not; "
-            "in the editor choose Save as, encoding UTF-8"
+            f"line {line}: a job file must be saved as UTF-8; got byte 0x{content[error.start]:02x}, which is not; in "
+            "the editor choose Save as, encoding UTF-8"
         ) from None
     if not text.strip():
-        raise JobError("a job file states a problem; got an empty file; start from a shipped job")
+        raise JobError("a job file must not be empty; got an empty file; start from an example")
     return _tables(text, path.suffix.casefold())
 
 
@@ -55,21 +57,21 @@ def _bytes(path: Path) -> bytes:
     try:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
-            raise JobError("a job is a file; got a directory; name the file in it")
+            raise JobError("a job must be a file; got a directory; name the file in it")
         if not stat.S_ISREG(status.st_mode):
-            raise JobError("a job is a regular file; got a device or a pipe; save the job to a file")
+            raise JobError("a job must be a regular file; got a device or a pipe; save the job to a file")
         size = status.st_size
         if size <= LARGEST:
             with path.open("rb") as file:
                 content = file.read(LARGEST + 1)
             size = len(content)
         if size > LARGEST:
-            raise JobError(f"a job file has at most 1 MB; got {size / 1e6:.1f} MB; is it the right file?")
+            raise JobError(f"a job file must have at most 1 MB; got {size / 1e6:.1f} MB; is it the right file?")
         return content
     except FileNotFoundError:
         raise JobError("no such file; check the name and the folder") from None
     except PermissionError:
-        raise JobError("the file may not be read; check its permissions") from None
+        raise JobError("the file is not readable; check its permissions") from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         raise JobError(f"the file cannot be read: {error}") from None
 
@@ -86,13 +88,13 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         line = text.split("\n")[error.lineno - 1].strip()
         raise JobError(
-            f"line {error.lineno}: the file must be JSON; got {shown(line)}, which cannot be read from column "
-            f"{error.colno} on; put names, texts and values with units in double quotes, and commas between entries"
+            f"line {error.lineno}: the file must be JSON; got {shown(line)}, which is invalid from column "
+            f"{error.colno}; put names, texts and values with units in double quotes, and commas between entries"
         ) from None
     except ValueError:
         raise _too_long() from None
     if not isinstance(data, dict):
-        raise JobError(f"a job is a JSON object; got {shown(data)}; put it in braces")
+        raise JobError(f"a job must be a JSON object; got {shown(data)}; put it in braces")
     return data
 
 
@@ -119,11 +121,11 @@ def toml_tables(text: str) -> dict[str, Any]:
 
 
 def _too_deep() -> JobError:
-    return JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the file")
+    return JobError(f"tables must be nested at most {DEEPEST} deep; got more; flatten the file")
 
 
 def _too_long() -> JobError:
-    return JobError("a number of a job has a few digits; got one of thousands; shorten it")
+    return JobError("a number must have a few digits only; got thousands; shorten it")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -131,13 +133,14 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
-        raise JobError(f"each key may come once; got {shown(twice)} twice; remove one")
+        raise JobError(f"a key may be given only once; got {shown(twice)} twice; remove one")
     return table
 
 
 def _too_many(got: str) -> JobError:
     return JobError(
-        f"a job has at most {MOST} values, lists and tables; got {got}; leave some out, such as points of long tables"
+        f"a job must have at most {MOST} values, lists and tables; got {got}; leave some out, such as points of long "
+        "tables"
     )
 
 
@@ -163,7 +166,7 @@ def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
             raise JobError(f"a job must be a table of keys; got {shown(value)}")
         require_few(value)
     if len(at) > DEEPEST:
-        raise JobError(f"tables nest at most {DEEPEST} deep; got more; flatten the job")
+        raise JobError(f"tables must be nested at most {DEEPEST} deep; got more; flatten the job")
     if isinstance(value, Mapping):
         for key, item in value.items():
             if not isinstance(key, str):

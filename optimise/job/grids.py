@@ -59,7 +59,10 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     """Return the values that a table says. read: gives a value in SI, by the rules of its key. Raises `InputError`."""
     for key in given:
         if key not in KEYS:
-            raise InputError(f"values have the keys {', '.join(sorted(KEYS))}; got {shown(key)}; correct or remove it")
+            raise InputError(
+                f"discrete values may only have the keys {', '.join(sorted(KEYS))}; got {shown(key)}; correct or "
+                "remove it"
+            )
     words = [key for key in ("step", "series", "values") if key in given]
     if len(words) != 1:
         raise InputError(
@@ -70,7 +73,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
         return _listed(given, read)
     for end in ("min", "max"):
         if end not in given:
-            raise InputError(f"must have min and max beside {words[0]}; got no {end}; add it")
+            raise InputError(f"must have min and max with {words[0]}; {end} is missing; add it")
     lower, upper = read(given["min"]), read(given["max"])
     if lower > upper:
         raise InputError(
@@ -82,22 +85,23 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     values, rule = found(given, read, lower - room, upper + room)
     if not values:
         raise InputError(
-            f"must have a value within {shown(given['min'])} to {shown(given['max'])}; none of {rule} is; widen the "
-            "range, or let it have other values"
+            f"must have a value from {shown(given['min'])} to {shown(given['max'])}; {rule} has none; widen the "
+            "range, or choose other values"
         )
     return Grid(tuple(values), rule)
 
 
 def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     if len(given) > 1:
-        raise InputError("a list of values has its own ends; got min or max too; leave them out")
+        raise InputError("a list of values must not have min or max; got them; leave them out")
     values = given["values"]
     if not isinstance(values, list | tuple) or len(values) < 2:
         raise InputError(
-            f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}; one stands alone'
+            f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}; give a single value '
+            "without a list"
         )
     if len(values) > MOST:
-        raise InputError(f"values are {MOST} at most; got {len(values)}; leave out some")
+        raise InputError(f"values must be at most {MOST}; got {len(values)}; leave out some")
     found = sorted(read(value) for value in values)
     for one, other in pairwise(found):
         if one == other:
@@ -116,8 +120,8 @@ def _multiples(
         raise InputError(f"step must be above zero; got {shown(given['step'])}; give its size")
     if (upper - lower) / step > MOST:
         raise InputError(
-            f"step must leave {MOST} values at most; got {shown(given['step'])}, {(upper - lower) / step:.4g} values; "
-            "give a greater one, or a range [lower, upper]"
+            f"step must give at most {MOST} values; got {shown(given['step'])}, which gives "
+            f"{(upper - lower) / step:.4g}; use a larger step, or a range [lower, upper]"
         )
     exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
     every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
@@ -142,7 +146,8 @@ def _preferred(
         raise InputError(f"series must be one of {', '.join(SERIES)}; got {shown(name)}; choose one of these")
     if not read(given["min"]) > 0.0:
         raise InputError(
-            f"preferred numbers are above zero; got min {shown(given['min'])}; raise it, or give the values as a list"
+            f"preferred numbers must be above zero; got min {shown(given['min'])}; raise it, or give the values as a "
+            "list"
         )
     number, unit = _parts(given["min"])
     # The unit in SI, without the rounding of the division.

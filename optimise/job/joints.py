@@ -26,7 +26,7 @@ class PinPart(Built[Pin]):
 
     makes = Pin
 
-    radius: PositiveLength | None = optional("of the pin; half its diameter in [sections] if left out", "10 mm")
+    radius: PositiveLength | None = optional("radius of the pin; default half its diameter in [sections]", "10 mm")
     coefficient: Coefficient = required("of friction, on the pin's surface", 0.08)
 
 
@@ -66,9 +66,9 @@ class ClearancePart(Checked[Clearance]):
     makes = Clearance
     renamed: ClassVar = {"radial_clearance": "radius"}
 
-    joint: Joint = required("which pin is loose", "crank pin")
+    joint: Joint = required("pin with clearance", "crank pin")
     radial_clearance: PositiveClearance = required(
-        "radius of the bearing less radius of the journal: half the difference of the diameters", "0.2 mm"
+        "radius of the bearing minus radius of the journal: half the difference of the diameters", "0.2 mm"
     )
     journal_radius: PositiveLength = required("of the pin", "10 mm")
     restitution: _Restitution = optional(
@@ -76,5 +76,5 @@ class ClearancePart(Checked[Clearance]):
     )
     friction: Fraction = optional("coefficient between journal and bearing", 0.1, default=0.0)
     law: Law = optional("of the damping in a contact", "flores", default="flores")
-    elastic_modulus: Pressure = optional("of journal and bearing; steel if left out", "207 GPa", default=207e9)
+    elastic_modulus: Pressure = optional("of journal and bearing; default steel", "207 GPa", default=207e9)
     poisson: _Poisson = optional("Poisson's ratio of journal and bearing", 0.3, default=0.3)

@@ -79,12 +79,12 @@ def _told(part: Problem) -> str:
         for rows, ends in sides
     )
     if len(names) == 1:
-        remedy = "widen the ranges" if ever else "no ranges change that: give it up"
-        return f"{first}: no crank, rod and offset within the ranges have it; got {told[0]}; {remedy}{kept}"
-    remedy = "give up one of them, or widen the ranges" if ever else "no ranges change that: give up one of them"
+        remedy = "widen the ranges" if ever else "no range can change that; leave it out"
+        return f"{first}: no crank, rod and offset within the ranges meet it; got {told[0]}; {remedy}{kept}"
+    remedy = "leave out one of them, or widen the ranges" if ever else "no range can change that; leave out one of them"
     return (
-        f"{first}: requirements together leave some crank, rod and offset within the ranges; got {' and '.join(told)}, "
-        f"which exclude each other; {remedy}{kept}"
+        f"{first}: together the requirements must leave some crank, rod and offset within the ranges; got "
+        f"{' and '.join(told)}, which exclude each other; {remedy}{kept}"
     )
 
 

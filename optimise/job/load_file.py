@@ -42,8 +42,8 @@ def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any
     for key in part:
         if key not in known:
             raise JobError(
-                f"{key_of(['load', place, key])}: a load with file has no such key; got {shown(part[key])}; possible "
-                f"here: {', '.join(known)}"
+                f"{key_of(['load', place, key])}: a load with file must not have this key; got {shown(part[key])}; "
+                f"possible here: {', '.join(known)}"
             )
     over = (*dict.fromkeys(at for at, _ in tables), TIME)
     curve = curve_in(table_beside(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))

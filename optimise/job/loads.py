@@ -34,8 +34,8 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:
             raise InputError(
-                f"must increase; got {shown(given[n + 1])} after {shown(given[n])}; sort the table and drop what "
-                "repeats"
+                f"must increase; got {shown(given[n + 1])} after {shown(given[n])}; sort the table and remove "
+                "repeated points"
             )
     return points
 
@@ -96,7 +96,7 @@ def _file_part() -> type[LoadPart]:
         for entry in table.entries:
             if not entry.several:
                 entries.setdefault(entry.name, []).append(entry)
-    file = optional("a table beside the job file: forces, torques or pressures, told by their units", "trace.csv")
+    file = optional("a table beside the job file: forces, torques or pressures, recognised by their units", "trace.csv")
     fields: dict[str, Any] = {"file": (Annotated[str, Field(max_length=200)], file)}
     for name, several in entries.items():
         kind: Any = reduce(or_, map(_type, several)) | None
@@ -124,7 +124,7 @@ def _choice() -> str:
 
 
 _MEANT = {"resists": "opposes", "against": "opposes", "assists": "helps", "along": "helps"}
-_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]], loads add up", _MEANT)
+_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]]; loads add up", _MEANT)
 
 if TYPE_CHECKING:
     Load = LoadPart

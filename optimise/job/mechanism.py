@@ -56,11 +56,11 @@ class MassLink(Built[Link]):
 
     mass: Mass = required("of the link", "0.5 kg")
     inertia: Inertia | None = optional(
-        "about the mass centre; mass length^2 / 12, a slender uniform rod, if left out", "0.0012 kg m^2"
+        "about the mass centre; default mass length^2 / 12, a slender uniform rod", "0.0012 kg m^2"
     )
     centre: Length | None = optional(
         "distance of the mass centre from the crank pivot (crank) or from the crank "
-        "pin (rod), along the link; half the length if left out",
+        "pin (rod), along the link; default half the length",
         "30 mm",
     )
     centre_across: Length = optional(
@@ -111,7 +111,7 @@ class CounterweightPart(Built[Counterweight]):
     mass: Mass = required("of the counterweight", "0.4 kg")
     radius: Radius = required("from the crank pivot to its mass centre", "25 mm")
     angle: Angle = optional(
-        "of its mass centre from the crank's direction; 180 deg is opposite to the pin", "180 deg", default=math.pi
+        "of its mass centre from the crank's direction; 180 deg is opposite the pin", "180 deg", default=math.pi
     )
     inertia: Inertia = optional("about its own mass centre", "0.0001 kg m^2", default=0.0)
 
@@ -127,13 +127,13 @@ class CylindersPart(Checked[Arrangement]):
         max_length=MOST,
     )
     banks: tuple[Angle, ...] = optional(
-        "angle of each cylinder's slider line from +x, counter-clockwise; all zero if left out",
+        "angle of each cylinder's slider line from +x, counter-clockwise; default all zero",
         ["-45 deg", "45 deg"],
         default=(),
         max_length=MOST,
     )
     places: tuple[Length, ...] = optional(
-        "place of each cylinder along the shaft, for the rocking couple; all in one plane if left out",
+        "position of each cylinder along the shaft, for the rocking couple; default all in one plane",
         ["-50 mm", "50 mm"],
         default=(),
         max_length=MOST,
@@ -143,17 +143,18 @@ class CylindersPart(Checked[Arrangement]):
 class SliderPart(Part):
     """The slider."""
 
-    mass: Mass = required("of the slider and all that moves with it", "0.8 kg")
-    dead_centre: DeadCentre = optional("from which its distances count", "outer", default="outer")
+    mass: Mass = required("of the slider and everything that moves with it", "0.8 kg")
+    dead_centre: DeadCentre = optional("from which its distances are measured", "outer", default="outer")
     touch_distance: PositiveLength | None = optional(
-        "before the dead centre, where it meets its work: touch_speed is its speed there", "10 mm"
+        "before the dead centre, where it meets the workpiece; touch_speed is the slider speed there", "10 mm"
     )
     dwell_distance: PositiveLength | None = optional(
-        "from the dead centre, within which it counts as at rest: dwell_angle is the crank angle of that", "0.5 mm"
+        "from the dead centre, within which the slider counts as at rest; dwell_angle is the crank angle of this dwell",
+        "0.5 mm",
     )
 
     guide_distance: Length | None = optional(
-        "from its pin at the outer dead centre outward to the centre of its guide in the frame, for guide_moment",
+        "outward from its pin at the outer dead centre to the centre of its guide in the frame, for guide_moment",
         "150 mm",
     )
 
@@ -171,23 +172,23 @@ class SliderPart(Part):
 class MechanismPart(CrankSpeedPart):
     """Drive and masses of the machine; lengths belong in [variables]."""
 
-    crank: AnyLink | None = optional("section or mass of the crank; massless if left out", {"mass": "0.2 kg"})
+    crank: AnyLink | None = optional("section or mass of the crank; default massless", {"mass": "0.2 kg"})
     rod: AnyLink | None = optional(
-        "section or mass of the connecting rod; massless if left out",
+        "section or mass of the connecting rod; default massless",
         {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
     )
     counterweight: CounterweightPart | None = optional(
-        "a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}
+        "counterweight, a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}
     )
-    slider: SliderPart | None = optional("the slider; massless if left out", {"mass": "0.8 kg"})
+    slider: SliderPart | None = optional("slider; default massless", {"mass": "0.8 kg"})
     cylinders: CylindersPart | None = optional(
-        "several identical cylinders on one crankshaft; torque, power, works and shaking are of all together",
+        "several identical cylinders on one crankshaft; torque, power, work and shaking are totals",
         {"phases": ["0 deg", "180 deg"]},
     )
-    gravity: Gravity | None = optional("size of the gravity; none if left out", "9.81 m/s^2")
+    gravity: Gravity | None = optional("magnitude of gravity; default none", "9.81 m/s^2")
     gravity_direction: Angle | None = optional(
-        "counter-clockwise from +x (the outward direction on the open branch, the inward one on the "
-        "crossed branch) to where things fall; 270 deg, across a level slider line, if left out",
+        "direction of gravity, counter-clockwise from +x (outward on the open branch, inward on the crossed branch); "
+        "default 270 deg, across a level slider line",
         "270 deg",
     )
     branch: Branch = optional(
@@ -201,8 +202,8 @@ class MechanismPart(CrankSpeedPart):
     def _complete(self) -> MechanismPart:
         if self.gravity_direction is not None and self.gravity is None:
             raise InputError(
-                "gravity_direction needs gravity; got a direction alone; "
-                'add gravity = "9.81 m/s^2" or leave out gravity_direction'
+                'gravity_direction needs gravity; got only a direction; add gravity = "9.81 m/s^2" or leave out '
+                "gravity_direction"
             )
         return self
 
@@ -239,16 +240,17 @@ class ClearancesPart(Built[Clearances]):
 class TolerancesPart(Part):
     """Tolerances of dimensions and crank angle, and the part of the cycle over which the error counts."""
 
-    crank: LengthTolerance = optional("of the crank, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
-    rod: LengthTolerance = optional("of the rod, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
-    offset: LengthTolerance = optional("of the offset, as a length or a share", "0.05 mm", "0.1 %", default=0.0)
+    crank: LengthTolerance = optional("of the crank, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
+    rod: LengthTolerance = optional("of the rod, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
+    offset: LengthTolerance = optional("of the offset, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
     crank_angle: AngleTolerance = optional("of the crank angle", "0.1 deg", default=0.0)
     clearances: ClearancesPart = optional(
         "radial clearances of the joints", {"crank_pin": "0.02 mm"}, default=ClearancesPart()
     )
     during: During = optional("the stroke in which the position error counts", "cycle", default="cycle")
     part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = optional(
-        "where the position error counts: fractions of the stroke, from the inner (0) to the outer dead centre (1)",
+        "part of the stroke in which the position error counts: fractions from the inner (0) to the outer dead centre "
+        "(1)",
         [0.0, 0.25],
         default=(0.0, 1.0),
     )

@@ -39,7 +39,7 @@ _RULES = {
     "int_parsing_size": "must be a whole number of moderate size",
     "finite_number": "must be a finite number",
     "string_type": "must be text in quotes",
-    "string_unicode": "must be text that can be printed",
+    "string_unicode": "must be printable text",
     "string_too_short": "must not be empty",
 }
 _LIMITS = {
@@ -135,8 +135,8 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
         noun = path[-2] if isinstance(path[-1], int) else "table"
         owners = " or ".join(filter(None, (", ".join(others[:-1]), others[-1])))
         return (
-            f"{place}: a {noun} with {kind} has no such key; got {shown(value)}; a {noun} with {owners} has "
-            f"it; {possible}"
+            f"{place}: a {noun} with {kind} must not have this key; got {shown(value)}; it belongs to a {noun} with "
+            f"{owners}; {possible}"
         ), ""
     owner = place_of(str(key), schema)
     near = None if owner else closest(str(key), allowed)
@@ -150,7 +150,7 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
 def place_of(key: str, schema: Schema) -> str:
     """Return in words where a key that its table does not have belongs; "" if no table has it either."""
     if key in schema["properties"] and not headings([key], schema):
-        return f"{key} stands above the first table of the file; move it there"
+        return f"{key} belongs above the first table of the file; move it there"
     owners = _owners([key], schema)
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
@@ -199,7 +199,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         meant = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {got}{meant}"
     if kind == "string_pattern_mismatch":  # names of choices, which become columns
-        return f"must begin with a letter, then have letters, digits, spaces, - and _ only; {got}{write}"
+        return f"must begin with a letter and contain only letters, digits, spaces, - and _; {got}{write}"
     if kind == "string_too_long":
         return f"{rule_of(details)}; {got}; shorten it"
     if kind in ("too_short", "too_long"):

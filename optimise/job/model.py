@@ -57,28 +57,28 @@ class OptimiserPart(Built[Settings]):
     makes = Settings
 
     method: Annotated[str, _MethodName()] = optional(
-        "how to search: the default finds the front of any number of objectives and polishes every design; "
-        "the others deliver what they find",
+        "search method: the default finds the front of any number of objectives and polishes every design; the others "
+        "return unpolished designs",
         "auto",
         default="auto",
     )
     designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = optional(
-        "how many designs to deliver at most", 100, default=100
+        "maximum number of designs on the front", 100, default=100
     )
     samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = optional(
-        "designs evaluated per round of the search; chosen by the method if left out", 20_000
+        "designs evaluated per round of the search; default chosen by the method", 20_000
     )
     evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = optional(
-        "how many designs a method other than auto may evaluate; its own budget if left out", 50_000
+        "maximum number of designs that a method other than auto evaluates; default chosen by the method", 50_000
     )
     seed: Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)] = optional(
-        "of everything random: the same job with the same seed gives the same front", 1, default=1
+        "random seed: the same job with the same seed gives the same front", 1, default=1
     )
 
 
 def _printable(text: str) -> str:
     if not text.strip() or not text.replace("\n", " ").replace("\t", " ").isprintable():
-        raise InputError(f"must be text that can be printed, not empty; got {shown(text)}")
+        raise InputError(f"must be printable text, not empty; got {shown(text)}")
     return text
 
 
@@ -94,16 +94,16 @@ class Job(Part):
     """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
 
     name: Annotated[str, Field(max_length=80), AfterValidator(one_line)] = required(
-        "of the job; names the run too", "Vibrating sieve"
+        "name of the job and of its run", "Vibrating sieve"
     )
     description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = optional(
-        "anything worth keeping with the results", "Second draft"
+        "any text to store with the results", "Second draft"
     )
     mechanism: MechanismPart = required(
-        "how the machine is driven and what it weighs", {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}
+        "speed, masses and gravity of the machine", {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}
     )
     motion: MotionPart = optional(
-        "how the crank moves: it turns through, or swings between two angles, driven at the crank or at the slider",
+        "motion of the crank: it rotates fully, or swings between two angles, driven at the crank or at the slider",
         {"kind": "turn"},
         default=MotionPart(),
     )
@@ -114,39 +114,39 @@ class Job(Part):
         max_length=50,
     )
     drive: DrivePart | None = optional(
-        "motor, gear and flywheel: for analyses in which the speed is not given but found",
+        "motor, gearbox and flywheel, for analyses that compute the speed",
         {"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"},
     )
     friction: FrictionPart = optional(
-        "Coulomb friction in the guide and in the three pins; none where left out",
+        "Coulomb friction in the guide and in the three pins; default none",
         {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}},
         default=FrictionPart(),
     )
     tolerances: TolerancesPart = optional(
-        "how far dimensions and crank angle may be off",
+        "tolerances of dimensions and crank angle",
         {"crank": "0.05 mm", "crank_angle": "0.1 deg"},
         default=TolerancesPart(),
     )
     clearance: ClearancePart | None = optional(
-        "a joint that is loose, for the simulation of its impacts; designs are sized with ideal joints",
+        "a joint with clearance, for the simulation of its impacts; designs are sized with ideal joints",
         {"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"},
     )
     costs: CostsPart | None = optional(
-        "what tolerances cost, for their allocation",
+        "costs of tolerances, for their allocation",
         {"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}},
     )
     target_motion: TargetMotionPart | None = optional(
-        "a wanted slider motion, from which motion_deviation and motion_deviation_rms are counted",
+        "target slider motion, from which motion_deviation and motion_deviation_rms are measured",
         {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
     quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = optional(
-        "formulas and functions of your own as quantities, by name",
+        "custom formulas and functions as quantities, by name",
         {"clearance": {"formula": "offset - crank"}},
         {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},
         default={},
     )
     variables: VariablesPart = required(
-        "where the three dimensions, and any other number of the job, may lie",
+        "ranges of the three dimensions and of any other number of the job",
         {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]},
     )
     choice: tuple[ChoicePart, ...] = optional(
@@ -156,10 +156,10 @@ class Job(Part):
         max_length=10,
     )
     constraints: ConstraintsPart = optional(
-        "what every design must satisfy", EXAMPLE["constraints"], default=ConstraintsPart()
+        "requirements that every design must meet", EXAMPLE["constraints"], default=ConstraintsPart()
     )
     objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = required(
-        "what is wanted: the front shows the best compromises", EXAMPLE["objectives"]
+        "objectives: the front shows the best compromises", EXAMPLE["objectives"]
     )
     robust: RobustPart | None = optional(
         "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}

@@ -50,16 +50,15 @@ def _swing(
         given += [f"crank_side {crank_side}"] if crank_side != "left" else []
         if given:
             raise InputError(
-                f"a crank that turns through has none of what a swing has; got {', '.join(given)}; "
-                'write kind = "swing", or leave it out'
+                f"keys of a swing must not be given for a rotating crank; got {', '.join(given)}; "
+                'write kind = "swing", or leave them out'
             )
         return None
     of = _stated(set(ends))
     start, span = ends[_STARTS[of]], ends.get(_SPANS[of])
     if of == "crank" and crank_side != "left":
         raise InputError(
-            f"the side of the crank is asked where the places of the slider state the swing; got {crank_side} with "
-            "crank angles; leave it out"
+            f"crank_side may only be given with slider positions; got {crank_side} with crank angles; leave it out"
         )
     return Swing(
         start=start,
@@ -79,13 +78,13 @@ def _points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -> tu
     """Return the points of a law that is a table. Raises `InputError` for lists of different lengths."""
     if law == "table" and not times:
         raise InputError(
-            "a law of motion by a table has shares of the time and of the way; got no law_times; add for example "
+            "a motion law by a table needs fractions of the time and of the travel; got no law_times; add for example "
             "law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
         )
     if len(times) != len(shares):
         raise InputError(
-            "law_times and law_shares have as many values; got "
-            f"{len(times)} and {len(shares)}; give a share of the way for each share of the time"
+            f"law_times and law_shares must have the same number of values; got {len(times)} and {len(shares)}; give "
+            "a fraction of the travel for each fraction of the time"
         )
     return tuple(zip(times, shares, strict=True))
 
@@ -100,16 +99,16 @@ def _stated(keys: set[str]) -> Stated:
     found = [of for of in _STARTS if keys & {_STARTS[of], _ENDS[of], _SPANS[of]}]
     if len(found) > 1:
         raise InputError(
-            "a swing runs between two crank angles, or between two places of the slider; got "
-            f"{', '.join(sorted(keys))}; leave out those of one"
+            f"a swing must be given by two crank angles or by two slider positions; got {', '.join(sorted(keys))}; "
+            "leave out those of one kind"
         )
     of = found[0] if found else "crank"
     if _STARTS[of] not in keys or len(keys) < 2:
         missing = [name for name in (_STARTS[of], _ENDS[of]) if name not in keys]
         missing = missing if _SPANS[of] not in keys else [_STARTS[of]]
         raise InputError(
-            f"a swing runs from one {_PLACES[of]} to another; got no {' and '.join(missing)}; add for example "
-            f"{_EXAMPLES[of]}"
+            f"a swing needs two {_PLACES[of]}s, a start and an end; {' and '.join(missing)} is missing; add for "
+            f"example {_EXAMPLES[of]}"
         )
     if len(keys) > 2:
         raise InputError(
@@ -146,22 +145,21 @@ _Shares = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1.0)], ...], Field(m
 _ENTRIES: dict[str, Any] = {
     "kind": (
         Literal["turn", "swing"],
-        optional("turn: through, at the speed of [mechanism]; swing: between two angles", _SWING, default=_TURN),
+        optional("turn: full rotation at the speed in [mechanism]; swing: between two angles", _SWING, default=_TURN),
     ),
-    "from": (Angle | None, optional("crank angle at which the way forth starts", "11 deg")),
-    "to": (Angle | None, optional("crank angle at which it ends; less than the first one is clockwise", "101 deg")),
-    "swing": (Angle | None, optional("instead of to: by which angle it turns; below 0 is clockwise", "90 deg")),
+    "from": (Angle | None, optional("crank angle at the start of the forward stroke", "11 deg")),
+    "to": (Angle | None, optional("crank angle at its end; smaller than at the start means clockwise", "101 deg")),
+    "swing": (Angle | None, optional("instead of to: angle of the swing; below 0 means clockwise", "90 deg")),
     "slider_from": (
         Length | None,
-        optional("instead of crank angles: slider position at which the way forth starts, along the line", "3.1 m"),
+        optional("instead of crank angles: slider position at the start of the forward stroke", "3.1 m"),
     ),
-    "slider_to": (Length | None, optional("slider position at which it ends", "0.8 m")),
-    "slider_travel": (Length | None, optional("instead of slider_to: how far; below 0 is towards -x", "-2.3 m")),
+    "slider_to": (Length | None, optional("slider position at its end", "0.8 m")),
+    "slider_travel": (Length | None, optional("instead of slider_to: travel; below 0 means towards -x", "-2.3 m")),
     "crank_side": (
         Side,
         optional(
-            "where places of the slider state the swing: side of the line from crank pivot to slider pin, looking "
-            "along it, that the crank pin is on",
+            "with slider positions: the side of the crank pin, looking along the line from crank pivot to slider pin",
             "right",
             default="left",
         ),
@@ -169,22 +167,28 @@ _ENTRIES: dict[str, Any] = {
     "driver": (
         Driver,
         optional(
-            "what is driven: the crank by a torque, or the slider by a force along its line", "slider", default="crank"
+            "driven body: the crank by a torque, or the slider by a force along its line", "slider", default="crank"
         ),
     ),
-    "law": (Law, optional("how the driver moves over time; slow is without inertia", "polynomial", default="slow")),
-    "duration": (PositiveTime | None, optional("of one way, for a law other than slow", "30 s")),
-    "law_times": (_Shares, optional("of the law table: shares of the time of one way", [0, 0.3, 0.7, 1], default=())),
-    "law_shares": (_Shares, optional("of the law table: shares of the way made then", [0, 0.2, 0.8, 1], default=())),
+    "law": (Law, optional("motion law of the driver; slow ignores inertia", "polynomial", default="slow")),
+    "duration": (PositiveTime | None, optional("of one stroke, for a law other than slow", "30 s")),
+    "law_times": (
+        _Shares,
+        optional("for the law table: fractions of the time of one stroke", [0, 0.3, 0.7, 1], default=()),
+    ),
+    "law_shares": (
+        _Shares,
+        optional("for the law table: fractions of the travel at these times", [0, 0.2, 0.8, 1], default=()),
+    ),
     "actuator_tolerance": (
         Clearance,
-        optional("how far the driven slider may be off: adds to the error of the crank", "1 mm", default=0.0),
+        optional("position tolerance of the driven slider; adds to the error of the crank angle", "1 mm", default=0.0),
     ),
     "margin": (
         Angle | None,
         optional(
-            "from the dead points, or from opening: the least transmission angle of the driven side, "
-            f"{_MARGIN:g} deg if left out; a min of constraints.{SWING_TRANSMISSION_ANGLE.name} says the same",
+            "least transmission angle of the driven side, the distance from dead points and from opening; default "
+            f"{_MARGIN:g} deg; same as a min of constraints.{SWING_TRANSMISSION_ANGLE.name}",
             "20 deg",
         ),
     ),
@@ -203,7 +207,7 @@ def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part
                 continue
             if swing is None:
                 raise JobError(
-                    f"{table}.{of.name}: it is of a crank that swings; got one that turns through; add "
+                    f"{table}.{of.name}: needs a swinging crank; this crank rotates fully; add "
                     '[motion] kind = "swing" with from and to, or leave it out'
                 )
             reason = of.unfit(swing)
@@ -216,7 +220,7 @@ def require_no_speed(varying: Iterable[str]) -> None:
     for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
-                f"{path}: a swing follows [motion] instead; got it as a variable, or in an option; leave it out"
+                f"{path}: a swing is set by [motion] instead; got it as a variable or in an option; leave it out"
             )
 
 
@@ -244,14 +248,14 @@ def require_start(varying: Mapping[str, bool]) -> None:
     for path, chosen in varying.items():
         if path.startswith("motion.") and path not in free:
             raise JobError(
-                f"{path}: of the numbers of a swing only its start may vary; got {path.removeprefix('motion.')} as a "
-                "variable; give it in [motion] alone; for several values solve a job for each, and `slidercrank "
-                "compare` them"
+                f"{path}: only the start of a swing may vary; got {path.removeprefix('motion.')} as a variable; give "
+                "it in [motion] only; for several values solve a job for each, and compare them with `slidercrank "
+                "compare`"
             )
         if path.startswith("motion.") and chosen:
             raise JobError(
-                f"{path}: the start of a swing varies within a range; got a choice; write its least and its greatest "
-                "value, with swing or slider_travel in [motion] if the end goes along"
+                f"{path}: the start of a swing must vary over a range; got a choice; write its least and greatest "
+                "value, with swing or slider_travel in [motion] if the end moves with it"
             )
 
 
@@ -278,7 +282,7 @@ def with_margin(constraints: tuple[Constraint, ...], margin: float | None) -> tu
     name = SWING_TRANSMISSION_ANGLE.name
     own = next((item for item in constraints if item.quantity == name), None)
     if own is not None and own.lower is not None:
-        raise JobError(f"motion.margin: it is the min of constraints.{name}; got both; leave out one of the two")
+        raise JobError(f"motion.margin: same as the min of constraints.{name}; got both; leave out one of the two")
     upper = None if own is None else own.upper
     if upper is not None and margin > upper:
         raise JobError(

@@ -33,7 +33,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     notes = []
     if told:
         more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
-        notes.append(f"a number without a unit is in SI: {', '.join(told[:_MOST])}{more}")
+        notes.append(f"numbers without a unit are read in SI: {', '.join(told[:_MOST])}{more}")
     notes += [note for table in tables for note in _of_catalogue(table)]
     notes += [
         f"constraints.{name}: larger is better, but max = {toml(given['max'])} excludes larger values; for a minimum "
@@ -50,19 +50,19 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     notes += _pins(job)
     if job.motion.build() is not None:
         notes += [
-            f"mechanism.{key}: a swing follows [motion] instead; leave out the {words}"
+            f"mechanism.{key}: a swing is set by [motion] instead; leave out the {words}"
             for key, words in _SPEED_WORDS.items()
             if getattr(job.mechanism, key) is not None
         ]
         notes += [
-            f"{name}: it is of a crank that turns through, and says nothing of a swing; leave it out"
+            f"{name}: only applies to a rotating crank and is ignored for a swing; leave it out"
             for name in ("drive", "clearance")
             if name in job.model_fields_set
         ]
     for k, load in enumerate(data.get("load", ()), start=1):
         idle = [key for key in _OF_GAS if key in load and load.get("medium") == "liquid"]
         if idle:
-            notes.append(f"load #{k}: a liquid is not compressed: no use of {' and '.join(idle)}; leave it out")
+            notes.append(f"load #{k}: a liquid is not compressed, so it has no {' and '.join(idle)}; leave it out")
     return notes
 
 
@@ -72,11 +72,11 @@ def _of_catalogue(table: Catalogue) -> Iterator[str]:
     left = table.rows - len(table.lost) - len(table.excluded)
     told = bool(table.lost or table.excluded)
     said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if told else []
-    said += [f"left out: {_some([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
+    said += [f"omitted: {_some([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
     if few:
         said += [f"{'others' if table.excluded else 'the others'} lose in {_all(table.compared)}: {_some(few)}"]
-        said += ["each design names the least row that also serves"]
-    said += [f"not asked for, and kept with each design: {_all(table.idle)}"] if table.idle else []
+        said += ["each design names the least row that also suffices"]
+    said += [f"not used, but stored with each design: {_all(table.idle)}"] if table.idle else []
     if said:
         yield f"{table.name}: {'; '.join(said)}"
     yield from (f"{table.name}: the column {header} is read as {said}" for header, said in table.added.items())

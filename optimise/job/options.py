@@ -17,8 +17,8 @@ def require_options(problem: Problem) -> None:
     if problem.variants and len(found) == len(problem.variants):
         label, why = found[0]
         raise InfeasibleError(
-            f"choice: some option has a design within the ranges; got none: of {label} {why}; widen the "
-            "ranges, loosen the constraints, or add another option"
+            f"choice: at least one option must have a design within the ranges; none has: for {label} {why}; widen "
+            "the ranges, relax the constraints, or add another option"
         )
 
 
@@ -27,7 +27,7 @@ def idle_options(problem: Problem) -> list[str]:
     found = [*problem.left_out, *impossible_options(problem)]
     more = f", and {len(found) - _MOST} more" if len(found) > _MOST else ""
     told = "; ".join(f"{label}: {why}" for label, why in found[:_MOST])
-    return [f"the front is without options that no design can have: {told}{more}"] if found else []
+    return [f"the front omits options without any design: {told}{more}"] if found else []
 
 
 def impossible_options(problem: Problem) -> list[tuple[str, str]]:

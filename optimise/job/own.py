@@ -36,8 +36,8 @@ from .values import Part, Physical, optional, required
 def _function(text: str) -> str:
     if not FUNCTION.fullmatch(text):
         raise InputError(
-            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction", or give '
-            "the function itself in Python"
+            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction", or '
+            "give the function itself in Python"
         )
     return text
 
@@ -71,16 +71,16 @@ class FunctionPart(Part):
         "module:function; the module lies beside the job file or is installed", "mymodule:greatest_jerk"
     )
     unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = optional(
-        'in which it is shown; the function returns SI; "" for a ratio', "m/s^3", default=""
+        'display unit; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
-    title: Title | None = optional("for people; the name if left out", "greatest jerk of the slider")
+    title: Title | None = optional("title; default the name", "greatest jerk of the slider")
     gradient: Gradient = optional(
-        "how derivatives are had: complex step for a function that runs on complex numbers",
+        "method for derivatives: complex step for a function that runs on complex numbers",
         "complex step",
         default="complex step",
     )
     limit: Annotated[float, Physical(TIME, "positive")] = optional(
-        "what a call, of up to 256 designs, may take", "30 s", default=LIMIT
+        "time limit of a call for up to 256 designs", "30 s", default=LIMIT
     )
 
     def build(self, name: str, folders: Iterable[str]) -> OwnQuantity:
@@ -100,12 +100,12 @@ class FormulaPart(Part):
     """A formula as a quantity; its name then stands in [objectives], [constraints] and other formulas."""
 
     formula: Annotated[str, Field(max_length=20_000)] = required(
-        "of names of quantities, dimensions and varying numbers, numbers with units, + - * / ** and functions",
+        "formula of quantities, dimensions, variables, numbers with units, + - * / ** and functions",
         "offset - crank",
     )
-    title: Title | None = optional("for people; the name if left out", "clearance beside the crank")
+    title: Title | None = optional("title; default the name", "clearance beside the crank")
     unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] | None = optional(
-        "in which it is shown; the usual one of its kind if left out", "mm"
+        "display unit; default the usual one of its kind", "mm"
     )
 
     def build(self) -> formulas.Stated:
@@ -174,7 +174,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     names = _formulas(parts)
     if parts and not allowed and len(names) < len(parts):
         raise JobError(
-            f"quantity: functions of your own are not run here; got {shown(parts)}; leave the table out, or have them "
+            f"quantity: custom functions are not run here; got {shown(parts)}; leave the table out, or have them "
             "installed as a package with entry points in slidercrank.quantities"
         )
     parts = parts if isinstance(parts, Mapping) else {}

@@ -30,7 +30,7 @@ def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
     """Return why the eyes of a link have no net section, whatever the numbers that vary."""
     width = max(_ends(mechanism, f"{link}.width"))
     return [
-        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes, or nothing is left beside them; got "
+        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got "
         f"{1e3 * width:.6g} mm at most and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or take "
         "a thinner pin"
         for pin in (NEAR, LINKS[link].far)

@@ -55,7 +55,7 @@ class Bounds(Part):
             bounds = handler(data)
         lower, upper, equals = (getattr(bounds, name) for name in ("min", "max", "equals"))
         if lower is None and upper is None and equals is None:
-            raise InputError("must say min, max or equals; got an empty table; add one of the three")
+            raise InputError("must have min, max or equals; got an empty table; add one of the three")
         if equals is not None and not (lower is None and upper is None):
             given = data if isinstance(data, Mapping) else {"equals": equals, "min": lower, "max": upper}
             got = " and ".join(f"{word} {shown(given[word])}" for word in ("equals", "min", "max") if word in given)
@@ -181,7 +181,7 @@ class _Table(Part):
         for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
             path, value = _bare(key, data[key])
             raise InputError(
-                f"a key with dots stands in quotes, as a formula does; got {path} without; write it as "
+                f"a key with dots must be in quotes, like a formula; got {path} without; write it as "
                 f'"{path}" = {toml(value)}'
             )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
@@ -228,7 +228,7 @@ def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[P
         bounds, wish = made[kind]
         limits[name] = (bounds | None, optional(title, {bound: example}))
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
-    slow = optional("which stroke is the slow one; the offset and the sense of rotation follow it", "outward")
+    slow = optional("the slow stroke; determines offset and direction of rotation", "outward")
     limits[SLOW_STROKE] = (SlowStroke | None, slow)
     limits["formulas"] = (dict[str, FormulaBounds], Field(default={}, alias=_KEY))
     several: Any = dict

@@ -24,15 +24,16 @@ class RobustPart(Checked[Robust]):
     renamed: ClassVar = {"spread": "shape"}
 
     kind: Case = optional(
-        "percentile: what a share of all machines keeps; worst case: what all within the limits keep",
+        "percentile: value met by a percentage of all machines; worst case: value met by all machines within the "
+        "limits",
         "percentile",
         default="percentile",
     )
     share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = optional(
-        "of the machines, for a percentile", 0.99, default=0.99
+        "percentage of the machines, for a percentile", 0.99, default=0.99
     )
     order: Literal[1, 2] = optional(
-        "of a worst case. 1: linear in the errors; 2: second order and above, exact at the worst corner", 2, default=2
+        "order of a worst case. 1: linear in the errors; 2: exact at the worst corner", 2, default=2
     )
     spread: Shape = optional(
         "of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
@@ -43,7 +44,7 @@ class RobustPart(Checked[Robust]):
         "machines drawn for a percentile, the same for all designs", SAMPLES, default=SAMPLES
     )
     quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional(
-        "which objectives and constraints; if left out, all that can be", [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]
+        "robust objectives and constraints; default all that can be", [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]
     )
 
 
@@ -52,11 +53,11 @@ def robustly(problem: Problem, part: RobustPart | None) -> Problem:
     if part is None:
         return problem
     if problem.motion is not None:
-        raise JobError("robust: it is of a crank that turns through; got a swing; leave the table out")
+        raise JobError("robust: needs a rotating crank; this crank swings; leave the table out")
     if not uncertain(problem.part(0).mechanism):
         raise JobError(
-            "robust: it needs tolerances of crank, rod or offset; got none (that of the crank angle changes no "
-            'quantity of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
+            "robust: needs tolerances of crank, rod or offset; got none (that of the crank angle affects no quantity "
+            'of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
         )
     try:
         return robust(problem, part.build())

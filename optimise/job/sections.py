@@ -41,7 +41,7 @@ _OF_STRENGTH = ("criterion", "eye_concentration", "wear_coefficient")
 _Raised = Annotated[
     PositiveRatio, Limited("at least 1, the mean stress", "a pin in an eye has about 2.5 to 4", least=1.0)
 ]
-_Safety = Annotated[PositiveRatio, Limited("at least 1", "below it the part fails", least=1.0)]
+_Safety = Annotated[PositiveRatio, Limited("at least 1", "below 1 the part fails", least=1.0)]
 
 
 _CORRECT = "correct the number or its unit"
@@ -102,20 +102,22 @@ class SectionsPart(Checked[SectionLimits]):
 
     material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
     pins: PinsPart = required("diameters, usually about half the width of the bar", EXAMPLE["pins"])
-    width: PositiveRange = optional("in the plane of motion: what can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2))
+    width: PositiveRange = optional(
+        "in the plane of motion: range that can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2)
+    )
     depth: PositiveRange = optional("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
     static_safety: _Safety = optional("against yield", 2.0, default=2.0)
     fatigue_safety: _Safety = optional("against fatigue", 1.5, default=1.5)
     buckling_safety: _Safety = optional("against Euler's load", 3.0, default=3.0)
-    criterion: Criterion = optional("how mean stresses count in fatigue", "goodman", default="goodman")
+    criterion: Criterion = optional("fatigue criterion for mean stresses", "goodman", default="goodman")
     eye_concentration: _Raised = optional(
-        "greatest over mean stress in the net section of an eye; a chart such as Shigley's fig. A-15-12 has it",
+        "greatest divided by mean stress in the net section of an eye; see a chart such as Shigley's fig. A-15-12",
         2.5,
         default=1.0,
     )
 
     wear_coefficient: WearCoefficient | None = optional(
-        "volume worn off over force and sliding distance, of the softer of pin and bearing; for the wear of pins",
+        "wear coefficient: worn volume per force and sliding distance, for the softer of pin and bearing",
         "1e-9 mm^2/N",
     )
 

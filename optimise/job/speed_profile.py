@@ -27,8 +27,8 @@ def _profile(**given: Any) -> Profile:
     waves = {name: given[name] for name in ("cosines", "sines") if given.get(name) is not None}
     if bool(table) == bool(waves):
         raise InputError(
-            f"a speed profile is of harmonics or of points; got {'both' if table else 'neither'}; give cosines and "
-            "sines, or crank_angles and speeds"
+            f"a speed profile must have either harmonics or points; got {'both' if table else 'neither'}; give "
+            "cosines and sines, or crank_angles and speeds"
         )
     if waves:
         return Harmonics(**waves)
@@ -100,14 +100,16 @@ def _over_turn(curve: Curve) -> Curve:
     at, rpm = curve.at / per_si(curve.over.unit), curve.values / per_si(curve.of.unit) * (30.0 / math.pi)
     if len(at) < 4 or np.any(np.diff(at) <= 0.0):
         raise InputError(
-            f"{curve.name}: times must increase, four at least; got {len(at)}; sort them and drop what repeats"
+            f"{curve.name}: times must increase and be at least four; got {len(at)}; sort them and remove repeated "
+            "times"
         )
     angles = 6.0 * CubicSpline(at, rpm).antiderivative()(at)  # deg, of rpm and s
     way = 1.0 if angles[-1] >= 0.0 else -1.0
     turned = way * angles
     if np.any(np.diff(turned) <= 0.0):
         raise InputError(
-            f"{curve.name}: the speed must not be zero or change its sign; got a record that stops; give one that runs"
+            f"{curve.name}: the speed must not be zero or change sign; got a record that stops; give one of steady "
+            "running"
         )
     last = max(1, int(np.argmin(abs(turned - 360.0))))
     near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is mistaken for rounding
@@ -121,11 +123,11 @@ def _over_turn(curve: Curve) -> Curve:
     end = float(CubicSpline(turned, rpm)(360.0))
     if abs(end - rpm[0]) > 0.02 * abs(rpm[0]):
         raise InputError(
-            f"{curve.name}: the speed must repeat after a turn, to 2 %; got {rpm[0]:.6g} rpm at its start and "
+            f"{curve.name}: the speed must repeat after a turn, within 2 %; got {rpm[0]:.6g} rpm at its start and "
             f"{end:.6g} rpm at its end; record steady running"
         )
     angles = np.mod(way * turned[kept], 360.0)
     order = np.argsort(angles, kind="stable")
     over, of = curve.over._replace(kind=ANGLE, unit="deg"), curve.of._replace(unit="rpm")
-    said = (*curve.said, f"the first of {turned[-1] / 360.0:.4g} turns over the time")
+    said = (*curve.said, f"the first of {turned[-1] / 360.0:.4g} turns over time")
     return Curve(curve.name, over, of, angles[order], rpm[kept][order], said)

@@ -133,8 +133,8 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
         except InputError:
             asked = _asked((found[name], constraint), formulas.made[name])
             raise InfeasibleError(
-                f"{key_of(['constraints', name])}: requirements on one formula must leave something; got {asked}; "
-                "leave out one of them"
+                f"{key_of(['constraints', name])}: the requirements on one formula must not contradict each other; "
+                f"got {asked}; leave out one of them"
             ) from None
     return tuple(found.values())
 
@@ -159,7 +159,7 @@ def _possible(
 def _missing(variant: Variant, asked: Iterable[Quantity]) -> str | None:
     """Return in words which amount that is asked for a variant does not have; None if there is no such."""
     had = dict(variant.amounts)
-    return next((f"no {of.title}, which the job asks for" for of in asked if of.name not in had), None)
+    return next((f"no {of.title}, which the job requires" for of in asked if of.name not in had), None)
 
 
 def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:

@@ -68,10 +68,10 @@ def bytes_of(path: Path, name: str, most: int) -> bytes:
         raise InputError(f"{name} must be a file; got a folder; name a file in it") from None
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         why = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{name} cannot be read: {why}; name another file, or permit it") from None
+        raise InputError(f"{name} cannot be read: {why}; name another file, or change its permissions") from None
     if len(content) > most:
         raise InputError(
-            f"{name} must have at most {most / 1e6:.3g} MB; got more; keep the rows and columns that matter"
+            f"{name} must have at most {most / 1e6:.3g} MB; got more; keep only the rows and columns that matter"
         )
     return content
 
@@ -94,8 +94,7 @@ def text_of(content: bytes, name: str) -> str:
 
 def _binary(name: str) -> InputError:
     return InputError(
-        f"{name} must be a CSV text file; got a spreadsheet or other binary file; save the sheet as CSV and use that "
-        "file"
+        f"{name} must be a CSV text file; got a spreadsheet or other binary file; save it as CSV and use that file"
     )
 
 
@@ -211,17 +210,15 @@ class TableFile:
         """Return the decimal sign of a file's numbers and the one that parts thousands."""
         point, comma = signs.first(_sure(".", ",")), signs.first(_sure(",", "."))
         if point is not None and comma is not None:
-            raise InputError(
-                f"{self.name} must have one decimal sign; got {comma} and {point}; write all numbers alike"
-            )
+            raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
         comma, point = signs.first(_group(",")), signs.first(_group("."))
         if comma is not None and (point is not None or self.separator == ","):
             other = f" and {point}" if point is not None else ""
             raise InputError(
-                f"{self.name} must show its decimal sign; got {comma}{other}, which may mean a thousand times as much; "
-                "leave out the sign that parts thousands"
+                f"{self.name} must have an unambiguous decimal sign; got {comma}{other}, which may mean a thousand "
+                "times as much; leave out the thousands separator"
             )
         return (".", ",") if comma is None else (",", ".")
 
@@ -303,7 +300,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     lines = itertools.chain(above[titles:], lines)
     head = next(lines, None)
     if head is None:
-        raise InputError(f"{name} must begin with a line that names its columns; got an empty file; fill it")
+        raise InputError(f"{name} must begin with a line of column names; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
     below = first[1] if first is not None and of_units(first[1]) else None
@@ -311,7 +308,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
         first = next(lines, None)
     elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
         raise InputError(
-            f'{name} must have its cells separated as its line "sep={separator}" says; got {shown(heads[0])}; correct '
+            f'{name} must separate its cells as its line "sep={separator}" states; got {shown(heads[0])}; correct '
             "that line, or leave it out"
         )
     width = len(heads) if first is None else len(first[1])
@@ -325,16 +322,18 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     heads = with_units(heads, below or [])
     if of_numbers(heads):
         raise InputError(
-            f"{name} must begin with a line that names its columns, with units; got {', '.join(heads)[:60]!r}; add one "
+            f"{name} must begin with a line of column names with units; got {', '.join(heads)[:60]!r}; add one "
             "such as crank_angle_deg,force_N"
         )
     if len(heads) > _MOST_COLUMNS:
-        raise InputError(f"{name} must have at most {_MOST_COLUMNS} columns; got {len(heads)}; keep those that matter")
+        raise InputError(
+            f"{name} must have at most {_MOST_COLUMNS} columns; got {len(heads)}; keep only those that matter"
+        )
     found = list(_portions(rows, len(heads), name, ragged=ragged))
     if not found:
-        raise InputError(f"{name} must have rows below the names of its columns; got none; add them")
+        raise InputError(f"{name} must have rows below the column names; got none; add them")
     said = [f"separated by {SEPARATORS.get(separator, shown(separator))}"] if len(heads) > 1 else []
-    said += [f"{counted(titles, 'title line')} above the names of the columns skipped"] if titles else []
+    said += [f"{counted(titles, 'title line')} above the column names skipped"] if titles else []
     return TableFile(name, tuple(heads), said, separator, found)
 
 
@@ -345,9 +344,9 @@ def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, r
         for place, cells in some:
             if len(cells) != width and (any(cell.strip() for cell in cells[width:]) or not (ragged or cells[width:])):
                 raise InputError(
-                    f"{name}, row {place} must have {width} cells, as the first line; got {len(cells)}; correct "
-                    "it, or delete lines above the names of the columns; where numbers have a decimal comma, separate "
-                    "them by semicolons"
+                    f"{name}, row {place} must have {width} cells, like the first line; got {len(cells)}; correct it, "
+                    "or delete lines above the column names; if numbers have a decimal comma, separate them by "
+                    "semicolons"
                 )
         full = [cells[:width] + [""] * (width - len(cells)) for _, cells in some]
         columns = ["\n".join([_BREAK.sub(" ", cell.strip()) for cell in column]) for column in zip(*full, strict=True)]

@@ -42,11 +42,11 @@ def problem(
     """
     given: dict[str, Function] = {}
     if not isinstance(tables, Mapping):
-        raise JobError(f"a job is a dict of tables; got {type(tables).__name__}; a file is read by load_job")
+        raise JobError(f"a job must be a dict of tables; got {type(tables).__name__}; for a file use load_job")
     try:
         data = {key: _plain(item) for key, item in tables.items()}
     except RecursionError:
-        raise JobError("a job is a dict of tables; got one that holds itself, or tables without end") from None
+        raise JobError("a job must be a dict of tables; got one that contains itself, or endless tables") from None
     own = data.get("quantity")
     if isinstance(own, dict):
         for name, part in own.items():

@@ -40,10 +40,12 @@ class TargetMotionPart(Checked[TargetMotion]):
     )
     source: Source = source()
     phase: Freedom = optional(
-        "whether the crank may sit on its shaft at any angle: the best one counts", "free", default="fixed"
+        "whether the crank may be mounted on its shaft at any angle; the best one is used", "free", default="fixed"
     )
     shift: Freedom = optional(
-        "whether positions may count from anywhere on the slider line: the best place counts", "free", default="fixed"
+        "whether positions may be measured from any point on the slider line; the best one is used",
+        "free",
+        default="fixed",
     )
 
     def build(self) -> TargetMotion:
@@ -61,7 +63,7 @@ def require_target(target: TargetMotionPart | None, objectives: Part, constraint
         for name in DEVIATIONS if target is None else ():
             if getattr(part, name) is not None:
                 raise JobError(
-                    f"{table}.{name}: a motion deviation comes from a target motion; got none; add "
+                    f"{table}.{name}: a motion deviation needs a target motion; got none; add "
                     "[target_motion] with crank_angles and positions, or with a file"
                 )
 

@@ -73,7 +73,7 @@ _ONE_NAME = "a key must not contain spaces"
 _SIGNS: tuple[Edit, ...] = (
     _edit("[“”„‟«»‘’‚‛`´″]", '"', _STRAIGHT),
     _rewrite("''", '"', _STRAIGHT),
-    _edit("'", '"', "text must end with the quote that it begins with"),
+    _edit("'", '"', "text must end with the quote it begins with"),
     _edit("[−–]", "-", "a minus sign must be the - of the keyboard"),
     _edit(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
 )
@@ -105,7 +105,7 @@ _EDITS: tuple[Edit, ...] = (
     _rewrite(r"^(\s*\w+(?:\.\w+)+)(\s+)([\w-]+)(?=\s*=)", r"\2.\4", _ONE_NAME),
     _rewrite(r"^(\s*[\w.-]+)(\s+)([\w-]+)(?=\s*=)", r"\2_\4", _ONE_NAME),
     _rewrite(
-        r"^(\s*)(\w+)(?=\s*=)", r'\2"\3"', "a key outside of quotes must be in the letters a to z, digits, _ and -"
+        r"^(\s*)(\w+)(?=\s*=)", r'\2"\3"', "a key outside quotes must consist of the letters a to z, digits, _ and -"
     ),
     _edit(r"\[\s*([\d.]+)\s*,\s*([\d.]+)\s*\]\s*([^\W\d]\w*)$", r'["\2 \4", "\3 \4"]', "each value must have its unit"),
     _rewrite(
@@ -301,12 +301,12 @@ def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
     for found in reversed(list(re.finditer("[]\"'[(){}]", line))):
         without = line[: found.start()] + line[found.end() :]
         if not _left([without]):
-            yield f"there is one {found[0]} too many", without
+            yield f"one {found[0]} too many", without
 
 
 def _with_brackets(line: str) -> tuple[str, str]:
     """Return the heading of a table in its brackets."""
-    rule = "a heading must be one name between the same brackets, its parts joined by points"
+    rule = "a heading must be one name in matching brackets, its parts joined by dots"
     if (found := _NAMES.fullmatch(line)) is None:
         return rule, line
     opening, name, closing = found.groups()

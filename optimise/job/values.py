@@ -119,7 +119,7 @@ def of_spread(value: object, ends: Sequence[object], error: InputError) -> Input
     rule = str(error).partition(";")[0]
     return InputError(
         f"{rule}; got {shown(value)}, which is {ends[0]} to {ends[1]}; "
-        "correct its unit, its middle or the part after +-"
+        "correct its unit, its middle value or the part after +-"
     )
 
 
@@ -171,8 +171,8 @@ class GasPressure(Physical):
         if pressure < 0.0 or (pressure == 0.0 and self.sign == "positive"):
             rule = "above vacuum, 0" if self.sign == "positive" else "at or above vacuum, 0"
             raise InputError(
-                f"an absolute pressure must be {rule}; got {shown(value)}; to what a gauge shows add the pressure "
-                "around it, about 1.01325 bar"
+                f"an absolute pressure must be {rule}; got {shown(value)}; add the ambient pressure, about 1.01325 "
+                "bar, to a gauge pressure"
             )
         return pressure
 
@@ -300,7 +300,7 @@ class RangeOf(_Read):
 
     def _choices(self, values: object) -> Choices:
         if not isinstance(values, list | tuple) or len(values) < 2:
-            raise InputError(f'choices must be two lengths or more, like ["100 mm", "125 mm"]; got {shown(values)}')
+            raise InputError(f'choices must be at least two lengths, like ["100 mm", "125 mm"]; got {shown(values)}')
         lengths = sorted(self._length(value) for value in values)
         if len(set(lengths)) < len(lengths):
             raise InputError(f"choices must differ; got {shown(values)}; leave out the second")
@@ -341,7 +341,8 @@ class ToleranceOf(_Read):
             percent = -1.0
         if not 0.0 <= percent < 100.0:
             raise InputError(
-                f'a share of the dimension must be from 0 % to below 100 %; got {shown(value)}; write it like "0.1 %"'
+                f"a percentage of the dimension must be from 0 % to below 100 %; got {shown(value)}; write it like "
+                '"0.1 %"'
             )
         return percent / 100.0
 

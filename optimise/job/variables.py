@@ -46,7 +46,7 @@ class VariablesPart(Part):
         ["0 mm", "200 mm"],
     )
     mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
-    load: Table = _more("a [[load]], after its place, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
+    load: Table = _more("a [[load]], by its position, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
     friction: Table = _more("[friction]", {"guide": [0.05, 0.15]})
     tolerances: Table = _more("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
     motion: Table = _more("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
@@ -62,7 +62,7 @@ class VariablesPart(Part):
         for key, value in data.items():
             steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in ROOTS else [key]
             if len(steps) > DEEPEST:
-                raise InputError(f"a path has at most {DEEPEST} words; got {shown(key)}; shorten it")
+                raise InputError(f"a path must have at most {DEEPEST} words; got {shown(key)}; shorten it")
             _place(found, steps, deepcopy(value), key)
         return found
 
@@ -76,29 +76,29 @@ class OptionPart(Part):
     """One option of a choice."""
 
     name: Annotated[str, Field(min_length=1, max_length=60)] = required(
-        "of the option, as the table of designs has it", "bar 30 x 10"
+        "name of the option, as in the table of designs", "bar 30 x 10"
     )
     values: Table = optional(
-        "numbers of the job that come with it, by their paths; crank, rod and offset too",
+        "numbers of the job that the option sets, by their paths; also crank, rod and offset",
         {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"},
         default={},
     )
     constraints: ConstraintsPart = optional(
-        "what holds for it in addition to the constraints of the job, as in [constraints]",
+        "constraints of the option in addition to those of the job, as in [constraints]",
         EXAMPLE,
         default=ConstraintsPart(),
     )
 
     amounts: Amounts = optional(
-        "numbers that limit nothing, such as a price, with any unit; their names may be objectives and constraints",
+        "numbers that limit nothing, such as a price, in any unit; their names may be objectives and constraints",
         {"price": "310 EUR"},
         default={},
     )
     notes: dict[str, Annotated[str, Field(max_length=200)]] = optional(
-        "texts to keep with designs, such as a maker", {"maker": "Example Motors"}, default={}
+        "texts to store with designs, such as a manufacturer", {"maker": "Example Motors"}, default={}
     )
     searched: bool = optional(
-        "whether designs are searched with it; else it is only named where it is the least that serves",
+        "whether designs are searched with it; otherwise it is only named where it is the least that suffices",
         False,
         default=True,
     )
@@ -113,7 +113,7 @@ def _apart(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
     names = [option.name for option in options]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"options of a choice need different names; got {shown(name)} twice; rename one")
+            raise InputError(f"options of a choice must have different names; got {shown(name)} twice; rename one")
     return options
 
 
@@ -121,10 +121,10 @@ class ChoicePart(Part):
     """A choice between options that each set several numbers, such as sections or gearmotors of a catalogue."""
 
     name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
-        "of the choice; the table of designs has it as choice_<name>", "rod section"
+        "name of the choice; its column in the table of designs is choice_<name>", "rod section"
     )
     option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = optional(
-        "what there is to choose from, unless a file says it",
+        "options to choose from, unless they are in a file",
         [
             {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
             {"name": "25 x 12", "values": {"mechanism.rod.width": "25 mm", "mechanism.rod.depth": "12 mm"}},
@@ -132,7 +132,7 @@ class ChoicePart(Part):
         default=(),
     )
     file: Annotated[str, Field(max_length=200)] | None = optional(
-        "instead of options: a CSV file beside the job file, a row an option, its units in the header", "gearmotors.csv"
+        "instead of options: a CSV file beside the job file, one row per option, units in the header", "gearmotors.csv"
     )
     table: str | None = optional(
         "instead of options: the text of such a file",
@@ -140,7 +140,7 @@ class ChoicePart(Part):
         max_length=LARGEST,
     )
     rows: Annotated[int, Field(strict=True, ge=1)] | None = optional(
-        "rows of the file that the options were screened from", 5000
+        "rows of the file from which the options were screened", 5000
     )
 
     @model_validator(mode="after")
@@ -183,7 +183,9 @@ def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> Non
     for step in steps[:-1]:
         table = table.setdefault(step, {})
         if not isinstance(table, dict):
-            raise InputError(f"{key} is given twice, once as a part of another key; leave out one of the two")
+            raise InputError(
+                f"{key} may be given only once; got it again as part of another key; leave out one of the two"
+            )
     own = table.get(steps[-1])
     if isinstance(own, dict) and isinstance(value, Mapping):
         for inner, item in value.items():

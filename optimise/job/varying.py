@@ -88,14 +88,14 @@ def variants_of(
     if count > MOST:
         sizes = " x ".join(str(len(options)) for _, options in axes)
         raise JobError(
-            f"variables: every combination of choices is tried, so there are {MOST} at most; got {sizes} = {count}; "
-            "leave out some, or let a number vary over a range"
+            f"variables: at most {MOST} combinations of choices may be given, because each is tried; got {sizes} = "
+            f"{count}; leave out some, or let a number vary over a range"
         )
     numbers = sum(not is_choice(given) for given in job.variables.paths.values())
     if count * numbers > _MOST_READ:
         raise JobError(
-            f"variables: numbers that vary are read in every combination of choices, {_MOST_READ} in all at most; got "
-            f"{numbers} numbers in {count} combinations; leave out some of either"
+            f"variables: variables times combinations of choices must be at most {_MOST_READ}; got {numbers} "
+            f"variables in {count} combinations; leave out some of either"
         )
     names = [name for name, _ in axes]
     combinations = list(itertools.product(*(options for _, options in axes)))
@@ -125,8 +125,8 @@ def discrete_of(job: Job) -> tuple[Discrete, ...]:
             for part in job.choice:
                 if any(name in option.paths for option in part.option):
                     raise JobError(
-                        f"variables.{name}: options of the choice {shown(part.name)} set it too; got values for it; "
-                        "leave out one of the two"
+                        f"variables.{name}: a number set by options of the choice {shown(part.name)} must not be a "
+                        "variable as well; leave out one of the two"
                     )
             found.append(Discrete(name=name, values=given.values, rule=given.rule))
     for path, given in job.variables.paths.items():
@@ -184,7 +184,7 @@ def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterat
         if is_choice(given):
             values = given["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
-                raise JobError(f"variables.{path}: choices are a list of two values or more; got {shown(values)}")
+                raise JobError(f"variables.{path}: choices must be a list of at least two values; got {shown(values)}")
             labels = [str(value) for value in values]
             if len(set(labels)) < len(labels):
                 raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
@@ -214,7 +214,7 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
     for name, option in zip(names, chosen, strict=True):
         for path, value in option.values.items():
             if path in values or (path in job.variables.paths and path not in _single(name, option)):
-                raise JobError(f"choice {name!r}: {path} is set twice; leave out one of the two")
+                raise JobError(f"choice {name!r}: {path} may be set only once; got it twice; leave out one of the two")
             values[path] = value
     for name in DIMENSIONS:
         if name in values:
@@ -254,7 +254,7 @@ def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
     wanted = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
     if len(wanted) > 1:
         raise JobError(
-            f"choice: options that are chosen together ask for the same slow stroke; got "
+            "choice: options that are chosen together must have the same slow stroke; got "
             f"{' and '.join(f'{stroke} with {shown(label)}' for stroke, label in wanted.items())}; leave out one"
         )
     return next(iter(wanted), None)
@@ -270,7 +270,9 @@ def _length(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
     try:
         found = RangeOf("any" if name == "offset" else "positive").read(value)
         if isinstance(found, Grid):
-            raise InputError(f"of an option is a value or a range; got {shown(value)}; say the values in [variables]")
+            raise InputError(
+                f"of an option must be a value or a range; got {shown(value)}; give the values in [variables]"
+            )
         return found
     except InputError as error:
         raise JobError(f"{key}: {name} {error}") from None
@@ -281,7 +283,9 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     if says_values(given):
         grid = _grid(job, key, path, given)
         if len(grid.values) < 2:
-            raise JobError(f"{key}: must have two values or more; got one, {grid.rule}; give it in its own place alone")
+            raise JobError(
+                f"{key}: must have at least two values; got one, {grid.rule}; give it as a fixed number instead"
+            )
         given = [grid.values[0], grid.values[-1]]
     given = spread(given) or given
     if not isinstance(given, list | tuple) or len(given) != 2:
@@ -302,11 +306,14 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         factor = high / upper if upper else low / lower
         stray = _STRAY * abs(factor) * max(abs(lower), abs(upper))
         if not (abs(low - factor * lower) <= stray and abs(high - factor * upper) <= stray):
-            raise JobError(f"{key}: the machine does not follow it in proportion; let it be a choice instead")
+            raise JobError(
+                f"{key}: must not vary over a range, because the machine does not depend on it linearly; make it a "
+                "choice instead"
+            )
         sets.append((place, factor))
     try:
         if not sets:
-            raise InputError("nothing that a design is judged by follows from it; leave it out")
+            raise InputError("has no effect on any quantity of a design; leave it out")
         _require_smooth(path, [place for place, _ in sets])
         return Varying(name=path, sets=tuple(sets), lower=lower, upper=upper)
     except InputError as error:
@@ -331,7 +338,7 @@ def _require_smooth(path: str, places: list[str]) -> None:
             unit_of(place)
     except InputError:
         raise InputError(
-            f"no quantity of a design follows smoothly from {path}, so it cannot vary; let it be a choice instead"
+            f"no quantity depends smoothly on {path}, so it cannot vary; make it a choice instead"
         ) from None
 
 
@@ -364,7 +371,7 @@ def _number(job: Job, path: str, key: str) -> float:
     share = ToleranceOf.share(part)
     number = part if share is None else share
     if isinstance(number, bool) or not isinstance(number, int | float):
-        raise JobError(f"{key}: must name a number; got {shown(part)}; let it be a choice instead")
+        raise JobError(f"{key}: must name a number; got {shown(part)}; make it a choice instead")
     return float(number)
 
 

@@ -55,7 +55,8 @@ def population_size(problem: Problem) -> int:
     size = generation_size(problem, POPULATION)
     if size < 2:
         raise InputError(
-            f"{problem.settings.method} breeds from two designs or more; got {size}; raise samples and evaluations"
+            f"{problem.settings.method} needs at least two designs to breed from; got {size}; raise samples and "
+            "evaluations"
         )
     return size
 

@@ -74,7 +74,7 @@ def methods() -> dict[str, Method]:
     declared = sorted(dict.fromkeys(declared), key=lambda method: FAMILIES.index(method.family))
     by_name = {method.name: method for method in declared}
     if len(by_name) < len(declared):
-        raise TypeError(f"two methods have one name: {', '.join(method.name for method in declared)}")
+        raise TypeError(f"methods must have different names; got {', '.join(method.name for method in declared)}")
     return by_name
 
 
@@ -107,7 +107,7 @@ def require_fit(problem: Problem) -> None:
     fitting = ", ".join(name for name, other in methods().items() if other.takes(count))
     wanted = ", ".join(objective.quantity for objective in problem.objectives)
     takes = "one objective" if method.objectives == "one" else "several objectives"
-    raise InputError(f"the method {method.name} takes {takes}; got {count} ({wanted}); use one of {fitting}")
+    raise InputError(f"the method {method.name} needs {takes}; got {count} ({wanted}); use one of {fitting}")
 
 
 def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
@@ -119,7 +119,7 @@ def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
         for constraint in evaluator.constraints:
             if constraint.equality:
                 raise InputError(
-                    f"the method {method.name} cannot hold {constraint.quantity} at one value, because no formula "
+                    f"the method {method.name} cannot keep {constraint.quantity} at one value, because no formula "
                     "eliminates it; use slsqp or auto, or give it a min and a max"
                 )
 
@@ -144,6 +144,6 @@ def require_gradients(problem: Problem, what: str | None = None) -> None:
     for constraint in problem.every_constraint:
         if constraint.equality and constraint.quantity in lacking:
             raise InputError(
-                f"{constraint.quantity} can be held at one value only with its gradient; got equals, and gradient = "
-                '"none"; give it a min and a max, or set gradient = "finite differences"'
+                f'{constraint.quantity} needs a gradient to be kept at one value; got equals, and gradient = "none"; '
+                'give it a min and a max, or set gradient = "finite differences"'
             )

@@ -248,7 +248,7 @@ def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | 
         if not np.isfinite(best).all():
             return None
         shared.payoff[column] = best
-        run.tell("finding the best of each objective", evaluators, front)
+        run.tell("finding the best design for each objective", evaluators, front)
     shared.ideal, shared.span = scaling(shared.payoff)
     return shared
 

@@ -72,8 +72,8 @@ class Analysis(Mapping[str, float]):
             return self._of_formula(known)
         if known.name not in self.found:
             raise InputError(
-                f"{name} is of a crank that turns through; got one that swings; ask for a quantity of a swing, "
-                f"such as {', '.join(of.name for of in self.quantities if of.name in self.found)}"
+                f"{name} needs a rotating crank; this crank swings; ask for a quantity of a swing, such as "
+                f"{', '.join(of.name for of in self.quantities if of.name in self.found)}"
             )
         return self.found[known.name]
 
@@ -181,8 +181,8 @@ class Analysis(Mapping[str, float]):
     def _require_turning(self, what: str) -> None:
         if self.swing is not None:
             raise InputError(
-                f"{what} is of a crank that turns through; got a design that swings; `Problem.swing` has the numbers "
-                "of its ways forth and back, `slidercrank swing --curves FILE.csv` the curves"
+                f"{what} needs a rotating crank; the crank of this design swings; `Problem.swing` returns the values "
+                "of its forward and return strokes, `slidercrank swing --curves FILE.csv` the curves"
             )
 
     def _repr_html_(self) -> str:
@@ -201,7 +201,7 @@ class Analysis(Mapping[str, float]):
 
     def _beyond(self) -> str:
         titles = [QUANTITIES[name].title for name in self.violated]
-        return f"beyond what is allowed: {', '.join(titles)}" if titles else ""
+        return f"beyond the allowable value: {', '.join(titles)}" if titles else ""
 
 
 def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
@@ -211,7 +211,7 @@ def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Arra
     sizes = given_designs(design, names)
     if sizes.ndim != 1 or not np.isfinite(sizes).all() or (sizes[0] > 0.0 and not countable(sizes[None])[0]):
         raise InputError(
-            f"a design is {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
+            f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
             "design, as a list of these"
         )
     machine = mechanism.at(sizes[3:].tolist())

@@ -33,7 +33,7 @@ class Discrete:
         keep_tuples(self, "values")
         rising = all(low < high for low, high in zip(self.values, self.values[1:], strict=False))
         if not self.values or not all(map(math.isfinite, self.values)) or not rising:
-            raise InputError(f"the values of {self.name} must be finite and ascending, one at least; sort them")
+            raise InputError(f"the values of {self.name} must be finite and ascending, at least one; sort them")
 
     def within(self, ends: Range) -> Array:
         """Return the values of a range."""
@@ -46,6 +46,8 @@ def require_known(discrete: Sequence[Discrete], names: Sequence[str]) -> None:
     given = [item.name for item in discrete]
     for name in given:
         if name not in names:
-            raise InputError(f"values are for one of {', '.join(names)}; got {name!r}; let it vary too")
+            raise InputError(
+                f"discrete values must be for one of {', '.join(names)}; got {name!r}; make it a variable too"
+            )
         if given.count(name) > 1:
-            raise InputError(f"the values of {name} are given twice; keep one")
+            raise InputError(f"the values of {name} may be given only once; got them twice; keep one")

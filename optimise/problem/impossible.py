@@ -20,8 +20,8 @@ def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
     """Return the error for choices whose options all are left out. left_out: labels and reasons."""
     label, why = left_out[0]
     return InfeasibleError(
-        f"choice: some option must leave something of [constraints]; got none: {label} has {why}; loosen the "
-        "constraint, or add another option"
+        f"choice: at least one option must meet [constraints]; none does: {label} has {why}; relax the constraint, or "
+        "add another option"
     )
 
 
@@ -33,7 +33,7 @@ def require_longer_slow_stroke(problem: Problem) -> None:
     ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
     if ratio is not None and ratio.upper is not None and ratio.upper <= 1.0:
         raise InfeasibleError(
-            "constraints.slow_stroke: a slow stroke takes longer than the other, a time ratio above 1; got "
+            "constraints.slow_stroke: a slow stroke needs a time ratio above 1; got "
             f"constraints.{TIME_RATIO.name} with {'equals' if ratio.equality else 'max'} {ratio.upper:.6g}; raise it, "
             "or leave out slow_stroke"
         )

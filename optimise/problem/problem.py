@@ -112,8 +112,8 @@ _EACH = {
     "catalogue": Variant,
     "discrete": Discrete,
 }
-_WITH_LEAST = "what comes with the least option"
-_CHANGE = "change what is there by `dataclasses.replace`, or state the problem anew by `problem`"
+_WITH_LEAST = "amounts and texts of the least option"
+_CHANGE = "change the problem with `dataclasses.replace`, or state it again with `problem`"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,12 +170,10 @@ class Problem:
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
-                raise InputError(
-                    f"a number that varies besides the dimensions needs a name of its own; got {item.name!r}"
-                )
+                raise InputError(f"a variable besides the dimensions must have a unique name; got {item.name!r}")
         for variant in self.variants:
             if len(variant.labels) != len(self.choices):
-                raise InputError(f"a variant has a label for each of {self.choices}; got {variant.labels}")
+                raise InputError(f"a variant must have a label for each of {self.choices}; got {variant.labels}")
             if [x.name for x in variant.mechanism.varying] != [x.name for x in self.mechanism.varying]:
                 raise InputError("the same numbers must vary in all variants of a problem")
         if not self.objectives:
@@ -192,7 +190,7 @@ class Problem:
         for what, given, remedy in (("objective", names, "keep one"), ("constraint on", constrained, "merge the two")):
             for name in given:
                 if given.count(name) > 1:
-                    raise InputError(f"the {what} {name} is given twice; {remedy}")
+                    raise InputError(f"the {what} {name} may be given only once; got it twice; {remedy}")
         if self.offset.lower <= 0.0 <= self.offset.upper:
             for objective in self.objectives:
                 if self.quantity(objective.quantity).in_line == math.inf and objective.sense == "maximise":
@@ -211,8 +209,7 @@ class Problem:
         object.__setattr__(self, "own", (*self.own, *more))
         if self.slow_stroke is not None:
             raise InputError(
-                f"constraints.slow_stroke: it is of a crank that turns through; got {self.slow_stroke} with a swing; "
-                "leave it out"
+                f"constraints.slow_stroke: needs a rotating crank; got {self.slow_stroke} with a swing; leave it out"
             )
         for variant in self.variants or (self,):
             require_loads(variant.mechanism)
@@ -231,7 +228,7 @@ class Problem:
                 made = self.quantity(name)
                 if made.name != name:
                     raise InputError(
-                        f"an objective or constraint names a formula as it is printed; got {name!r}; write "
+                        f"an objective or constraint must name a formula as it is printed; got {name!r}; write "
                         f"{made.name!r}"
                     )
                 object.__setattr__(self, "own", (*self.own, made))
@@ -363,8 +360,8 @@ class Problem:
     def _require_chosen(self) -> None:
         if self.variants:
             raise InputError(
-                f"a design of a problem with choices ({', '.join(self.choices)}) is one of an option; got the problem "
-                f"of all {len(self.variants)}; take one of problem.parts()"
+                f"a design of a problem with choices ({', '.join(self.choices)}) belongs to one option; got the "
+                f"problem with all {len(self.variants)}; use one of problem.parts()"
             )
 
     @property
@@ -394,7 +391,7 @@ class Problem:
                 for name in self.choices
                 for head in self.heads(name)
             ),
-            *((least_field(name), "the least option that serves") for name in least),
+            *((least_field(name), "the least option that suffices") for name in least),
             *((note_field(f"least {name}", head), _WITH_LEAST) for name in least for head in self.heads(name)),
             *((least_amount_field(name, of), _WITH_LEAST) for name in least for of in self.amounts(name)),
         ]
@@ -445,7 +442,7 @@ class Problem:
         if not self.variants:
             return self
         if not isinstance(variant, Integral) or not -len(self.variants) <= variant < len(self.variants):
-            raise InputError(f"a variant is one of 0 to {len(self.variants) - 1}, see `variants`; got {variant!r}")
+            raise InputError(f"a variant must be one of 0 to {len(self.variants) - 1}, see `variants`; got {variant!r}")
         return self.with_variant(self.variants[variant])
 
     def with_variant(self, chosen: Variant) -> Problem:
@@ -481,7 +478,7 @@ def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | Non
     """Return the slow stroke that both ask for. Raises `InputError` if they differ."""
     if stroke is not None and more is not None and stroke != more:
         raise InputError(
-            f"the slow stroke is either the outward or the inward one; got {stroke} and {more} of a choice"
+            f"the slow stroke must be either the outward or the inward one; got {stroke} and {more} of a choice"
         )
     return stroke if more is None else more
 
@@ -489,7 +486,7 @@ def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | Non
 def require_problem(problem: object, what: str) -> None:
     """Refuse what is no problem. what: takes one."""
     if not isinstance(problem, Problem):
-        raise InputError(f"{what} takes a problem; got {type(problem).__name__}; make one by problem or load_job")
+        raise InputError(f"{what} needs a problem; got {type(problem).__name__}; make one with problem or load_job")
 
 
 def _require_stroke(stroke: object) -> None:

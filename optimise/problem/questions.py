@@ -74,7 +74,7 @@ def subject_of(name: str) -> str:
     known = questions()
     if name not in known:
         near = difflib.get_close_matches(str(name), known, n=1)
-        every = f"choose from {', '.join(known)}" if known else "no installed package has one; install slidercrank anew"
+        every = f"choose from {', '.join(known)}" if known else "no installed package has one; reinstall slidercrank"
         hint = f"did you mean {near[0]}?" if near else every
         raise InputError(f"a question is asked by its name; got {name!r}; {hint}")
     return getattr(known[name], "subject", "design")

@@ -130,8 +130,8 @@ def _require_name(name: object) -> None:
     """Refuse a name that no quantity can have."""
     if not isinstance(name, str) or not (_NAME.fullmatch(name) or _FORMULA.fullmatch(name)):
         raise InputError(
-            f"a quantity is named by small letters, digits and underscores, such as {PEAK_TORQUE.name!r}; got "
-            f"{name!r}; choose from {listed(QUANTITIES)}, or a quantity of the problem's own"
+            "the name of a quantity may only have lower-case letters, digits and underscores, such as "
+            f"{PEAK_TORQUE.name!r}; got {name!r}; choose from {listed(QUANTITIES)}, or a custom quantity of the problem"
         )
 
 
@@ -155,7 +155,7 @@ def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
         if number is not None and abs(number) > most > 0.0:
             usual = kind.metric
             doubt = both_readings(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
-            warn_user(f"requirements are in SI: {quantity}, {doubt}")
+            warn_user(f"requirements must be in SI: {quantity}, {doubt}")
             break
 
 

@@ -120,13 +120,13 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
     for name in chosen:
         if name not in able and name in held:
             raise InputError(
-                f"{name} cannot equal a value within tolerances; got equals; give min and max, or leave it out of "
-                "robust and it stays nominal"
+                f"{name} cannot be kept at one value within tolerances; got equals; give min and max, or leave it out "
+                "of robust, so that it stays nominal"
             )
         if name not in able and name in aimed:
             raise InputError(
-                f"{name} has a target, which has no bad side; got it as robust; minimise or maximise it, or leave it "
-                "out of robust and it stays nominal"
+                f"a robust objective must be minimised or maximised; {name} has a target; leave it out of robust, so "
+                "that it stays nominal"
             )
         if name not in able:
             raise InputError(
@@ -139,7 +139,7 @@ def _chosen(problem: Problem, plan: Robust) -> list[str]:
             )
     if not chosen:
         raise InputError(
-            "nothing is left to be robust: equalities, targets and position errors stay nominal; name quantities, or "
+            "nothing can be robust here: equalities, targets and position errors stay nominal; name quantities, or "
             "leave out robust"
         )
     return list(dict.fromkeys(chosen))

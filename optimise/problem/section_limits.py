@@ -10,7 +10,7 @@ from ...model.errors import InputError
 
 def _require(what: str, name: str, value: float, least: float = 0.0) -> None:
     if not math.isfinite(value) or value <= least:
-        raise InputError(f"{what} must have a {name} of more than {least:g} and finite; got {value:g}")
+        raise InputError(f"{what} must have a finite {name} above {least:g}; got {value:g}")
 
 
 @dataclass(frozen=True, kw_only=True)

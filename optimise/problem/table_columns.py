@@ -65,7 +65,7 @@ def require_own_columns(
         other = "slacks" if of.field.startswith(_SLACK) else owner.get(of.field)
         if other is not None:
             raise InputError(
-                "the column of a quantity of the job must be that of no other number; got "
-                f"{of.name} with the column {of.field}, which is that of {other}; choose another name"
+                f"the column of a custom quantity must be unique; got {of.name} with the column {of.field}, which "
+                f"belongs to {other}; choose another name"
             )
         owner[of.field] = of.name

@@ -33,7 +33,7 @@ def idle_rules(problem: Problem) -> list[str]:
     machines = [part.mechanism for part in problem.parts()]
     reasons = {each.quantity: problem.quantity(each.quantity).zero_because(machines) for each in problem.constraints}
     return [
-        f"constraints.{name} leaves no design out: it is zero for every design of this job; {reason}"
+        f"constraints.{name} excludes no design: it is zero for every design of this job; {reason}"
         for name, reason in reasons.items()
         if reason
     ]

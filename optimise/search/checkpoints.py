@@ -215,28 +215,30 @@ def _steps(past: Iterable[Record]) -> Iterator[_Step]:
                     at += size
                 yield _Step((first, second), evaluations, tuple(found))
         except ValueError as error:
-            raise ForeignRecords(f"the records of a run must be whole; got a damaged one ({error}); {_ANEW}") from error
+            raise ForeignRecords(
+                f"the records of a run must be complete; got a damaged one ({error}); {_ANEW}"
+            ) from error
 
 
 def require_own(past: Sequence[Record], identity: Identity | None) -> None:
     """Raise `ForeignRecords` unless these are all records of this search so far, in order."""
     for number, record in enumerate(past):
         if identity is None or record.identity.problem != identity.problem:
-            raise ForeignRecords(f"a run goes on only with the job, the method and the seed it began with; {_ANEW}")
+            raise ForeignRecords(f"a run can only continue with its original job, method and seed; {_ANEW}")
         if record.identity.versions != identity.versions:
             raise ForeignRecords(
-                f"a run goes on only with the versions that it began with; got {record.identity.versions} where these "
-                f"are {identity.versions}; install those, or {_ANEW}"
+                f"a run can only continue with its original versions; it has {record.identity.versions}, here "
+                f"{identity.versions} are installed; install the original ones, or {_ANEW}"
             )
         if record.number != number:
             raise ForeignRecords(
-                f"a run goes on from all of its records in order; got number {record.number} in place of {number}; "
-                f"{_ANEW}"
+                f"a run can only continue from all its records in order; got number {record.number} instead of "
+                f"{number}; {_ANEW}"
             )
 
 
-_ANEW = "start the run anew"
+_ANEW = "start a new run"
 _OTHERWISE = (
-    "a run goes on only where it computes the same; the search came to another step ({}) than the one that was kept, "
-    f"on another kind of processor perhaps; {_ANEW}"
+    "a run can only continue where it computes the same results; the search reached another step ({}) than the stored "
+    f"one, perhaps on another kind of processor; {_ANEW}"
 )

@@ -104,16 +104,16 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
         works += work[drives].tolist()
         if not named and drives.any():
             named = _named(part, designs[drives][:1])
-            what += " that are not stated to drive" if any(load.drives for load in part.mechanism.loads) else ""
+            what += " that are not declared as driving" if any(load.drives for load in part.mechanism.loads) else ""
     if not works:
         return []
     where = f"in every {design}" if len(works) == count else f"in some {design}s"
     ends = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(works), max(works))))
     required = "" if part.motion is not None else f", or require a {DELIVERED_WORK.short} of at least 0 J"
     return [
-        f"{where} {what} do more work on the machine than they take, by {ends} J a cycle: {named}; if the load should "
-        "resist, reverse its sign or state it as a force that opposes a stroke; if it should drive, state it as one "
-        f"that helps a stroke{required}"
+        f"{where} {what} do more work on the machine than they absorb, by {ends} J per cycle: {named}; if the load "
+        "should resist, reverse its sign or define it as a force that opposes a stroke; if it should drive, define "
+        f"it as one that helps a stroke{required}"
     ]
 
 

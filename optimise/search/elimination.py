@@ -149,9 +149,9 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     where = "above" if side > 0.0 else "below"
     raise InfeasibleError(
         f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
-        f"{part.slow_stroke} stroke is the slow one where the offset is {where} 0; got an "
-        f"offset from {1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset reach "
-        f"{where} 0" + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
+        f"{part.slow_stroke} stroke is slow if the offset is {where} 0; got an offset from "
+        f"{1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset go {where} 0"
+        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
     )
 
 

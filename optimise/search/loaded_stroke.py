@@ -75,8 +75,8 @@ def _left_out(problem: Problem) -> list[str]:
                 turning, other = other, turning
             return [
                 f'slow_stroke = "{part.slow_stroke}" leaves only offsets from {1e3 * low:.6g} to {1e3 * high:.6g} mm '
-                f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, as the crank turns {turning}; "
-                f"if the others are meant, let it turn {other}"
+                f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, because the crank turns {turning}; if "
+                f"you mean the others, let it turn {other}"
             ]
     return []
 
@@ -92,7 +92,7 @@ def _is_one_stroke(strokes: NDArray[np.str_]) -> Mask:
 def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
     stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
     has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
-    turn = "" if has else ", with an offset of the other sign or the crank turning the other way"
+    turn = "" if has else ", with the opposite sign of the offset or direction of rotation"
     other = "inward" if stroke == "outward" else "outward"
     return (
         f"{where} the loaded stroke (the {stroke} one, against the load) is the faster one; for a slow loaded stroke "

@@ -152,17 +152,16 @@ def balance(
             raise InputError(f"{name} must be positive and finite; got {value:g}")
     if mechanism.acceleration or not mechanism.speed:
         raise InputError(
-            "a balance is for a crank that turns at constant speed; got "
-            f"{mechanism.speed:g} rad/s, accelerating by {mechanism.acceleration:g} rad/s^2; "
-            "set a speed and no acceleration"
+            f"balancing needs a constant crank speed; got {mechanism.speed:g} rad/s with an acceleration of "
+            f"{mechanism.acceleration:g} rad/s^2; set a speed and no acceleration"
         )
     if arm is not None and rod is None:
         raise InputError(
-            "the shaking moment about the crank pivot does not depend on the counterweight; "
-            f"got an arm of {arm:g} m without a rod balance; add space on the rod or leave out the arm"
+            f"the counterweight does not affect the shaking moment about the crank pivot; got an arm of {arm:g} m "
+            "without a rod balance; add space on the rod, or leave out the arm"
         )
     if not moving_moment(mechanism, linkage) > 0.0:
-        raise InputError("a balance needs masses; got none in crank, rod and slider; give at least one")
+        raise InputError("balancing needs masses; crank, rod and slider have none; give at least one")
     return _Programme(mechanism, linkage, measure, arm, most, rod).solve(
         radius or mechanism.counterweight.radius or float(linkage.crank)
     )
@@ -217,7 +216,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, float, float]:
         """Return x (6,), the least objective, N, for peaks at these angles only, and the price of `most`, N/(kg m)."""
-        cp = required("cvxpy", "counterweights of least shaking need")
+        cp = required("cvxpy", "balancing a counterweight needs")
         z = cp.Variable(self.count)
         goals, rules = [], []
         peaks = self.measure == "peak"

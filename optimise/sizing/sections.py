@@ -102,8 +102,9 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
     if states[worst] > 1.0 + _OVER:
         raise InfeasibleError(
-            f"no section within the ranges carries the loads; got {worst} at {100.0 * states[worst]:.4g} % of what is "
-            "permitted at best; widen the ranges of width and depth, slow the machine down or take a stronger material"
+            f"no section within the ranges carries the loads; {worst} reaches at best {100.0 * states[worst]:.4g} % "
+            "of the permissible value; widen the ranges of width and depth, reduce the speed, or choose a stronger "
+            "material"
         )
     crank, rod = task.bars(sizes)
     return Sections(
@@ -204,7 +205,7 @@ class _Programme:
     """
 
     def __init__(self, task: _Task, loads: list[str]) -> None:
-        cp = required("cvxpy", "sections of least mass need")
+        cp = required("cvxpy", "sizing sections needs")
 
         self.loads, self.powers = cp.Parameter(len(loads), pos=True), cp.Parameter((len(loads), 4))
         self.low, self.high = cp.Parameter(4, pos=True), cp.Parameter(4, pos=True)
@@ -235,7 +236,7 @@ class _Programme:
 
         sizes: (4,), logarithms, where the loads (n,) have the slopes powers (n, 4).
         """
-        cp = required("cvxpy", "sections of least mass need")
+        cp = required("cvxpy", "sizing sections needs")
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)
@@ -245,7 +246,8 @@ class _Programme:
             self.programme.solve(gp=True, solver=cp.CLARABEL, tol_gap_abs=_EXACT, tol_gap_rel=_EXACT, tol_feas=_EXACT)
         if self.programme.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
             raise InputError(
-                f"the sections could not be sized: the solver ended as {self.programme.status}; check loads and limits"
+                f"the sections could not be sized: the solver ended with status {self.programme.status}; check loads "
+                "and limits"
             )
         duals = {name: max(0.0, float(constraint.dual_value)) for name, constraint in self.held.items()}
         return np.log(np.asarray(self.sizes.value, dtype=np.float64)), duals

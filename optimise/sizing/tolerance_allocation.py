@@ -70,7 +70,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Allocation:
-    """Tolerances of least cost.
+    """Least-cost tolerances.
 
     parts: the tolerances chosen. cost: their total. mechanism: that of the arguments, with them. error: greatest
     first-order position error with them, m. saving: by how much the cost falls for each m that the limit is raised.
@@ -141,9 +141,9 @@ class _Programme:
         floor, limit = rows.peaks(self.least)[0].max(), 1e3 * rows.limit
         if not floor < 1.0:
             raise InfeasibleError(
-                "the limit must exceed the position error that the least tolerances leave with what is given; "
-                f"got {limit:g} mm, below {limit * floor ** (1.0 / rows.power):.6g} mm; raise the limit, "
-                "or reduce clearances and least tolerances"
+                "the limit must exceed the position error with the smallest tolerances; got "
+                f"{limit:g} mm, below {limit * floor ** (1.0 / rows.power):.6g} mm; raise the limit, "
+                "or reduce clearances and the smallest tolerances"
             )
 
     def solve(self) -> Allocation:
@@ -161,7 +161,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, Array]:
         """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
-        cp = required("cvxpy", "tolerances of least cost need")
+        cp = required("cvxpy", "tolerance allocation needs")
         rows, room = self.error.rows(angles)
         size = float(self.beta.sum())
         x = cp.Variable(len(self.beta))

@@ -41,18 +41,21 @@ for _topic in QUESTIONS.values():
 JobInput = Annotated[
     Job,
     Field(
-        description=f"A job: its tables, the text of a job file in TOML, or the name of one that ships: "
+        description="A job: its tables, the TOML text of a job file, or the name of an included job: "
         f"{', '.join(shipped_jobs())}. Tables: {_TABLES}. `describe` explains every key."
     ),
 ]
 OptionalJob = Annotated[Job | None, Field(description="A job, as for `check`.")]
 Files = Annotated[
     dict[str, str],
-    Field(description="Contents of the files that the job names, by their names: tables of loads, options, motions."),
+    Field(
+        description="Contents of the files that the job refers to, by file name: tables of loads, options or motions."
+    ),
 ]
-Number = Annotated[int | None, Field(description="A design of the run by its number.", ge=1)]
+Number = Annotated[int | None, Field(description="Number of a design in the run.", ge=1)]
 Topics = Annotated[
-    list[str], Field(description=f"Analyses of the design, {ALL} for all of a full turn: {'; '.join(_SHOWN)}.")
+    list[str],
+    Field(description=f"Analyses of the design, or {ALL} for every analysis of a rotating crank: {'; '.join(_SHOWN)}."),
 ]
 TopicInputs = Annotated[
     dict[str, Any],
@@ -61,7 +64,9 @@ TopicInputs = Annotated[
         json_schema_extra={"properties": dict(_INPUTS), "additionalProperties": False},
     ),
 ]
-Dimension = Annotated[str | None, Field(description='Length of a design, such as "40 mm", unless the job fixes it.')]
+Dimension = Annotated[
+    str | None, Field(description='Length of the design, such as "40 mm"; leave it out if the job fixes it.')
+]
 
 
 @dataclass(frozen=True)
@@ -72,8 +77,8 @@ class Shown:
     columns: Annotated[
         list[str] | None,
         Field(
-            description="Quantities or columns of each design; dimensions, stroke and objectives if left out, every "
-            f'one for ["{ALL}"].'
+            description=f'Quantities or columns of each design. Default: dimensions, stroke and objectives; ["{ALL}"] '
+            "gives all."
         ),
     ] = None
     units: Units = "metric"
@@ -97,7 +102,7 @@ class Machine(NamedTuple):
 class Design:
     """A design of a run, or one with lengths of its own for a job."""
 
-    run: Annotated[str | None, Field(description='A run by its name, or "latest"; instead of job and lengths.')] = None
+    run: Annotated[str | None, Field(description='Name of a run, or "latest"; instead of a job and lengths.')] = None
     design: Number = None
     job: OptionalJob = None
     files: Files = field(default_factory=dict)
@@ -109,8 +114,8 @@ class Design:
         """Return the machine. Raises `InputError` for none, and for two."""
         if (self.run is None) == (self.job is None):
             got = "both" if self.run else "neither"
-            raise InputError(f"a design is of a run or of a job; got {got}; give one of them")
-        return self._of_job(call) if self.run is None else self._of_run(call, self.run)
+            raise InputError(f"a design must come from a run or a job; got {got}; give one of them")
+        return self._machine_of_job(call) if self.run is None else self._machine_of_run(call, self.run)
 
     def stated(self, call: Call) -> Problem:
         """Return the problem of the job. Raises `InputError` for none."""
@@ -138,9 +143,12 @@ class Design:
 
     def _require_no_lengths(self) -> None:
         for name in self.lengths:
-            raise InputError(f"a design of a run has its dimensions; got run and {name}; leave out one of the two")
+            raise InputError(
+                f"dimensions must not be given with a run, whose designs have their own; got run and {name}; "
+                "leave out one of the two"
+            )
 
-    def _of_run(self, call: Call, run: str) -> Machine:
+    def _machine_of_run(self, call: Call, run: str) -> Machine:
         self._require_no_lengths()
         folder, result = call.front(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
@@ -148,7 +156,7 @@ class Design:
         of = stored_design(call.problem_of_run(folder, result), result, number)
         return Machine(of.mechanism, of.linkage, of.part)
 
-    def _of_job(self, call: Call) -> Machine:
+    def _machine_of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
         return Machine(problem.mechanism.nominal, Dimensions(**self.lengths).linkage(problem, str), problem)
 
@@ -166,16 +174,19 @@ class Asked:
         if self.alone is None:
             chosen_topics(self.topics, job=True, word="topics")
         elif len(self.topics) > 1:
-            raise InputError(f"{self.alone} is asked alone; got {', '.join(self.topics)}; ask the others without it")
+            raise InputError(
+                f"{self.alone} may not be combined with other topics; got {', '.join(self.topics)}; ask for the "
+                "others separately"
+            )
         if self.alone in WIDER:
             return
         taken = [one.name for name in self.names for one in QUESTIONS[name].inputs]
         for name in self.inputs:
             if name not in taken and name in _INPUTS:
                 (topic, *_) = (topic for topic in QUESTIONS.values() if any(one.name == name for one in topic.inputs))
-                raise InputError(f"{name} is an input of {topic.name}; got it without; add that topic")
+                raise InputError(f"{name} is an input of the topic {topic.name}, which is missing; add that topic")
             if name not in taken:
-                raise InputError(f"inputs are {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
+                raise InputError(f"an input must be one of {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
             if _INPUTS[name]["type"] == "string" and not isinstance(self.inputs[name], str):
                 raise InputError(f"inputs.{name} must be a text; got {shown(self.inputs[name])}; correct it")
 

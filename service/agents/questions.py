@@ -51,10 +51,10 @@ def list_known(call: Call) -> Answer:
     ]
     topics, runs = list(map(_topic, QUESTIONS.values())), list(_runs(call))
     lines = [
-        *("Jobs that ship:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
+        *("Included jobs:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
         *("Topics:", *(f"  {one['name']}, of a {one['of']}: {one['shows'].partition(chr(10))[0]}" for one in topics)),
         *("Quantities:", f"  {', '.join(facts['name'] for facts in quantities)}"),
-        *("Runs, the latest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
+        *("Runs, newest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
     ]
     record = {"jobs": jobs, "quantities": quantities, "topics": topics, "runs": runs}
     return Answer(record, "\n".join(lines))
@@ -66,8 +66,8 @@ def describe(
     name: Annotated[
         str,
         Field(
-            description="A quantity, a topic, a job that ships, or a key of a job such as load or mechanism.slider; "
-            "job for its tables.",
+            description="A quantity, a topic, an included job, or a key of a job, such as load or mechanism.slider; "
+            '"job" lists its tables.',
             max_length=200,
         ),
     ],
@@ -96,8 +96,8 @@ def describe(
         lines += [f"key {word}: {key['description']}", *_keys_in_words(key)]
     if not record:
         near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
-        remedy = f"did you mean {near}?" if near else "list what there is"
-        raise NotFound(f"a name is that of a quantity, a topic, a job or a key of one; got {word!r}; {remedy}")
+        remedy = f"did you mean {near}?" if near else "call `list` for all names"
+        raise NotFound(f"a name must be that of a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
     return Answer(record, "\n".join(lines))
 
 
@@ -114,9 +114,9 @@ def ask(call: Call, *, subject: Design, question: Asked) -> Answer:
     with ending_own(of.problem):
         alone = question.alone or ("swing" if of.problem.motion is not None and not question.topics else None)
         if alone is not None:
-            return _alone(alone, of, question)
+            return _analyse_by_command(alone, of, question)
         require_turning(of.problem.motion, f"the topic {next(iter(options), '')}")
-        return _turn(call, of, options, question)
+        return _analyse_rotating(call, of, options, question)
 
 
 def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B006
@@ -135,7 +135,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
     }
     if look.problem is None:
         lines = [": ".join(filter(None, (one.path, one.sentence))) for one in look.wrong]
-        return Answer(record, "\n".join(("the job cannot be searched:", *dict.fromkeys((*lines, *look.said)))))
+        return Answer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.said)))))
     for own in look.problem.own:
         if isinstance(own, OwnQuantity):
             own.require_function()
@@ -145,7 +145,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
     return Answer(record, "\n".join((heading, *told, freedom_in_words(look.problem), *look.said, *record["notes"])))
 
 
-def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Asked) -> Answer:
+def _analyse_rotating(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Asked) -> Answer:
     """Analyse a design that turns fully. options: of each topic."""
     from ..designs.requirements import judged
     from ..questions.analysis_text import show_analysis
@@ -167,7 +167,7 @@ def _turn(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], questi
     return Answer(found.record(question.units, rules), "\n".join((text, *found.notes, *found.refused)))
 
 
-def _alone(name: str, of: Machine, question: Asked) -> Answer:
+def _analyse_by_command(name: str, of: Machine, question: Asked) -> Answer:
     """Ask a design what is a command of its own."""
     from ..designs.shown_units import record_in
     from ..render.terminal import print_blocks

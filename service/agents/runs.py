@@ -55,10 +55,10 @@ class Search:
     job: OptionalJob = None
     files: Files = field(default_factory=dict)
     resume: Annotated[
-        str | None, Field(description="Instead of a job: a run that was cancelled or interrupted, to go on with.")
+        str | None, Field(description="Instead of a job: a cancelled or interrupted run to continue.")
     ] = None
     seconds: Annotated[
-        float | None, Field(description="Stop after so many seconds with what is found so far.", gt=0.0)
+        float | None, Field(description="Time limit in seconds; the designs found so far are returned.", gt=0.0)
     ] = None
 
     def begun(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
@@ -67,10 +67,10 @@ class Search:
 
         if (self.job is None) == (self.resume is None):
             got = "both" if self.job else "neither"
-            raise InputError(f"a search is of a job, or goes on with a run; got {got}; give one")
+            raise InputError(f"a search needs a job, or a run to continue; got {got}; give one of them")
         if self.resume is not None:
             if settings.given:
-                raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+                raise InputError("a run must continue with its original number of designs and seed; leave them out")
             return resumed_run(store, call.runs, call.folder(self.resume).name, call.problem_again)
         tables = tables_of(self.job or {}, self.files)
         problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.given)
@@ -103,7 +103,7 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Show
         front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
         result = keep_front(opened, front, budget)
     shown = result_in(result, part.units, problem)
-    more = {"done": "", "infeasible": ""}.get(result.status, f"; go on with optimise, resume = {run.path.name}")
+    more = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
     text = text_of(lambda screen: show_result(screen, shown))
     record = _record(shown, spread_rows(shown, range(len(shown.designs)), part.rows), part)
     return Answer(record, f"{text}\nRun: {run.path.name}{more}", is_error=result.status != "done")
@@ -116,7 +116,7 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Shown
     """
     folder, result = call.front(run)
     chosen = selection.rows(result)
-    picked = _picked(result, chosen, pick)
+    picked = _chosen_number(result, chosen, pick)
     if not chosen:
         raise InfeasibleError(none_meets(result, selection.where or []))
     shown = result_in(result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result))
@@ -135,7 +135,9 @@ def files(
     run: Run,
     write: Annotated[
         list[Written],
-        Field(description="Of the run csv, json, figures; of a design the others.", min_length=1),
+        Field(
+            description="csv, json and figures cover the whole run; the other formats cover one design.", min_length=1
+        ),
     ],
     design: Number = None,
     units: Units = "metric",
@@ -148,7 +150,7 @@ def files(
     if design is not None and _OF_RUN.issuperset(write):
         raise InputError(f"{', '.join(write)} are of all designs of a run; got design {design}; leave it out")
     folder, result = call.front(run)
-    picked = _picked(result, [], Pick(design=design))
+    picked = _chosen_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
     found, shown = stored_design(problem, result, number), result_in(result, units, problem)
@@ -185,7 +187,7 @@ def _record(shown: Result, rows: Sequence[int], part: Shown) -> dict[str, Any]:
     return part_of(shown, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
-def _picked(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
+def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
     """Return which design is named or chosen by its values, None without either."""
     if pick.design is None:
         return pick.row(result, chosen)

@@ -46,13 +46,14 @@ TOOLS = (
     Tool("files", runs.files, writes=True),
 )
 _BY_NAME = {tool.name: tool for tool in TOOLS}
-INSTRUCTIONS = """Sizes offset slider-crank mechanisms: feeders, presses, pumps, compressors, sieves, tilting supports.
-State what a machine must do as a job, and get the Pareto front of designs with all their quantities.
+INSTRUCTIONS = """Designs offset slider-crank mechanisms: feeders, presses, pumps, compressors, sieves, tilting
+supports.
+Describe what a machine must do as a job, and get the Pareto front of designs with all their quantities.
 
-1. list: jobs that ship, quantities, topics. describe one that is near, such as feeder, and its keys; write your job.
-2. check the job: it says what was understood, and what contradicts what.
-3. optimise it. The run that it makes has designs with numbers.
-4. front chooses designs of a run; ask analyses one; files writes report, drawing, tables.
+1. list: included jobs, quantities, topics. describe a similar job, such as feeder, and its keys; write your job.
+2. check the job: reports how it is understood and which requirements conflict.
+3. optimise it. This creates a run with numbered designs.
+4. front shows and chooses designs of a run; ask analyses one; files writes report, drawing and tables.
 
 Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers end with their unit: crank_mm."""
 
@@ -78,7 +79,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
                     interrupted()
 
     async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
-        return ListToolsResult(tools=[_declared(tool) for tool in TOOLS])
+        return ListToolsResult(tools=[_declaration(tool) for tool in TOOLS])
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else others
@@ -146,26 +147,26 @@ def _run(name: str, arguments: Mapping[str, Any], call: Call) -> Answer:
     """Return the answer of a tool, or one sentence on why there is none."""
     try:
         if name not in _BY_NAME:
-            return _refused(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
+            return _error_answer(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
         return _BY_NAME[name].answer(call, arguments)
     except SlidercrankError as error:
-        return _refused(str(error))
+        return _error_answer(str(error))
     except MemoryError:
-        return _refused("there must be memory enough for this; got less; end other programs, or ask for less")
+        return _error_answer("not enough memory for this request; close other programs, or ask for less")
     except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
         if isinstance(error, OSError) and is_full(error):
-            return _refused(f"what is computed is written to disks; {full_places(error)}; make room")
+            return _error_answer(f"Disk full: {full_places(error)}; free some space")
         _log.exception("the tool %s failed", name)
-        return _refused(
-            f"unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the input; "
-            "its standard error has more"
+        return _error_answer(
+            f"unexpected {type(error).__name__}: {error}; this is a bug in slidercrank, not in the input; see its "
+            "standard error for details"
         )
 
 
-def _refused(sentence: str) -> Answer:
+def _error_answer(sentence: str) -> Answer:
     return Answer({}, sentence, is_error=True)
 
 
-def _declared(tool: Tool) -> Declared:
+def _declaration(tool: Tool) -> Declared:
     hints = ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=False, open_world_hint=False)
     return Declared(name=tool.name, description=tool.description, input_schema=tool.schema, annotations=hints)

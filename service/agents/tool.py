@@ -76,9 +76,10 @@ class Tool:
         if details["type"] == "extra_forbidden":
             near = closest(name, known)
             remedy = f"did you mean {near}?" if near else "leave it out"
-            return f"{self.name} takes {', '.join(known) or 'nothing'}; got {shown(name)}; {remedy}"
+            rule = f"accepts only {', '.join(known)}" if known else "has no inputs"
+            return f"{self.name} {rule}; got {shown(name)}; {remedy}"
         if details["type"] == "missing":
-            return f"{self.name} needs {name}; it is missing; add it"
+            return f"{self.name} needs {name}, which is missing; add it"
         path = ".".join(str(part) for part in details["loc"] if not str(part).startswith(("dict[", "str", "list[")))
         return f"{path} {rule_of(details)}; got {shown(details['input'])}; correct it"
 

@@ -50,7 +50,7 @@ def compare_runs(
 ) -> ComparisonModel:
     """Say what differs between the jobs of runs, and which of their fronts is better where."""
     if len(set(job)) < len(job):
-        raise InputError(f"each run is compared once; got {', '.join(map(str, job))}; leave out what is there twice")
+        raise InputError(f"a run may be named only once; got {', '.join(map(str, job))}; leave out repeated ones")
     places = differences([store.tables(number) for number in job])
     results = [(f"run {number}", fronts.of(number).result) for number in job]
     solved = [(name, result) for name, result in results if result.designs]

@@ -134,9 +134,12 @@ class Computing:
         limits = f"{size_text(self._most.memory or 0)} of memory and {self._most.seconds:g} s of processor time"
         lacking = {EXHAUSTED: "memory", OUT_OF_TIME: "processor time"}.get(code)
         if lacking:
-            text = f"an answer may take at most {limits}; this one needs more {lacking}; {_REMEDY}"
+            text = f"an answer may use at most {limits}; this one needs more {lacking}; {_REMEDY}"
             return HTTPException(HTTPStatus.UNPROCESSABLE_ENTITY, text)
-        text = f"a process computes an answer, with at most {limits}; this one ended ({reason_of(code)}); try again"
+        text = (
+            f"the process that computes an answer, with at most {limits}, must not end early; it did "
+            f"({reason_of(code)}); try again"
+        )
         return HTTPException(HTTPStatus.SERVICE_UNAVAILABLE, text, {"Retry-After": "5"})
 
 

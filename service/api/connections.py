@@ -92,10 +92,10 @@ class Gate:
         others = [one for one in new.connections if isinstance(one, Connection) and one is not new]
         waiting = sorted((one for one in others if one.is_dispensable), key=lambda one: (one.is_known, one.since))
         if not waiting:
-            self.tell(f"refused for {self.most} connections that were being answered")
+            self.tell(f"refused: {self.most} connections were being answered")
             return False
         for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not looked through each time
-            self.tell(f"closed to make room: more than {self.most}")
+            self.tell(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
@@ -151,7 +151,9 @@ class Connection(HttpToolsProtocol):
         if self._gate.make_room(self):
             self._wait(HEAD_SECONDS)
         else:
-            text = f"the service has at most {self._gate.most} connections at a time; all are in use; try again later"
+            text = (
+                f"the service may have at most {self._gate.most} connections at a time; all are in use; try again later"
+            )
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, text, {"Retry-After": "5"})
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -190,7 +192,7 @@ class Connection(HttpToolsProtocol):
                 long = self._part == "head" and len(self.url) > MOST_HEAD // 2
                 status = HTTPStatus.REQUEST_URI_TOO_LONG if long else HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
                 what = "a body beside its content" if self._part == "body" else "an address with its headers"
-                self._refuse(status, f"{what} has at most {MOST_HEAD} bytes; got more; shorten it")
+                self._refuse(status, f"{what} may have at most {MOST_HEAD} bytes; got more; shorten it")
             if self.transport.is_closing():
                 return
             super().data_received(piece)
@@ -244,7 +246,7 @@ class Connection(HttpToolsProtocol):
 
     def send_400_response(self, msg: str) -> None:
         """Refuse what is not HTTP."""
-        self._refuse(HTTPStatus.BAD_REQUEST, "a request is HTTP/1.1; got something else; correct it")
+        self._refuse(HTTPStatus.BAD_REQUEST, "a request must be HTTP/1.1; got something else; correct it")
 
     def _wait(self, seconds: float | None) -> None:
         """Expect what comes next within some seconds; None ends waiting."""
@@ -256,11 +258,11 @@ class Connection(HttpToolsProtocol):
         if self.transport.is_closing():
             return
         if self._part == "rest":  # nobody waits for an answer
-            self._gate.tell(f"closed, nothing was asked within {seconds:g} s")
+            self._gate.tell(f"closed: no request within {seconds:g} s")
             self.transport.close()
             return
         what = "headers" if self._part == "head" else "body"
-        text = f"the {what} must be there within {seconds:g} s; not all came; send less, or over a faster connection"
+        text = f"the {what} must arrive within {seconds:g} s; it is incomplete; send less, or over a faster connection"
         self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:

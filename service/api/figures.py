@@ -32,7 +32,7 @@ _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 def require_figures(settings: SettingsDep) -> None:
     """Refuse where the service draws no figures."""
     if not settings.figures:
-        raise NotFound("this service draws no figures; ask whoever runs it to start it with figures")
+        raise NotFound("this service cannot draw figures; ask its operator to start it with figures")
 
 
 router = APIRouter(
@@ -92,7 +92,7 @@ def _image(found: StoredFront, name: str, kind: Kind, numbers: Numbers | None, u
 
     single = _DESIGN.fullmatch(name)
     if single is None and numbers is not None:
-        rule = "other numbers are those of a single design"
+        rule = "other lengths and values only apply to a single design"
         raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
     shown = None if single is None else shown_design(found, int(single[1]), numbers)
     key, headers = shown.key if shown else name, dict[str, str]()

@@ -212,7 +212,7 @@ def pick_design(
     """Choose among the designs that meet all conditions, in one of three ways."""
     result = found.result
     if not (knee or topsis is not None or lexicographic is not None):
-        raise InputError("a design is chosen by knee, topsis or lexicographic; got none of them; give one")
+        raise InputError("a design must be chosen by knee, topsis or lexicographic; got none; give one")
     if not result.designs:
         raise InfeasibleError(result.message)
     rows = chosen_rows(result, where)

@@ -72,7 +72,7 @@ def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Pa
     def named(request: Request, **given: float | str | None) -> dict[str, str]:
         for one in inputs:
             if one.name != one.key and one.name in request.query_params:
-                raise InputError(f"{one.name} has its unit in its name here; got {one.name}; call it {one.key}")
+                raise InputError(f"{one.name} must have its unit in its name here; got {one.name}; call it {one.key}")
         typed = ((one, given[one.key]) for one in inputs)
         return {one.name: one.typed(value) for one, value in typed if value is not None}
 

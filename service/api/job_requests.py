@@ -114,7 +114,7 @@ async def asked_for(request: Request) -> Asked:
     if kind != JSON:
         raise HTTPException(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-            f"a job comes as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; give one of these content types",
+            f"a job must be sent as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; use one of these content types",
         )
     try:
         given = request.scope[GIVEN] if GIVEN in request.scope else read_json(body, settings.most_depth)  # of no body
@@ -134,7 +134,7 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
     try:
         text = body.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise JobError("a job file is UTF-8 text; got other bytes; save it as UTF-8") from None
+        raise JobError("a job file must be UTF-8 text; got other bytes; save it as UTF-8") from None
     tables = toml_tables(text)
     try:
         require_moderate(tables, most_depth)
@@ -162,7 +162,9 @@ def within(asked: AskedLimits, most: Limits) -> Limits:
     limits = Limits(seconds=asked.seconds, evaluations=asked.evaluations, memory=asked.memory_bytes)
     for name, wanted, highest in zip(AskedLimits.model_fields, astuple(limits), astuple(most), strict=True):
         if wanted is not None and highest is not None and wanted > highest:
-            raise InputError(f"limits.{name}: is at most {highest} here; got {wanted}; ask for less, or leave it out")
+            raise InputError(
+                f"limits.{name}: must be at most {highest} here; got {wanted}; ask for less, or leave it out"
+            )
     return limits.within(most)
 
 

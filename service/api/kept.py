@@ -152,7 +152,7 @@ def alternatives_of(found: StoredFront, store: Store) -> list[Alternative]:
 def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:
     """Return the design that is to be kept. Raises `InputError` for dimensions that are none of the job's."""
     if asked.design is None and not asked.dimensions:
-        raise InputError("a kept design is one of the front or has dimensions; got neither; give a design, or lengths")
+        raise InputError("a bookmark needs a design of the front or dimensions; got neither; give a design, or lengths")
     own = {} if asked.design is None else found.row(asked.design)
     if asked.design is not None and not asked.dimensions:
         return stored_design(found.problem, found.result, asked.design)
@@ -160,14 +160,16 @@ def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:
     known |= {choice_field(name) for name in found.problem.choices}
     for key, value in asked.dimensions.items():
         if key not in known:
-            raise InputError(f"dimensions are {', '.join(sorted(known))}; got {key!r}; leave it out")
+            raise InputError(f"dimensions must be {', '.join(sorted(known))}; got {key!r}; leave it out")
         if key in _LENGTHS and not (isinstance(value, float) and -LONGEST <= value <= LONGEST):
-            raise InputError(f"{key} is a number up to {LONGEST:g}; got {value!r}; correct it")
+            raise InputError(f"{key} must be a number up to {LONGEST:g}; got {value!r}; correct it")
         if key in _LENGTHS[:2] and isinstance(value, float) and value < SHORTEST:
-            raise InputError(f"{key} is at least {SHORTEST:g}; got {value:g}; correct it")
+            raise InputError(f"{key} must be at least {SHORTEST:g}; got {value:g}; correct it")
     missing = sorted(known - {*own, *asked.dimensions})
     if missing:
-        raise InputError(f"a design without a number has all dimensions; got none for {', '.join(missing)}; give them")
+        raise InputError(
+            f"a design without a number needs all dimensions; got none for {', '.join(missing)}; give them"
+        )
     design = design_of(found.problem, {**own, **asked.dimensions})
     varying = {varying_column(item)[0] for item in design.part.mechanism.varying}
     values = {key: value for key, value in asked.dimensions.items() if key in varying and isinstance(value, float)}

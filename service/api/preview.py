@@ -59,10 +59,10 @@ class AllowedModel(BaseModel):
 
     turning_share: of the designs within the ranges that turn fully. stroke_mm, time_ratio, transmission_angle_deg: from
     least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
-    slow_strokes: slow strokes of the designs that meet all requirements which were checked, else of those that turn.
-    feasible_share: of the sampled designs that meet all requirements which were checked; equalities are met exactly.
-    hardest, hardest_share: the requirement that the fewest of the turning designs meet. unchecked: requirements that
-    need more than a moment, or numbers of the machine that are still missing.
+    slow_strokes: slow strokes of the designs that meet all requirements which were checked, else of those that rotate
+    fully. feasible_share: of the sampled designs that meet all requirements which were checked; equalities are met
+    exactly. hardest, hardest_share: the requirement that the fewest of the turning designs meet. unchecked:
+    requirements that need more than a moment, or numbers of the machine that are still missing.
     """
 
     turning_share: float = Field(examples=[0.83])

@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
 _MOST = 8  # problems of one request that are listed
 _LONGEST = 4000  # characters of a sentence
-FAULT = "this is a fault of the service, not of the request; its log has the details; tell whoever runs it"
+FAULT = "this is a bug in the service, not in the request; its log has the details; tell its operator"
 _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (QueueFull, HTTPStatus.SERVICE_UNAVAILABLE),
     (StoreError, HTTPStatus.SERVICE_UNAVAILABLE),
@@ -114,7 +114,7 @@ async def _not_valid(request: Request, error: Exception) -> Response:
     if any(isinstance(one["input"], bytes) for one in found):  # what is not JSON by its type stays as it came
         kind = request.headers.get("content-type", "no type")[:100]
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
-        sentence = f"body: is a JSON object of the type application/json; got {kind}; send it as that{turned}"
+        sentence = f"body: must be a JSON object of type application/json; got {kind}; send it as such{turned}"
         return problem(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
     sentences = [f"{_place(one['loc'])}: {rule_and_value(one)}" for one in found[:_MOST]]
     more = ["... and more"] if len(found) > _MOST else []
@@ -125,10 +125,10 @@ async def _http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     detail, headers = error.detail, error.headers
     if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
-        detail = "a request names a place of the API; there is nothing here; see /api/v1/openapi.json"
+        detail = "there is nothing at this address; see /api/v1/openapi.json for those of the API"
     elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers = {"Allow": ", ".join(_methods(request))}
-        detail = f"this place does not know the method; got {request.method}; use {headers['Allow']}"
+        detail = f"this address must be called with another method; got {request.method}; use {headers['Allow']}"
     return problem(error.status_code, detail, headers)
 
 
@@ -148,7 +148,7 @@ def rule_and_value(details: Mapping[str, Any]) -> str:
     from ...optimise.job.messages import rule_of
 
     if details["type"] == "missing":
-        return "is required; it is missing; add it"
+        return "is missing, but required; add it"
     if details["type"] == "extra_forbidden":
         return f"unknown; got {shown(details['input'])}; leave it out"
     rule = rule_of(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"

@@ -166,7 +166,7 @@ def list_units() -> UnitTable:
 
 @router.get("/quantities")
 def list_quantities() -> QuantityList:
-    """Explain every quantity in a sentence, with its formula and where it comes from."""
+    """Explain every quantity in a sentence, with its formula and contributions."""
     return QuantityList(
         quantities=[QuantityModel(**facts) for facts in facts_of_all()],
         functions=[FunctionModel(name=name, least=least, most=most) for name, (least, most) in ARGUMENTS.items()],

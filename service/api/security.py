@@ -87,15 +87,15 @@ class Guard:
             names = ", ".join(sorted(self.hosts))
             return problem(
                 HTTPStatus.FORBIDDEN,
-                f"the service is called by one of its names, {names}; "
-                f"got Host {host[0][:100] if host else 'missing'!r}; use one, or serve with --host",
+                f"the service must be called by one of its names, {names}; got Host "
+                f"{host[0][:100] if host else 'missing'!r}; use one, or serve with --host",
             )
         for origin in headers.getlist("origin"):
             if not _same(origin, host[0] if host else ""):
                 return problem(
                     HTTPStatus.FORBIDDEN,
-                    f"a page of another site may not ask; got Origin {origin[:100]!r}; "
-                    "open the page of the service itself",
+                    f"pages of other sites may not send requests; got Origin {origin[:100]!r}; open the page of the "
+                    "service itself",
                 )
         if self.token is not None:
             if scope["path"] == OPEN:
@@ -106,8 +106,8 @@ class Guard:
                 if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
                     return locked_page(connection)
                 return _unauthorised(
-                    "a request carries the token of the service; got none or a wrong one; "
-                    "send it as Authorization: Bearer TOKEN, or open the address that the service printed"
+                    "a request must carry the token of the service; got none or a wrong one; send it as "
+                    "Authorization: Bearer TOKEN, or open the address that the service printed"
                 )
         scope[KNOWN] = True
         return None
@@ -120,7 +120,7 @@ class Guard:
             if "text/html" in connection.headers.get("accept", ""):
                 return locked_page(connection, wrong=True)
             return _unauthorised(
-                "the address carries the token of the service; got a wrong one; open the address that the service "
+                "the address must carry the token of the service; got a wrong one; open the address that the service "
                 "printed last"
             )
         response = RedirectResponse("/", HTTPStatus.SEE_OTHER)

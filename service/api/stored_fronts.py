@@ -182,7 +182,7 @@ def _numbers(
     if len(missing) in (0, 3):
         return given | dict(map(_value, value)) or None
     raise InputError(
-        f"other lengths come together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
+        f"other lengths must be given together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
         "give all three, or none for the design as it is"
     )
 
@@ -195,7 +195,7 @@ def _value(text: str) -> tuple[str, float]:
     except ValueError:
         value = math.nan
     if not (column and math.isfinite(value)):
-        raise InputError(f"a value is a column, =, and a number; got {text!r}; write it like slider_mass_kg=1.2")
+        raise InputError(f"a value must be COLUMN=NUMBER; got {text!r}; write it like slider_mass_kg=1.2")
     return column, value
 
 

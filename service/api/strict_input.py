@@ -47,13 +47,13 @@ class StrictInput:
             await self.app(scope, receive, send)
             return
         if "\0" in scope["path"] or b"%00" in scope["query_string"] or b"\0" in scope["query_string"]:
-            refused = problem(HTTPStatus.BAD_REQUEST, "an address has no NUL; got one; leave it out")
+            refused = problem(HTTPStatus.BAD_REQUEST, "an address must not contain NUL; got one; leave it out")
             await refused(scope, receive, send)
             return
         headers = Headers(scope=scope)
         body = await self._body(headers, receive)
         if body is None:
-            rule = f"a request has at most {self.most_body} bytes; got more; is it the right file?"
+            rule = f"a request may have at most {self.most_body} bytes; got more; is it the right file?"
             await problem(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})(scope, receive, send)
             return
         if body and _JSON.fullmatch(headers.get("content-type", "")):
@@ -113,7 +113,7 @@ def read_json(body: bytes, most_depth: int) -> Any:
     try:
         value = json.loads(body, parse_constant=_no_number, parse_int=_whole, object_pairs_hook=_unique)
     except RecursionError:
-        raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it") from None
+        raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it") from None
     except InputError:
         raise
     except ValueError as error:
@@ -136,7 +136,7 @@ def require_moderate(value: Any, most_depth: int) -> None:
             if not isinstance(item, dict | list):
                 _require_plain(item)
             elif depth > most_depth:
-                raise InputError(f"a body nests at most {most_depth} deep; got more; flatten it")
+                raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it")
             else:
                 below += [*item, *item.values()] if isinstance(item, dict) else item
         level = below
@@ -145,23 +145,25 @@ def require_moderate(value: Any, most_depth: int) -> None:
 def _require_plain(item: object) -> None:
     if isinstance(item, str):
         if "\0" in item or (not item.isascii() and any("\ud800" <= letter <= "\udfff" for letter in item)):
-            raise InputError("a text has whole characters and no NUL; got another one; leave that character out")
+            raise InputError(
+                "a text must have complete characters and no NUL; got another one; leave that character out"
+            )
     elif isinstance(item, float):
         if not math.isfinite(item):
-            raise InputError(f"a number is finite; got {item}; leave it out where there is no bound")
+            raise InputError(f"a number must be finite; got {item}; leave it out if there is no bound")
     elif isinstance(item, int):
         if abs(item) > _LARGEST:
             raise _too_large()
     elif item is not None:
-        raise InputError(f"a body has numbers and texts; got the date {item}; write it in quotes")
+        raise InputError(f"a body may only contain numbers and texts; got the date {item}; write it in quotes")
 
 
 def _too_large() -> InputError:
-    return InputError("a whole number is at most 2^53; got a larger one; give a smaller one")
+    return InputError("a whole number must be at most 2^53; got a larger one; give a smaller one")
 
 
 def _no_number(text: str) -> None:
-    raise InputError(f"a number is finite; got {text}; leave it out where there is no bound")
+    raise InputError(f"a number must be finite; got {text}; leave it out if there is no bound")
 
 
 def _whole(text: str) -> int:
@@ -174,5 +176,5 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
-        raise InputError(f"each key may come once; got {twice[:100]!r} twice; remove one")
+        raise InputError(f"a key may be given only once; got {twice[:100]!r} twice; remove one")
     return table

@@ -35,7 +35,7 @@ class Turns:
             async with asyncio.timeout(_PATIENCE):
                 await self._free.acquire()
         except TimeoutError:
-            raise self._busy(f"others were first for {_PATIENCE:g} s") from None
+            raise self._busy(f"all were busy for {_PATIENCE:g} s") from None
         finally:
             self._waiting -= 1
         try:
@@ -44,7 +44,7 @@ class Turns:
             self._free.release()
 
     def _busy(self, why: str) -> HTTPException:
-        detail = f"{self.name} are made {self.most} at a time; {why}; try again"
+        detail = f"at most {self.most} {self.name} are made at a time; {why}; try again"
         return HTTPException(503, detail, headers={"Retry-After": "5"})
 
 

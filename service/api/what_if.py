@@ -138,7 +138,8 @@ def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -
     """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
     if 0 < asked.angles < LEAST:
         raise InputError(
-            f"curves have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for as many"
+            f"curves must have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for a number in "
+            "this range"
         )
     lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
     stored = found.design(design)

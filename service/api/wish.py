@@ -81,7 +81,7 @@ class WishedModel(BaseModel):
     job: int = Field(examples=[7])
     number: int | None = Field(examples=[None])
     possible: bool
-    sentences: list[str] = Field(examples=[["no design has all that is wished; this one comes nearest"]])
+    sentences: list[str] = Field(examples=[["no design reaches all desired values; this one comes nearest"]])
     achievement: float | None = Field(examples=[0.031])
     objectives: list[OutcomeModel]
     columns: list[ColumnModel]

@@ -146,7 +146,7 @@ class Client(Designs):
         while (job := self.job(number))["state"] not in _ENDED:
             if end is not None and time.monotonic() + pause > end:
                 raise ServiceError(
-                    f"job {number} was to end within {seconds:g} s; it is {job['state']}; wait longer, or cancel it"
+                    f"job {number} must end within {seconds:g} s; it is {job['state']}; wait longer, or cancel it"
                 )
             time.sleep(pause)
             pause = min(most, 1.5 * pause)
@@ -225,7 +225,7 @@ class Client(Designs):
         kind = file.suffix.lower().removeprefix(".")
         if kind not in kinds:
             raise InputError(
-                f"the file ends in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
+                f"the file must end in {' or '.join(f'.{name}' for name in kinds)}; got {file.name}; rename it"
             )
         write_file(file, self._connection.request("GET", f"{path}.{kind}", again=True).content)
         return file

@@ -41,7 +41,9 @@ class Connection:
         """
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise InputError(f"a service is at http://host:port or https://host; got {url[:200]!r}; give its address")
+            raise InputError(
+                f"the address of a service must be http://host:port or https://host; got {url[:200]!r}; correct it"
+            )
         token = token or next(iter(parse_qs(parts.query).get("token", [])), None)
         # Without the token: it is shown in errors.
         self.url = f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"

@@ -40,7 +40,7 @@ class Designs:
                 raise InputError(f"a service is not asked {question}; use the command of that name, or problem.ask")
             return self._ask_wider(WIDER[question], number, design, inputs)
         if design is None:
-            raise InputError(f"{question} is of one design; got none; give its number")
+            raise InputError(f"{question} needs a design; got none; give its number")
         if question in COMMANDS:
             return self._asked(number, design, question, given(**inputs))
         path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"

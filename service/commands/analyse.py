@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
     from ...optimise.problem.problem import Problem
 
-_TOPIC_HELP = f"Add a topic, or several: {', '.join(TOPICS)}, or {ALL}."
+_TOPIC_HELP = f"Topics to show in addition: {', '.join(TOPICS)}, or {ALL}."
 _INPUT_OPTIONS = tuple(map(option_of, INPUTS.values()))
 
 
@@ -52,7 +52,7 @@ class Setting(Dimensions):
     put: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE"),
-        'A number of JOB at another value, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
+        'Another value for a number in JOB, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
     ] = None
     design: DesignOfRun = None
 
@@ -63,16 +63,16 @@ class Files:
 
     measured: Annotated[
         File,
-        "A CSV file of measured curves to compare: a column crank_angle_deg, or time_s from crank angle 0 on, and "
-        "others such as slider_position_mm or torque_Nm.",
+        "CSV file of measured curves to compare with: a column crank_angle_deg, or time_s counted from crank angle 0, "
+        "and columns such as slider_position_mm or torque_Nm.",
     ] = None
-    figures: Annotated[Figures, "Draw the design into design.png there, and each topic."] = None
+    figures: Annotated[Figures, "Save the design as design.png in this folder, and one figure per topic."] = None
     cycle: Annotated[File, "Write motion, forces and torque over the cycle as CSV."] = None
 
 
 def analyse(
     job: Annotated[
-        JobOrRun, "A job file: what masses, loads, tolerances and speed come from. A run with --design."
+        JobOrRun, "Job file that supplies masses, loads, tolerances and speed; with --design, a run."
     ] = None,
     *,
     setting: Setting,
@@ -85,11 +85,10 @@ def analyse(
 ) -> None:
     """Analyse one design.
 
-    Without JOB it has no masses, loads and tolerances: motion and proportions only. Without --speed, nothing that
-    depends on the speed is given then, and the offset is zero unless given. Dimensions that JOB fixes need not be
-    repeated. With --design, a run stands in place of JOB, and the design has its dimensions. If the design does not
-    have a topic, the reason is given after everything else; the exit code is then 2 if the topic was named, and 0
-    with `--show all`.
+    Without JOB there are no masses, loads or tolerances, and only motion and proportions are analysed. The offset then
+    defaults to zero, and results that depend on speed need --speed. Dimensions that JOB fixes need not be repeated.
+    With --design, give a run instead of JOB; the dimensions are those of the design. If a topic does not apply to the
+    design, the reason is printed at the end; the exit code is then 2 if the topic was named, and 0 with `--show all`.
     """
     require_ending("--cycle", files.cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
@@ -124,7 +123,7 @@ def analyse(
         from ..questions.analysis_text import show_analysis
 
         screen = console()
-        more = f"\nMore of this design with --show: {', '.join(TOPICS)}, or {ALL}."
+        more = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."
         show_analysis(screen, found, rules, units, own=own, more="" if problem is None or topics else more)
     for note in found.notes + (found.refused if ALL in (show or ()) else []):
         say(note)
@@ -150,9 +149,7 @@ def _topic_options(given: Mapping[str, str | None], topics: tuple[str, ...]) -> 
         if text is not None:
             one, topic = INPUTS[name], TOPIC_OF[name]
             if topic not in topics:
-                raise InputError(
-                    f"{one.flag} is for --show {topic}, which is not asked for; add it or leave {one.flag} out"
-                )
+                raise InputError(f"{one.flag} needs --show {topic}, which is missing; add it, or leave {one.flag} out")
             options[topic][name] = one.read(text, one.flag)
     return options
 
@@ -197,7 +194,7 @@ def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
     missing = [of for of in QUANTITIES.values() if any(not need.met(mechanism) for need in of.needs)]
     more = ("loaded_stroke", f"{PEAK_TORQUE.name}_angle_deg")
     row.update(dict.fromkeys((*more, *(of.field for of in missing))))
-    notes = ["torque, forces and position error need masses, loads and tolerances: give a JOB"]
+    notes = ["torque, forces and position error need masses, loads and tolerances; give a JOB"]
     if not mechanism.speed:
-        notes.append("slider speed and acceleration need a crank speed: give --speed")
+        notes.append("slider speed and acceleration need a crank speed; give --speed")
     return notes

@@ -14,15 +14,15 @@ from ..text.screen import console, give, say
 
 def cases(
     case: Annotated[
-        int | None, typer.Option("--case", min=1, max=5, metavar="N"), "Only case N, 1 to 5, in full."
+        int | None, typer.Option("--case", min=1, max=5, metavar="N"), "Show only case N, 1 to 5, in full."
     ] = None,
-    figures: Annotated[Figures, "Draw the publications' figures anew, as PNG files there."] = None,
+    figures: Annotated[Figures, "Redraw the published figures as PNG files in this folder."] = None,
     json: Json = False,
 ) -> None:
-    """Show published mechanisms: printed numbers, exact ones, and a verdict.
+    """Show published mechanisms: printed values, exact values and a verdict.
 
-    Where print and exact value disagree both are shown, with the reason. A printed number agrees if it is the exact
-    one to a unit of its last digit.
+    Where they disagree, both are shown, with the reason. A printed value agrees if it differs from the exact one by at
+    most one unit in its last digit.
     """
     from dataclasses import asdict
 

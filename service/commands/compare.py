@@ -43,7 +43,7 @@ _COLUMNS = {
 
 
 @dataclass(frozen=True)
-class _Compared:
+class _ComparedRun:
     """A run with its name in the comparison, its method, and its objectives in the first run's order."""
 
     name: str
@@ -52,14 +52,14 @@ class _Compared:
 
 
 def compare(
-    run: Annotated[list[str], typer.Argument(metavar="RUN..."), "The runs, two or more, as in `front`."],
-    tolerance: Annotated[float, typer.Option(min=0.0), "Share of an objective's range that counts as equal."] = 1e-6,
-    figures: Annotated[Figures, "Also draw the fronts, into this folder."] = None,
+    run: Annotated[list[str], typer.Argument(metavar="RUN..."), "Two or more runs, named as in `front`."],
+    tolerance: Annotated[float, typer.Option(min=0.0), "Fraction of an objective's range that counts as equal."] = 1e-6,
+    figures: Annotated[Figures, "Also draw the fronts, in this folder."] = None,
     runs: Runs = None,
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Compare the fronts of several runs: hypervolume, coverage, epsilon, who dominates whom, effort.
+    """Compare the fronts of several runs: hypervolume, coverage, epsilon, dominance, effort.
 
     The runs must have the same objectives; their constraints and machines may differ.
     """
@@ -74,33 +74,33 @@ def compare(
         say(f"{picture}")
 
 
-def _read(names: Sequence[str], place: Path) -> list[_Compared]:
+def _read(names: Sequence[str], place: Path) -> list[_ComparedRun]:
     if len(names) < 2:
-        raise InputError("a comparison is of two runs or more; got one; name another")
-    found: list[_Compared] = []
+        raise InputError("a comparison needs at least two runs; got one; name another")
+    found: list[_ComparedRun] = []
     folders: list[Path] = []
     for name in names:
         folder = find_run(name, place)
         if folder.resolve() in folders:
-            raise InputError(f"each run is compared once; got {folder.name} twice")
+            raise InputError(f"a run may be named only once; got {folder.name} twice; leave one out")
         folders.append(folder.resolve())
         result = read_run(folder)
         if not result.designs:
             raise NoDesigns(replace(result, message=f"{folder.name}: {result.message}; leave it out"))
         if found:
-            result = _aligned(result, folder.name, found[0])
-        found.append(_Compared(folder.resolve().name, _method(folder), result))
+            result = _align_objectives(result, folder.name, found[0])
+        found.append(_ComparedRun(folder.resolve().name, _method(folder), result))
     return found
 
 
-def _aligned(result: Result, name: str, first: _Compared) -> Result:
+def _align_objectives(result: Result, name: str, first: _ComparedRun) -> Result:
     """Return a result with its objectives in the order of the first one. Raises `InputError` where they differ."""
     own = {(item.quantity, item.sense, item.target): item for item in result.objectives}
     asked = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
     if set(own) != set(asked):
         raise InputError(
-            f"runs compare only with the same objectives; {first.name} has {_words(first.result)}, "
-            f"{name} has {_words(result)}"
+            f"the runs must have the same objectives; {first.name} has {_words(first.result)}, {name} has "
+            f"{_words(result)}"
         )
     return replace(result, objectives=tuple(own[key] for key in asked))
 
@@ -126,7 +126,7 @@ def _method(folder: Path) -> str:
     return "unknown"
 
 
-def _draw(compared: Sequence[_Compared], folder: Path) -> Path:
+def _draw(compared: Sequence[_ComparedRun], folder: Path) -> Path:
     import numpy as np
 
     from ..figures.comparison import GREATEST, Drawn, comparison_matrix
@@ -134,9 +134,9 @@ def _draw(compared: Sequence[_Compared], folder: Path) -> Path:
 
     objectives = compared[0].result.objectives
     if len(objectives) < 2:
-        raise InputError("fronts of a single objective are single values; leave out --figures")
+        raise InputError("a figure needs at least two objectives; these runs have one; leave out --figures")
     if len(compared) > GREATEST:
-        raise InputError(f"a figure tells at most {GREATEST} runs apart; got {len(compared)}; leave out some")
+        raise InputError(f"a figure may show at most {GREATEST} runs; got {len(compared)}; leave out some")
     drawn = [
         Drawn(
             f"{item.name} ({item.method})",
@@ -150,7 +150,7 @@ def _draw(compared: Sequence[_Compared], folder: Path) -> Path:
     return folder / "comparison.png"
 
 
-def _record(compared: Sequence[_Compared], found: Comparison) -> dict[str, Any]:
+def _record(compared: Sequence[_ComparedRun], found: Comparison) -> dict[str, Any]:
     return {
         "objectives": [wanted_record(wanted) for wanted in compared[0].result.objectives],
         "tolerance": found.tolerance,
@@ -177,10 +177,11 @@ def _record(compared: Sequence[_Compared], found: Comparison) -> dict[str, Any]:
     }
 
 
-def _show(screen: Console, compared: Sequence[_Compared], found: Comparison) -> None:
+def _show(screen: Console, compared: Sequence[_ComparedRun], found: Comparison) -> None:
     screen.print(f"{len(compared)} runs: {_words(compared[0].result)}", style="bold", soft_wrap=True)
     screen.print(
-        "Scaled by the ranges of the union front; hypervolume is the share of the box up to 1.1 ranges.\n",
+        "Objectives are scaled by their ranges over the combined front. Hypervolume is a fraction of the box that "
+        "extends to 1.1 ranges.\n",
         style="dim",
         soft_wrap=True,
     )
@@ -191,8 +192,8 @@ def _show(screen: Console, compared: Sequence[_Compared], found: Comparison) -> 
     _print(screen, list(_COLUMNS), rows)
     numbers = [str(place) for place in range(1, len(compared) + 1)]
     for title, values, form in (
-        ("Coverage: % of the column's designs that the row's weakly dominate", 100.0 * found.coverage, ".1f"),
-        ("Additive epsilon: by how much the row falls short of the column at worst, in ranges", found.epsilon, ".2e"),
+        ("Coverage: % of the column's designs that the row's designs weakly dominate", 100.0 * found.coverage, ".1f"),
+        ("Additive epsilon: largest shortfall of the row against the column, in ranges", found.epsilon, ".2e"),
     ):
         screen.print(f"\n{title}", soft_wrap=True)
         cells = [
@@ -205,7 +206,7 @@ def _show(screen: Console, compared: Sequence[_Compared], found: Comparison) -> 
         screen.print(sentence, soft_wrap=True)
 
 
-def _verdict(compared: Sequence[_Compared], found: Comparison) -> list[str]:
+def _verdict(compared: Sequence[_ComparedRun], found: Comparison) -> list[str]:
     names = [item.name for item in compared]
     sentences = []
     open_pairs = 0
@@ -215,12 +216,12 @@ def _verdict(compared: Sequence[_Compared], found: Comparison) -> list[str]:
             if found.dominates[first, second]:
                 sentences.append(f"{names[first]} dominates {names[second]}: it matches or beats all its designs.")
             elif found.coverage[a, b] == found.coverage[b, a] == 1.0:
-                sentences.append(f"{names[a]} and {names[b]} have the same front, to the tolerance.")
+                sentences.append(f"{names[a]} and {names[b]} have the same front, within the tolerance.")
             else:
                 open_pairs += 1
     if open_pairs:
         which = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
-        sentences.append(f"Of {which} neither dominates: each has designs that the other does not reach.")
+        sentences.append(f"Neither of {which} dominates: each has designs that the other does not match.")
     return sentences
 
 

@@ -39,13 +39,13 @@ _OPTIONAL = ("psycopg", "distributed", "pyarrow")
 def doctor(
     store: Address = None,
     runs: Runs = None,
-    backup: Annotated[File, "Copy a store that is a file into a new file, while it is used."] = None,
+    backup: Annotated[File, "Copy a store on disk to a new file, even while it is in use."] = None,
     json: Json = False,
 ) -> None:
-    """Look whether store, workers, disks and software are in order; exit code 1 if anything is not.
+    """Check store, workers, disks and software; the exit code is 1 if anything is wrong.
 
-    Looked at are: the database and its tables, whether anything in it is damaged, its clock, jobs that wait without a
-    worker, places to write, free disk, versions. No job is changed.
+    Checks the database, its tables and its clock for damage and differences, jobs that wait without a worker, folders
+    to write to, free disk space and versions. No job is changed.
     """
     address = store_address(store, runs)
     if backup is not None:
@@ -68,7 +68,7 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
     from ..store.database import Database
 
     if not has_store(store, runs):
-        raise NotFound(f"there is no store at {shown_store(store, runs)}; name the one to copy with --store")
+        raise NotFound(f"there is no store at {shown_store(store, runs)}; name the store to copy with --store")
     with contextlib.closing(Database(store_address(store, runs))) as database:
         back_up(database, target)
     say(f"{target}: a copy of {database.name}")
@@ -92,7 +92,7 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
         _writable("runs", runs),
         *([] if "://" in address else [_room("disk of the store", Path(address).parent)]),
         _room("disk of runs", runs),
-        _compiled(),
+        _check_compiled_model(),
         _versions(),
     ]
 
@@ -104,8 +104,11 @@ def _store(address: str, named: bool) -> Iterator[Check]:
     try:
         file = file_of(address)
         if file is not None and not has_content(file):
-            text = f"there is none at {file}: the first job makes a new one; put it back, or restore a backup, see "
-            fresh = f"there is none at {file} yet; the first job makes it"
+            text = (
+                f"no store at {file}; the first job would create an empty one. Put the file back or restore a "
+                "backup: see "
+            )
+            fresh = f"no store at {file} yet; the first job creates it"
             yield Check("store", "problem", f"{text}docs/service.md") if named else Check("store", "ok", fresh)
             yield _writable("place of the store", file.parent)
             return
@@ -121,10 +124,10 @@ def _private(file: Path) -> Iterator[Check]:
     from ..store.database import may_use, remedy_of_rights
 
     if not may_use(file):
-        text = f"{file} may not be written, so that no job gets on; {remedy_of_rights(file)}"
+        text = f"{file} is not writable, so no job can make progress; {remedy_of_rights(file)}"
         yield Check("permissions", "problem", text)
     elif os.name == "posix" and (mode := file.stat().st_mode & 0o077):
-        text = f"others of this machine may read or write {file} (mode {mode:03o} for them); chmod 600 {file}"
+        text = f"other users of this machine can read or write {file} (their mode: {mode:03o}); run chmod 600 {file}"
         yield Check("permissions", "note", text)
 
 
@@ -137,30 +140,30 @@ def _database(address: str, database: Database) -> Iterator[Check]:
     yield Check("store", "ok", f"{database.name} answers, {server_version(database)}")
     foreign = strangers(database)
     if foreign:
-        text = f"they are of something else ({foreign}); name another store with --store"
+        text = f"they belong to another program ({foreign}); name another store with --store"
         yield Check("tables", "problem", text)
         return
     version, latest, known = versions(database)
     if not known:
-        text = f"they have version {version}, this software knows {latest}; install the release that made them"
+        text = f"their version is {version}, but this release supports {latest}; install the release that created them"
         yield Check("tables", "problem", text)
         return
     if version != latest:
-        text = f"they have version {version or 'none'}; {latest} is made of them when a command opens the store"
+        text = f"their version is {version or 'none'}; a command that opens the store upgrades them to {latest}"
         yield Check("tables", "note", text)
         return
     yield Check("tables", "ok", f"version {version}")
     wrong = damages(database)
-    text = "; ".join(wrong) + _REMEDY if wrong else "nothing is damaged"
+    text = "; ".join(wrong) + _REMEDY if wrong else "no damage found"
     yield Check("integrity", "problem" if wrong else "ok", text)
     ahead = clock_ahead(database)
-    text = f"the one of the store differs by {ahead:+.2f} s from the one of this machine"
+    text = f"the clocks of store and machine differ by {ahead:+.2f} s"
     far = abs(ahead) > _CLOCKS
-    yield Check("clock", "note" if far else "ok", f"{text}; set them by NTP" if far else text)
-    yield from _at_work(address, time.time() + ahead)
+    yield Check("clock", "note" if far else "ok", f"{text}; synchronise both with NTP" if far else text)
+    yield from _check_workers(address, time.time() + ahead)
 
 
-def _at_work(address: str, now: float) -> Iterator[Check]:
+def _check_workers(address: str, now: float) -> Iterator[Check]:
     """Look at jobs and workers. now: on the clock of the store."""
     from ..store import Store
     from ..store.records import SILENT
@@ -172,15 +175,19 @@ def _at_work(address: str, now: float) -> Iterator[Check]:
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
     text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
     yield Check("jobs", "ok", text)
-    text = f"{heard} at work"
+    text = f"{heard} running"
     if silent:
-        text += f"; {silent} not heard of for more than {SILENT:g} s: stopped, or cut off"
+        text += f"; {silent} not heard from for more than {SILENT:g} s: stopped or disconnected"
     waiting = counts.get("queued", 0) + len(expired)
     if waiting and not heard:
-        text += f"; {counted(waiting, 'job')} without one; start slidercrank serve or slidercrank worker"
+        text += f"; {counted(waiting, 'job')} waiting without a worker; start slidercrank serve or slidercrank worker"
     yield Check("workers", "problem" if waiting and not heard else "note" if silent else "ok", text)
     names = ", ".join(str(job.id) for job in expired[:5])
-    text = f"those of jobs {names} have ended; the next free worker goes on with them" if expired else "none has ended"
+    text = (
+        f"the leases of jobs {names} have expired; the next free worker continues them"
+        if expired
+        else "none has expired"
+    )
     yield Check("leases", "note" if expired else "ok", text)
 
 
@@ -194,28 +201,28 @@ def _writable(name: str, folder: Path) -> Check:
         with tempfile.TemporaryFile(dir=_existing(folder)):
             pass
     except OSError as error:
-        text = f"{folder} cannot be written: {error.strerror or error}; permit it, or choose another place"
+        text = f"{folder} is not writable: {error.strerror or error}; change its permissions, or choose another folder"
         return Check(name, "problem", text)
-    return Check(name, "ok", f"{folder} can be written")
+    return Check(name, "ok", f"{folder} is writable")
 
 
 def _room(name: str, folder: Path) -> Check:
     free = shutil.disk_usage(_existing(folder.absolute())).free
     grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
-    remedy = "" if grade == "ok" else "; make room: a full disk stops all writing"
+    remedy = "" if grade == "ok" else "; free some space: a full disk stops all writing"
     return Check(name, grade, f"{size_text(free)} free{remedy}")
 
 
-def _compiled() -> Check:
+def _check_compiled_model() -> Check:
     """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
     from ...model.kernel.folder import choose_folder
 
     folder, _, refused, others = choose_folder()
     if not refused:
-        return Check("compiled model", "ok", f"{folder} can be written")
+        return Check("compiled model", "ok", f"{folder} is writable")
     grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
     kept = [f"read from {place}" for place in others] + ([f"kept in {folder}"] if folder else [])
-    text = f"{refused}; it is {', else '.join(kept) or 'compiled anew at every start'}"
+    text = f"{refused}; it is {', else '.join(kept) or 'compiled at every start'}"
     return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 

@@ -80,4 +80,4 @@ class Interruption:
             raise KeyboardInterrupt
         self._asked = True
         if not self._service:
-            say("stopping after this step; Ctrl-C again stops at once")
+            say("stopping after this step; press Ctrl-C again to stop immediately")

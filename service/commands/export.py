@@ -31,7 +31,7 @@ class Tables:
     """Files with all designs."""
 
     csv: Annotated[Output, "Write the designs as CSV; - is standard output."] = None
-    json: Annotated[Output, "Write all of it as JSON; - is standard output."] = None
+    json: Annotated[Output, "Write the whole run as JSON; - is standard output."] = None
 
     @property
     def asked(self) -> bool:
@@ -43,9 +43,9 @@ class Tables:
 class DesignFiles:
     """Files with one design, see `_FILES`."""
 
-    dxf: Annotated[File, "Write the linkage of one design at true scale as DXF."] = None
+    dxf: Annotated[File, "Write the linkage of one design as DXF, at true scale."] = None
     svg: Annotated[File, "Write the same drawing as SVG."] = None
-    motion: Annotated[File, "Write its motion as an HTML file that needs nothing else."] = None
+    motion: Annotated[File, "Write its motion as a self-contained HTML file."] = None
     gif: Annotated[File, "Write its motion as an animated GIF."] = None
     cycle: Annotated[File, "Write its motion, forces and torque over the cycle as CSV."] = None
 
@@ -67,33 +67,31 @@ def export(
     choice: Choice,
     of_design: DesignFiles,
     selection: TableSelection,
-    at: Annotated[Angle, 'Crank angle of the drawing.  [default: "60 deg"; of a swing half-way]'] = None,
+    at: Annotated[Angle, 'Crank angle of the drawing. [default: "60 deg", or the middle of a swing]'] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:
-    """Write the designs of a run to a file, or one design as a drawing for CAD, or in motion.
+    """Write the designs of a run to a file, or one design as a CAD drawing or an animation.
 
-    One design is named by its number, or chosen by --knee, --topsis or --lexicographic. --where takes part of the
-    designs, for the table and for the choice.
+    Choose one design by its number, or with --knee, --topsis or --lexicographic. --where restricts the designs, both
+    for the table and for the choice.
     """
     from ..designs.stored_designs import stored_design
 
     files = {f"--{name}": file for name, file in vars(of_design).items() if file is not None}
     csv, json, where = tables.csv, tables.json, selection.where
     if (choice.design is not None or choice.picking) and not files:
-        raise InputError(f"a design is written with {', '.join(_FILES)}; got none of them; give one")
+        raise InputError(f"one design needs at least one of {', '.join(_FILES)}; got none; add one")
     if not tables.asked and not files:
         raise InputError(
-            f"say what to export: --csv FILE, --json FILE, or of one design {', '.join(_FILES)}, each with a FILE"
+            f"nothing to export; give --csv FILE, --json FILE, or for one design {', '.join(_FILES)}, each with a FILE"
         )
     if csv == json == "-":
-        raise InputError("only one of --csv and --json can go to standard output; name a file for the other")
+        raise InputError("only one of --csv and --json may go to standard output; name a file for the other")
     if at is not None and not files.keys() & {"--dxf", "--svg"}:
-        raise InputError("--at is for --dxf and --svg, which are not asked for; add one or leave --at out")
+        raise InputError("--at needs --dxf or --svg; got neither; add one, or leave --at out")
     if selection.sorts and not tables.asked:
-        raise InputError(
-            "--sort and --reverse are for --csv and --json, which are not asked for; add one or leave them out"
-        )
+        raise InputError("--sort and --reverse need --csv or --json; got neither; add one, or leave them out")
     angle = given_value("--at", at, ANGLE)
     for option, file in files.items():
         require_ending(option, file, *_FILES[option])

@@ -12,10 +12,10 @@ from ..text.screen import console, give
 
 
 def check(
-    job: Annotated[JobFile, "The job file, .toml or .json."],
+    job: Annotated[JobFile, "Job file, .toml or .json."],
     json: Json = False,
 ) -> None:
-    """Check a job file and say what was understood of it."""
+    """Check a job file and report how it is understood."""
     from ...objectives.own.quantity import OwnQuantity
     from ...optimise.job import load_job, read_job
     from ..text.summary import freedom_in_words, job_in_words

@@ -82,17 +82,17 @@ def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
     """
     if job is None:
         if put:
-            raise InputError("--set changes a number of a job; got none; give a JOB")
+            raise InputError("--set changes a number in a job; got no job; give a JOB")
         return None
     if not job.suffix and not job.is_file():
-        raise InputError(f"a job is a file that is there; got {job}; a run stands in its place with --design N")
+        raise InputError(f"the job file {job} does not exist; correct its name, or add --design N if it is a run")
     from ...optimise.job import load_job
 
     values: dict[str, str | float] = {}
     for text in put:
         path, sign, value = (part.strip() for part in text.partition("="))
         if not (path and sign and value):
-            raise InputError(f'--set is written like "mechanism.slider.mass=1.2 kg"; got {text!r}')
+            raise InputError(f'--set must look like "mechanism.slider.mass=1.2 kg"; got {text!r}; correct it')
         number = plain_number(value)
         values[path] = value if number is None else number
     return load_job(job, values, require_feasible=False)
@@ -108,11 +108,12 @@ def design_of_run(
     from ..designs.stored_designs import stored_design
 
     if run is None:
-        raise InputError(f"--design is of a run; got none; name it: slidercrank {command} RUN --design NO")
+        raise InputError(f"--design needs a run; got none; name it: slidercrank {command} RUN --design NO")
     besides = [f"--{name}" for name, value in given.items() if value is not None]
     if besides:
         raise InputError(
-            f"a design of a run has its dimensions; got --design and {besides[0]}; leave out one of the two"
+            f"dimensions must not be given with --design, whose design has its own; got --design and {besides[0]}; "
+            "leave out one of the two"
         )
     folder, result = run_of(str(run), place)
     if not result.designs:

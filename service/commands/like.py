@@ -28,7 +28,7 @@ def like(
 ) -> None:
     """Answer the question; end without a design where none meets the conditions."""
     folder, front = front_of_run(run, runs, number)
-    with waiting("looking for it"):
+    with waiting("searching"):
         found = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags)
     if json:
         give(json_text({"run": path_text(folder), "number": number} | found.record(units)))

@@ -14,10 +14,10 @@ from .optimise import SEARCH
 
 
 def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
-    """Serve agents by the Model Context Protocol, on standard input and output, until the input ends.
+    """Serve agents over the Model Context Protocol, on standard input and output, until the input ends.
 
-    An agent's client starts it. All is read and written where runs are kept, the store included; what else is to be
-    said goes to standard error. Ctrl-C ends it, and a search that is under way keeps what it found.
+    The agent's client starts it. Runs and the store are read and written in the folder of runs; other messages go to
+    standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
     """
     required("mcp", "serving agents needs")
     from ...model.kernel.disk import compile_ahead

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
 SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
 """Packages whose kernels a search needs, and modules that import them."""
-_NOTHING_GIVEN = "optimise needs a job file, or a run to go on with; got neither; name a job or use --resume RUN"
+_NOTHING_GIVEN = "optimise needs a job file, or a run to continue; got neither; name a job or use --resume RUN"
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ class Places:
 
 
 def optimise(
-    job: Annotated[Path | None, typer.Argument(metavar="JOB"), "The job file, .toml or .json."] = None,
+    job: Annotated[Path | None, typer.Argument(metavar="JOB"), "Job file, .toml or .json."] = None,
     resume: Annotated[
-        str | None, typer.Option(metavar="RUN"), "Instead of a job: go on with an interrupted or cancelled run."
+        str | None, typer.Option(metavar="RUN"), "Instead of a job: an interrupted or cancelled run to continue."
     ] = None,
     *,
     places: Places,
@@ -69,14 +69,14 @@ def optimise(
     figures: Annotated[
         bool | None,
         typer.Option("--figures/--no-figures"),
-        'Draw the figures.  [default: if the extra "figures" is installed]',
+        'Draw figures. [default: yes if the extra "figures" is installed]',
     ] = None,
 ) -> None:
     """Find the Pareto front of a job.
 
-    Prints the front, and keeps job, designs, figures and log in a new folder. Ctrl-C stops within about a second
-    and keeps what was found; --resume goes on in the folder of that run, and ends as if it had never stopped.
-    The run is in the store too, where `jobs` and the service see it.
+    Prints the front, and saves job, designs, figures and log in a new folder. Ctrl-C stops within about a second and
+    keeps the designs found so far. --resume continues in the folder of that run, with the same result as if it had
+    never stopped. The run is also in the store, where `jobs` and the service see it.
     """
     from ...model.kernel.disk import compile_ahead
 
@@ -85,9 +85,11 @@ def optimise(
     from ..workers.own_search import keep_front, kept_alive, new_run, resumed_run, search
 
     if (job is None) == (resume is None):
-        raise InputError("give either a job, or a run with --resume; got both" if job else _NOTHING_GIVEN)
+        raise InputError(
+            "give either a job, or a run with --resume; got both; leave one out" if job else _NOTHING_GIVEN
+        )
     if resume is not None and settings.given:
-        raise InputError("a run goes on with the designs and the seed that it began with; leave them out")
+        raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
         required("matplotlib", "figures need")
     options, place = engine.checked(), runs_place(places.runs)
@@ -105,7 +107,7 @@ def optimise(
         again = places.command_again(claim.job.run) if listed else ""
         opened.enter_context(kept_alive(claim, again=again))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
-        run.log(f"job {claim.job.id} of the store {jobs.name}" if listed else "in no store that lasts")
+        run.log(f"job {claim.job.id} in store {jobs.name}" if listed else "in a temporary store")
         with progress_bar() as show:
             front = search(found, opened.enter_context(engine_of(options)), cancelled=interruption.asked, show=show)
         with waiting("writing the designs"):
@@ -129,9 +131,9 @@ def optimise(
     elif result.status != "done":
         say(f"slidercrank: {result.message}")
     if figures is None and result.status == "done" and not drawn:
-        say('without figures, which need the extra "figures": pip install "slidercrank[figures]"')
+        say('no figures drawn: they need the extra "figures": pip install "slidercrank[figures]"')
     if result.status == "cancelled" and again:
-        say(f"go on with: {again}")
+        say(f"continue with: {again}")
     raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
 
 
@@ -146,7 +148,10 @@ def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
             store.require_writable()
             listed = True
         except StoreError as error:
-            say(f"slidercrank: {error}\nwithout it, `jobs` does not list the run, and once stopped it cannot go on")
+            say(
+                f"slidercrank: {error}\nwithout a store, `jobs` does not list this run, and it cannot be continued "
+                "once stopped"
+            )
             own = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
             store, listed = opened.enter_context(Store(Path(own) / FILE)), False
         yield store, listed
@@ -191,5 +196,5 @@ def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units:
         for file in draw_front(front, run.figures, units):
             run.log(f"figures/{file.name}")
             if interruption.asked():
-                run.log("interrupted; the other figures are left out")
+                run.log("interrupted; the remaining figures are not drawn")
                 return

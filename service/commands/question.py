@@ -42,7 +42,7 @@ def command_of(name: str) -> Callable[..., None]:
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {one.name: one.flag for one in question.inputs}
         asked = question.asked(mechanism, linkage, problem, inputs, words)
-        notes = _answered(asked, units, json)
+        notes = _print_answer(asked, units, json)
         for note in () if json else notes:
             say(note)
         if curves is not None:
@@ -51,7 +51,9 @@ def command_of(name: str) -> Callable[..., None]:
         if figure is not None:
             write_figure(figure, lambda: asked.written("figure", units))
 
-    helps = {"curves": f"Write {says.curves} as CSV.", "figure": "Draw the curves, into a PNG."} if says.curves else {}
+    helps = (
+        {"curves": f"Write {says.curves} as CSV.", "figure": "Draw the curves to a PNG file."} if says.curves else {}
+    )
     written = (_file_option(file, help) for file, help in helps.items())
     command.__doc__ = f"{says.help} {says.alone}"
     command.__annotations__ |= {
@@ -79,12 +81,12 @@ def sizing_of(name: str) -> Callable[..., None]:
         problem = turning_problem(job, says.called or name)
         words = {one.name: one.flag for one in question.inputs}
         asked = question.asked(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
-        for note in _answered(asked, units, json):
+        for note in _print_answer(asked, units, json):
             say(note)
         if folder is not None and says.figure is not None:
             write_figure(folder / f"{says.figure[0]}.png", lambda: asked.written("figure", units), units)
 
-    draws = [f"Draw {says.figure[1]} into {says.figure[0]}.png there."] if says.figure else []
+    draws = [f"Save a figure of {says.figure[1]} as {says.figure[0]}.png in this folder."] if says.figure else []
     command.__doc__ = says.help
     command.__annotations__ |= {
         "job": Annotated[JobFile, says.job],
@@ -94,7 +96,7 @@ def sizing_of(name: str) -> Callable[..., None]:
     return command
 
 
-def _answered(asked: QuestionOfDesign, units: System, json: bool) -> list[str]:
+def _print_answer(asked: QuestionOfDesign, units: System, json: bool) -> list[str]:
     """Print the answer; return what is to be said besides."""
     from ..render.terminal import print_blocks
 

@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 
 def jobs(
     state: Annotated[
-        list[str] | None, "Only those that are queued, running, done, infeasible, cancelled or failed. Repeatable."
+        list[str] | None, "Only jobs that are queued, running, done, infeasible, cancelled or failed. May be repeated."
     ] = None,
-    name: Annotated[str, "Only those whose name has this in it."] = "",
-    limit: Annotated[int, typer.Option(min=1, max=10_000), "The latest so many."] = 20,
+    name: Annotated[str, "Only jobs whose name contains this text."] = "",
+    limit: Annotated[int, typer.Option(min=1, max=10_000), "Number of jobs to list, newest first."] = 20,
     store: Address = None,
     json: Json = False,
 ) -> None:
-    """List the jobs of a store, the latest first, with what they found."""
+    """List the jobs in a store, newest first, with their results."""
     from ..store import State
 
     known = get_args(State)
     for one in state or []:
         if one not in known:
-            raise InputError(f"a job is {', '.join(known[:-1])} or {known[-1]}; got --state {one[:80]!r}; choose one")
+            raise InputError(f"--state must be {', '.join(known[:-1])} or {known[-1]}; got {one[:80]!r}; choose one")
     found: list[Job] = []
     if has_store(store):
         with store_that_is_there(store) as opened:
@@ -52,40 +52,43 @@ def jobs(
         _show(console(), found)
     else:
         say(
-            f"slidercrank: no such job in {shown_store(store)}"
+            f"slidercrank: no matching job in {shown_store(store)}"
             if state or name
-            else f"slidercrank: no job in {shown_store(store)} yet; put one in with: slidercrank submit JOB"
+            else f"slidercrank: no job in {shown_store(store)} yet; add one with: slidercrank submit JOB"
         )
 
 
 def cancel(job: Name, store: Address = None, json: Json = False) -> None:
-    """Cancel a job. It keeps what it found and can go on with resume; its worker hears of it within 2 s."""
+    """Cancel a job.
+
+    The designs found so far are kept, and `resume` continues the job. Its worker notices within 2 s.
+    """
     with store_that_is_there(store) as opened:
         after = opened.cancel(find_job(opened, job).id)
-    _tell(after, json, "asked to stop" if after.cancel_asked and after.state == "running" else "")
+    _print_job(after, json, "asked to stop" if after.cancel_asked and after.state == "running" else "")
 
 
 def resume(job: Name, store: Address = None, json: Json = False) -> None:
-    """Queue a cancelled or failed job again, to go on from the rounds that it has."""
+    """Queue a cancelled or failed job again; it continues after its last completed round."""
     with store_that_is_there(store) as opened:
-        _tell(opened.resume(find_job(opened, job).id), json)
+        _print_job(opened.resume(find_job(opened, job).id), json)
 
 
 def delete(job: Name, store: Address = None, json: Json = False) -> None:
-    """Delete a job that has ended and everything of it, for good."""
+    """Permanently delete a job that has ended, with all its data."""
     with store_that_is_there(store) as opened:
         found = find_job(opened, job)
         opened.delete(found.id)
     give(json_text({"deleted": found.id}) if json else f"job {found.id}: {found.name}, deleted\n")
 
 
-def _tell(job: Job, json: bool, what: str = "") -> None:
+def _print_job(job: Job, json: bool, what: str = "") -> None:
     text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)
     give(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
 
 
 def _show(screen: Console, found: list[Job]) -> None:
-    rows = table(">no.", "submitted", "job", "state", "where it stands", ruled=True, pad_edge=True)
+    rows = table(">no.", "submitted", "job", "state", "progress or result", ruled=True, pad_edge=True)
     for column in rows.columns[:-1]:
         column.no_wrap = True
     for job in found:

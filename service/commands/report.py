@@ -18,19 +18,20 @@ def report(
     choice: Choice,
     where: Where = None,
     out: Annotated[
-        File, "Where to write it: HTML, or PDF for a name that ends in .pdf.  [default: <run>-design-<NO>.html here]"
+        File,
+        "File to write: HTML, or PDF if its name ends in .pdf. [default: <run>-design-<NO>.html in the current folder]",
     ] = None,
     pdf: Annotated[bool, "Write PDF instead of HTML."] = False,
-    measured: Annotated[File, "A CSV file of measured curves to compare, as for `analyse`."] = None,
+    measured: Annotated[File, "CSV file of measured curves to compare with, as for `analyse`."] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:
-    """Write a report of one design for a review: job, front, design with all its numbers, tolerances, versions.
+    """Write a design review report: job, front, the design with all its values, tolerances, versions.
 
-    HTML is one file without script that a browser shows and prints; nothing in it is fetched from elsewhere.
+    The HTML report is one self-contained file without scripts, to view and print in a browser.
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
-        raise InputError(f"--pdf writes PDF; got --out {out}; name it .pdf, or leave --pdf out")
+        raise InputError(f"with --pdf the file name must end in .pdf; got --out {out}; rename it, or leave --pdf out")
     require_ending("--out", out, ".html", ".htm", ".pdf")
     folder, result = run_of(run, runs)
     number = choice.number(result, run, where)

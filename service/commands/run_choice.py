@@ -63,7 +63,9 @@ def shown_result(result: Result, units: System, folder: Path | None) -> Result:
 
 Where = Annotated[
     list[str] | None,
-    typer.Option(metavar="CONDITION", help="Choose among the designs that meet it, as in `front`. May be repeated."),
+    typer.Option(
+        metavar="CONDITION", help="Choose only among designs that meet this condition, as in `front`. May be repeated."
+    ),
 ]
 
 
@@ -83,9 +85,7 @@ class Choice(Pick):
             require_alone(self.design, result, others=bool(self.picking or where))
             return self.design
         if not self.picking:
-            raise InputError(
-                "a design is named by --design NO, --knee, --topsis or --lexicographic; got none; give one"
-            )
+            raise InputError("choose one design with --design NO, --knee, --topsis or --lexicographic; got none")
         row = self.row(result, chosen_rows(result, where or []))
         if row is None:
             end_without_design(none_meets(result, where or []))

@@ -33,7 +33,7 @@ def front(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Show the front of a run again, a part of it, or one design chosen from it.
+    """Show the front of a run, part of it, or one design chosen from it.
 
     --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
     """

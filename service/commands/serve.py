@@ -31,37 +31,39 @@ class Access:
 
     token: Annotated[
         str | None,
-        f"What requests must carry; in the list of processes it can be read, in {TOKEN_VARIABLE} not.  "
-        f"[default: {TOKEN_VARIABLE}, else a random one, printed once]",
+        "Token that every request must carry. On the command line other users can read it in the process list; in "
+        f"{TOKEN_VARIABLE} they cannot. [default: {TOKEN_VARIABLE}, else a random one, printed once]",
     ] = None
-    no_token: Annotated[bool, "Let in all users of this machine."] = False
+    no_token: Annotated[bool, "Admit all users of this machine without a token."] = False
     allow_host: Annotated[
-        list[str] | None, typer.Option(metavar="NAME"), "By which the service may be called, too. Repeatable."
+        list[str] | None,
+        typer.Option(metavar="NAME"),
+        "Further host name under which the service may be called. May be repeated.",
     ] = None
     submissions: Annotated[
-        int, typer.Option("--submissions-per-minute", min=0), "Sum over all clients; 0 is no limit."
+        int, typer.Option("--submissions-per-minute", min=0), "Total over all clients; 0 means no limit."
     ] = 600
-    most_queued: Annotated[int, typer.Option(min=1), "Most jobs that may wait."] = 10_000
+    most_queued: Annotated[int, typer.Option(min=1), "Maximum number of waiting jobs."] = 10_000
 
 
 def serve(
     store: Address = None,
     host: Annotated[str, "Address of this machine to listen on."] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535), "To listen on; 0 takes any that is free."] = 8765,
+    port: Annotated[int, typer.Option(min=0, max=65535), "Port to listen on; 0 takes any free port."] = 8765,
     workers: Annotated[
         int | None,
         typer.Option(min=0, max=256),
-        "How many jobs are solved here at a time.  [default: one a processor, at most 4]",
+        "Number of jobs solved at a time on this machine. [default: one per processor, at most 4]",
     ] = None,
     *,
     access: Access,
     options: WorkOptions,
     engine: EngineOptions,
 ) -> None:
-    """Serve the API, and solve its jobs, until stopped.
+    """Serve the API and solve its jobs until stopped.
 
-    Prints the address with the token once it listens. Ctrl-C and SIGTERM let every round end, or hand its job back when
-    that takes longer than --grace; a service that is started again goes on with it.
+    Prints the address, including the token, once the service is listening. Ctrl-C and SIGTERM let each job finish its
+    round, or hand it back if that takes longer than --grace. The service continues it after a restart.
     """
     from ..api.app import MODULES, computing_app, create_app
     from ..api.computing import Computing
@@ -113,11 +115,11 @@ def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:
 
     if none:
         if given is not None:
-            raise InputError("a service has a token or none; got --token and --no-token; leave one out")
+            raise InputError("--token and --no-token exclude each other; got both; leave one out")
         if not is_loopback(host):
             raise InputError(
-                f"without a token only this machine may be let in; got --no-token and --host {host}; leave --no-token "
-                "out, or listen on 127.0.0.1"
+                f"without a token the service may only listen on this machine; got --no-token and --host {host}; "
+                "leave --no-token out, or listen on 127.0.0.1"
             )
         return None, False
     given = given if given is not None else os.environ.get(TOKEN_VARIABLE)
@@ -125,7 +127,7 @@ def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:
         return secrets.token_urlsafe(32), True
     if len(given) < _SHORTEST or not (given.isascii() and given.isprintable()) or " " in given:
         raise InputError(
-            f"a token has at least {_SHORTEST} printable ASCII characters and no spaces; got {len(given)} characters; "
-            "leave it out for a random one"
+            f"a token must have at least {_SHORTEST} printable ASCII characters and no spaces; got {len(given)} "
+            "characters; leave it out for a random one"
         )
     return given, False

@@ -34,25 +34,29 @@ _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 class JobLimits:
     """What the search of a job may take."""
 
-    seconds: Annotated[float | None, "End its search after so long, with what it found."] = None
-    evaluations: Annotated[int | None, "End its search after so many designs, with what it found."] = None
+    seconds: Annotated[float | None, "Time limit of its search, s; the designs found so far are kept."] = None
+    evaluations: Annotated[
+        int | None, "Maximum number of designs that its search evaluates; those found so far are kept."
+    ] = None
     memory: Annotated[
-        str | None, typer.Option(metavar="SIZE"), 'Let it fail if its worker takes more, such as "2 GB".'
+        str | None,
+        typer.Option(metavar="SIZE"),
+        'Fail the job if its worker uses more memory than this, such as "2 GB".',
     ] = None
 
 
 def submit(
-    job: Annotated[JobFile, "The job file, .toml or .json."],
+    job: Annotated[JobFile, "Job file, .toml or .json."],
     store: Address = None,
-    priority: Annotated[int, "-1000 to 1000; jobs of higher priority are solved first."] = 0,
-    key: Annotated[str | None, "Key of this submission: repeating it with the same key gives the same job."] = None,
-    attempts: Annotated[int, "Number of tries, without progress, before it fails."] = 3,
+    priority: Annotated[int, "-1000 to 1000; jobs with higher priority are solved first."] = 0,
+    key: Annotated[str | None, "Key of this submission; repeating it with the same key returns the same job."] = None,
+    attempts: Annotated[int, "Attempts without progress before the job fails."] = 3,
     *,
     most: JobLimits,
-    watch: Annotated[bool, "Show what happens to it until it ends."] = False,
+    watch: Annotated[bool, "Show its events until it ends."] = False,
     json: Json = False,
 ) -> None:
-    """Queue a job for the workers of a store, see `serve` and `worker`.
+    """Queue a job for the workers of a store; see `serve` and `worker`.
 
     It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
     """
@@ -87,9 +91,9 @@ def submit(
 
 
 def watch(job: Name, store: Address = None, json: Json = False) -> None:
-    """Show what happened and happens to a job until it ends; --json gives one event a line.
+    """Show past and new events of a job until it ends; --json prints one event per line.
 
-    The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C leaves the job alone.
+    The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C stops watching; the job continues.
     """
     with store_that_is_there(store) as opened:
         found = find_job(opened, job)
@@ -103,8 +107,9 @@ def _tell_of(functions: Sequence[str], job: Path) -> None:
     if functions:
         options = " ".join(f"--allow-quantity {function}" for function in functions)
         say(
-            f"slidercrank: workers call {', '.join(functions)} only if they may, and find the module where they were "
-            f"started: slidercrank serve {options}; or solve the job here: slidercrank optimise {job}"
+            f"slidercrank: workers may call {', '.join(functions)} only if allowed, and import its module from the "
+            f"folder where they were started: slidercrank serve {options}; or solve the job here: slidercrank "
+            f"optimise {job}"
         )
 
 
@@ -122,7 +127,7 @@ def _source(job: Path) -> Artefact | None:
 def _follow(store: Store, job: Job, *, json: bool) -> int:
     """Write the events of a job until it ends and return its exit code; 0 once nobody reads on."""
     try:
-        with _shown(json) as show:
+        with _event_writer(json) as show:
             for event in events_until_end(store, job.id):
                 show(event)
                 if reader_left():
@@ -131,7 +136,7 @@ def _follow(store: Store, job: Job, *, json: bool) -> int:
         if not json:
             _close(store, ended)
     except KeyboardInterrupt:
-        say(f"job {job.id} is left as it is; stop it with: slidercrank cancel {job.id}")
+        say(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
         raise
     return EXIT_CODES[ended.state]
 
@@ -166,7 +171,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 
 
 @contextlib.contextmanager
-def _shown(json: bool) -> Iterator[Callable[[Event], None]]:
+def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
     """Yield the writer of events: as JSON, or in words, with a progress bar where there is a terminal."""
     if json:
         from ..store.serialisation import text_of

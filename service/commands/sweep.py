@@ -16,10 +16,10 @@ QUESTION = WIDER["sweep"]
 
 @helped(QUESTION)
 def sweep(
-    job: Annotated[JobFile, "A job file, .toml or .json."],
+    job: Annotated[JobFile, "Job file, .toml or .json."],
     *,
     inputs: Annotated[dict[str, Any], options_of(QUESTION)],
-    figures: Annotated[Figures, "Draw the sweep into sweep.png there."] = None,
+    figures: Annotated[Figures, "Save a figure of the sweep as sweep.png in this folder."] = None,
     units: Units = "metric",
     json: Json = False,
 ) -> None:

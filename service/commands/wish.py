@@ -39,14 +39,14 @@ def wish(
     number: Annotated[
         int | None,
         typer.Argument(metavar="NO", show_default=False),
-        "The design that improve, keep and worsen speak of: its number in `slidercrank front RUN`.",
+        "Reference design for improve, keep and worsen: its number in `slidercrank front RUN`.",
     ] = None,
     *,
     inputs: Annotated[dict[str, Any], options_of(QUESTION, optional=True)],
     earlier: Annotated[
         bool,
         typer.Option("--list"),
-        "List the wishes that were made of the run, here and on the page, each with its answer.",
+        "List the wishes made for the run, here and on the page, with their answers.",
     ] = False,
     runs: Runs = None,
     units: Units = "metric",
@@ -55,7 +55,7 @@ def wish(
     """Answer the question and note the wish, or list those that were noted."""
     if earlier == bool(inputs["at"]):
         got = "both" if earlier else "neither"
-        raise InputError(f"either a wish or --list; got {got}; write it like {_EXAMPLE}")
+        raise InputError(f"give either a wish or --list; got {got}; write it like {_EXAMPLE}")
     folder, front = front_of_run(run, runs, number)
     if earlier:
         _list(folder, front, units, json=json)
@@ -94,7 +94,7 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
         return
     screen = console()
     if not made:
-        screen.print(f"{front.problem.name}: no wish was made of it yet; make one with {_EXAMPLE}", soft_wrap=True)
+        screen.print(f"{front.problem.name}: no wishes yet; make one with {_EXAMPLE}", soft_wrap=True)
     for place, (at, words, each) in enumerate(found):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(at))
         screen.print(f"{when}  {told_wish(words, each.found.row)}", style="bold", soft_wrap=True)

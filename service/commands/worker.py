@@ -25,24 +25,28 @@ class WorkOptions:
     """Options of workers, and of what their jobs may do and take."""
 
     lease: Annotated[
-        float, typer.Option(min=1.0, max=3600.0), "Seconds until a job whose worker is gone goes to another one."
+        float,
+        typer.Option(min=1.0, max=3600.0),
+        "Seconds after which a job whose worker has died goes to another worker.",
     ] = 30.0
     grace: Annotated[
-        float, typer.Option(min=0.0, max=600.0), "Seconds that a round has to end once the worker is to stop."
+        float, typer.Option(min=0.0, max=600.0), "Seconds that a job has to finish its round when the worker stops."
     ] = 10.0
     allow_quantity: AllowQuantity = None
     most_running: Annotated[
-        int | None, typer.Option(min=1), "Let at most so many jobs of the store be solved at a time."
+        int | None, typer.Option(min=1), "Maximum number of jobs in the store that are solved at a time."
     ] = None
-    most_seconds: Annotated[float | None, "End the search of every job after so long, with what it found."] = None
+    most_seconds: Annotated[
+        float | None, "Time limit for the search of every job, s; the designs found so far are kept."
+    ] = None
     most_evaluations: Annotated[
-        int | None, "End the search of every job after so many designs, with what it found."
+        int | None, "Maximum number of designs evaluated for every job; those found so far are kept."
     ] = None
     most_memory: Annotated[
-        str | None, typer.Option(metavar="SIZE"), 'Let a job fail if its worker takes more memory, such as "2 GB".'
+        str | None, typer.Option(metavar="SIZE"), 'Fail a job whose worker uses more memory than this, such as "2 GB".'
     ] = None
 
-    log_format: Annotated[Format, "Log format on standard error: for people, or one JSON object a line."] = "text"
+    log_format: Annotated[Format, "Log format on standard error: text, or one JSON object per line."] = "text"
 
     def settings(self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False) -> WorkerSettings:
         """Return the settings of each of some workers of a store. drain: end as soon as no job waits."""
@@ -68,16 +72,16 @@ class WorkOptions:
 
 def worker(
     store: Address = None,
-    processes: Annotated[int, typer.Option(min=1, max=256), "Workers; each solves one job at a time."] = 1,
-    drain: Annotated[bool, "End as soon as no job waits."] = False,
+    processes: Annotated[int, typer.Option(min=1, max=256), "Number of workers; each solves one job at a time."] = 1,
+    drain: Annotated[bool, "Exit as soon as no job is waiting."] = False,
     *,
     options: WorkOptions,
     engine: EngineOptions,
 ) -> None:
-    """Solve the jobs of a store until stopped, in processes of their own; those that end are started again.
+    """Solve the jobs in a store until stopped. Each worker is a process, which is restarted if it dies.
 
-    Ctrl-C and SIGTERM let every round end, or hand its job back when that takes longer than --grace: another worker
-    goes on from its last round. With a store on PostgreSQL workers may run on any number of machines.
+    Ctrl-C and SIGTERM let each job finish its round, or hand it back if that takes longer than --grace; another worker
+    then continues after its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
     required("psutil", "workers need")  # they end what a job leaves behind with it
     from ..workers.supervisor import Supervisor

@@ -83,11 +83,15 @@ def widened(problem: Problem, tables: Mapping[str, Any], wanted: Sequence[tuple[
         limit = known.get((of, side))
         if limit is None or limit.wider is None:
             places = ", ".join(f"{place} ({end})" for (place, end), one in known.items() if one.wider is not None)
-            raise InputError(f"a limit of the job is changed by its place; got {of!r} ({side}); choose from {places}")
+            raise InputError(
+                f"a limit of the job must be named by its place; got {of!r} ({side}); choose from {places}"
+            )
         further = value < limit.value if side == "lower" else value > limit.value
         if not (further and math.isfinite(value)):
             way = "below" if side == "lower" else "above"
-            raise InputError(f"a wider limit is {way} {limit.value:g} {limit.unit}; got {value:g}; give another one")
+            raise InputError(
+                f"a wider limit must be {way} {limit.value:g} {limit.unit}; got {value:g}; give another one"
+            )
         text: str | float = f"{value:.12g} {limit.unit}" if limit.unit else value
         table, _, path = of.partition(".")
         if table == "variables":

@@ -119,7 +119,7 @@ def _meant(name: str, keys: Collection[str]) -> str:
 
     near = closest(name, [*keys, *meant]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {_listed(keys)}"
-    raise InputError(f"no quantity or column is called {name!r}; {hint}")
+    raise InputError(f"there is no quantity or column {name!r}; {hint}")
 
 
 def _listed(keys: Collection[str]) -> str:

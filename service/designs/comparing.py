@@ -30,7 +30,7 @@ def compared_in_words(names: Sequence[str], results: Sequence[Result], system: S
     """
     shared = _shared(results)
     if not shared:
-        return ["The runs share no objective, so that none is better than another"]
+        return ["The runs share no objective, so they cannot be ranked"]
     fronts = [_values(result, shared) for result in results]
     span = np.ptp(np.concatenate(fronts), axis=0)
     span[span == 0.0] = 1.0

@@ -49,8 +49,8 @@ def design_curves(of: StoredDesign, count: int) -> DesignCurves:
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
     if not LEAST <= count <= MOST or count % 2:
         raise InputError(
-            f"curves of a swing have {LEAST} to {MOST} places, as many forth as back; got {count}; ask for an even "
-            "number"
+            f"curves of a swing must have {LEAST} to {MOST} points, the same number in both strokes; got {count}; ask "
+            "for an even number"
         )
     own = require_swing(of.mechanism, of.linkage, of.part.motion)
     swing = placed(of.mechanism, own, of.part.motion)

@@ -82,6 +82,6 @@ def _refused(design: StoredDesign, equal: list[Constraint], moved: str, value: f
         rules.append(f"{of.title} exactly {(constraint.lower or 0.0) * of.unit.factor:.6g} {of.unit.symbol}".strip())
     others = " and ".join(name for name in _LENGTHS if name != moved)
     return InputError(
-        f"{others} must follow so as to keep {' and '.join(rules)}; got {moved} {1e3 * value:.6g} mm, with which none "
-        "was found; move it less, or let the rules be broken"
+        f"{others} must change so that {' and '.join(rules)} still holds; for {moved} {1e3 * value:.6g} mm no design "
+        "was found; change it less, or allow the rules to be broken"
     )

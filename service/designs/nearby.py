@@ -26,7 +26,7 @@ def nearby(
     part = problem.parts()[0]
     free = [name for name in DIMENSIONS if (of := getattr(part, name)).lower < of.upper]
     if not free:
-        raise InputError("a search near a design needs a length that varies; this job fixes all three; give it a range")
+        raise InputError("a search near a design needs a variable length; this job fixes all three; give one a range")
     job = deepcopy(dict(tables))
     given = dict(zip(DIMENSIONS, lengths, strict=True))
     for name in free:

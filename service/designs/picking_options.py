@@ -22,7 +22,7 @@ _LEXICOGRAPHIC = '"peak_torque: 5 %, transmission_angle"'
 def require_alone(design: int, result: Result, *, others: bool) -> None:
     """Raise `InputError` for a number that the run does not have, and for one given with another way of choosing."""
     if others:
-        raise InputError("a design is chosen in one way; got its number and another way; keep one of them")
+        raise InputError("a design must be chosen in one way; got its number and another way; keep one of them")
     if not 1 <= design <= len(result.designs):
         count = len(result.designs)
         raise InputError(f"the run has designs 1 to {count}; got {design}; name one of them")
@@ -40,7 +40,7 @@ def picked_row(
         if given not in (None, False)
     ]
     if len(asked) > 1:
-        raise InputError(f"a design is chosen in one way; got {' and '.join(asked)}; keep one of them")
+        raise InputError(f"a design must be chosen in one way; got {' and '.join(asked)}; keep one of them")
     if not asked:
         return None
     weights = None if topsis is None else _weights(topsis, result.objectives)
@@ -78,8 +78,8 @@ def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
         weight = plain_number(value)
         if not equals or weight is None or not math.isfinite(weight) or weight < 0.0 or column in named:
             raise InputError(
-                f"a weight is an objective, =, and a number of zero or more, each objective once; got {part!r}; "
-                f"write it like {_TOPSIS}"
+                f"a weight must be OBJECTIVE=NUMBER, zero or more, each objective once; got {part!r}; write it like "
+                f"{_TOPSIS}"
             )
         named.add(column)
         weights[column] = weight
@@ -105,7 +105,7 @@ def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
             return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
         kind = kind_for(wanted.unit)
         if kind.unit and plain_number(value) is not None:
-            raise InputError(f"must be {kind.name} with its unit, or a share of the range; got {value}")
+            raise InputError(f"must be {kind.name} with its unit, or a percentage of the range; got {value}")
         return to_si(value, kind, sign="zero or more", plain=False) * per_si(wanted.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
@@ -114,7 +114,7 @@ def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
 def _parts(text: str, example: str) -> list[str]:
     parts = [part.strip() for part in re.split(r",(?![^()]*\))", text)]  # not those between the brackets of min and max
     if not all(parts):
-        raise InputError(f"objectives are separated by single commas; got {text!r}; write it like {example}")
+        raise InputError(f"objectives must be separated by single commas; got {text!r}; write it like {example}")
     return parts
 
 
@@ -125,4 +125,4 @@ def _column(name: str, objectives: Sequence[Wanted]) -> int:
         if name == wanted.column or "".join(name.split()) == "".join(wanted.quantity.split()):
             return column
     names = ", ".join(wanted.quantity for wanted in objectives)
-    raise InputError(f"a design is chosen by the objectives of its run: {names}; got {name!r}; name one of them")
+    raise InputError(f"a design must be chosen by the objectives of its run: {names}; got {name!r}; name one of them")

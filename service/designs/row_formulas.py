@@ -56,8 +56,8 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
     columns = {name: _column(name, keys) for name in names_in(node)}
     if not columns:
         raise InputError(
-            f"a formula names a quantity or a column; got {written}, which is the same for every design; "
-            'write it like "offset - crank"'
+            f"a formula must contain a quantity or a column; got {written}, which is the same for every design; write "
+            'it like "offset - crank"'
         )
     if isinstance(node, Name):
         return columns[node.name]
@@ -71,12 +71,12 @@ def _column(name: str, keys: Collection[str]) -> Column:
         return find_column(name, keys)
     plain = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")
     if plain not in {split_unit(key)[0] for key in keys}:
-        raise InputError(f"no column is called {name!r}: numbers that vary have one; leave it out")
+        raise InputError(f"there is no column {name!r}: only variables have one; leave it out")
     return find_column(plain, keys)
 
 
 def _si(row: Row, column: Column) -> Array:
     cell = row[column.key]
     if isinstance(cell, str):
-        raise InputError(f"a formula has names of numbers; got {column.key}, which holds words; leave it out")
+        raise InputError(f"a formula may only contain numbers; got {column.key}, a column of words; leave it out")
     return np.array([math.nan if cell is None else float(cell) / column.factor])

@@ -72,7 +72,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     match = _FORM.fullmatch(text)
     if match is None:
         raise InputError(
-            "a condition is a quantity or a formula, one of >= <= > < = !=, and a value with its unit; "
+            "a condition must have a quantity or a formula, then one of >= <= > < = !=, then a value with its unit; "
             f"got {text!r}; write it like {_EXAMPLE}"
         )
     name, comparison, value = match.groups()
@@ -83,7 +83,9 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
         return Condition(column, comparison, _number(match, column), formula)
     if isinstance(example[column.key], str):
         if comparison not in ("==", "!="):
-            raise InputError(f"{column.key} holds words and can only be = or !=; got {comparison}")
+            raise InputError(
+                f"{column.key} is a column of words and may only be compared with = or !=; got {comparison}"
+            )
         return Condition(column, comparison, value.strip("\"'"))
     return Condition(column, comparison, _number(match, column))
 
@@ -94,11 +96,11 @@ def _require_order(text: str, name: str, comparison: str, value: str) -> None:
 
     if re.search("[<>=]", value):
         if value[0] in "<>=":
-            raise InputError(f"a condition has one of >= <= > < = !=; got {text!r}; write it like {_EXAMPLE}")
-        raise InputError(f"a condition compares once; got {text!r}; give two conditions")
+            raise InputError(f"a condition must have one of >= <= > < = !=; got {text!r}; write it like {_EXAMPLE}")
+        raise InputError(f"a condition may only have one comparison; got {text!r}; give two conditions")
     if is_value(name):
         turned = f"{value} {_TURNED[comparison]} {name.strip()}"
-        raise InputError(f'a condition begins with its quantity or formula; got {text!r}; write it like "{turned}"')
+        raise InputError(f'a condition must begin with its quantity or formula; got {text!r}; write it like "{turned}"')
 
 
 def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
@@ -148,7 +150,7 @@ def _number(match: re.Match[str], column: Column) -> float:
     name, comparison, value = match.groups()
     if is_formula(value):
         less = f"{name.strip()} - ({value}) {comparison} 0 {column.unit}".rstrip()
-        raise InputError(f'a condition ends with a number; got {match[0]!r}; compare the difference, like "{less}"')
+        raise InputError(f'a condition must end with a number; got {match[0]!r}; compare the difference, like "{less}"')
     number = plain_number(value)
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain

@@ -115,7 +115,7 @@ def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
     own = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
     if not own:
-        raise _foreign(f"nothing of its job is called {' with '.join(map(str, labels))}")
+        raise _foreign(f"its job has nothing called {' with '.join(map(str, labels))}")
     return min(own, key=lambda index: _outside(problem.variants[index], values))
 
 
@@ -155,4 +155,4 @@ def _cell(row: Mapping[str, Cell], key: str) -> Cell:
 
 
 def _foreign(why: str) -> RunError:
-    return RunError(f"a stored design must be one of its job; {why}; run the job again")
+    return RunError(f"a stored design must match its job; {why}; run the job again")

@@ -33,7 +33,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     from ...optimise.search.polish import polish
 
     if len(front.objectives) < 2:
-        raise InputError("objectives are traded where there are several; got one; add another one to the job")
+        raise InputError("trade-offs need at least two objectives; got one; add another to the job")
     lacking = design.part.without_gradient()
     if lacking:
         raise InputError(
@@ -55,7 +55,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
         goals[row], active[row] = (owner, slopes * span[owner.astype(int)][:, None]), found.active[0]
         return replace(front, goals=tuple(goals), active=tuple(active)).trade_offs(row, system)
     raise InputError(
-        "trade-off rates are those of a design that meets the rules of its job; this one does not; run the job again"
+        "trade-off rates need a design that meets the rules of its job; this one does not; run the job again"
     )
 
 

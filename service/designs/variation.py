@@ -50,7 +50,7 @@ def with_numbers(
     for column, value in (values or {}).items():
         if column not in places:
             raise InputError(
-                f"only numbers that vary in this job take other values: {', '.join(places) or 'there are none'}; got "
+                f"only variables of this job may have other values: {', '.join(places) or 'there are none'}; got "
                 f"{column!r}; leave it out"
             )
         item, unit = design.part.mechanism.varying[places[column]], columns[places[column]][1]

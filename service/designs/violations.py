@@ -56,7 +56,7 @@ def _sentence(key: str, row: Row, by: float, verb: str) -> str:
     allowed = value - by if low else value + by
     limit = f" the allowed {_with_unit(allowed, unit)}" if math.isfinite(allowed) else " what is allowed"
     more = "more" if low else "less"
-    cause = "" if low or value > 0.0 else ": a pin as wide as its bar, or wider, leaves nothing of the bar"
+    cause = "" if low or value > 0.0 else ": a pin as wide as its bar, or wider, leaves no material in the bar"
     found = f"{of.title} {verb} {_with_unit(value, unit)}, {_with_unit(by, unit)} {more} than{limit} ({of.allowed_by})"
     return found + cause
 

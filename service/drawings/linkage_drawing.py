@@ -74,12 +74,12 @@ def _dimensions(
 
 def _notes(linkage: Linkage, angle: float, look: Look, system: System) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
-    widths = "Widths of links are to scale; slider and pins are for show."
+    widths = "Link widths are to scale; slider and pins are schematic."
     return (
         f"{lengths_in_words(linkage, system, stroke=True)}.",
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.own else "Widths of links, slider and pins are for show.",
+        widths if look.own else "Link widths, slider and pins are schematic.",
         *(["Bore and clearance of the cylinder are those of the job."] if look.barrels else []),
     )

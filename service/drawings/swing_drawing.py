@@ -57,8 +57,8 @@ def _within(swing: Swing, angle: float | None) -> float:
     if not found:
         start, end, asked = (math.degrees(at) for at in (swing.start, swing.end, angle))
         raise InputError(
-            f"a linkage that swings is drawn at a crank angle of its swing, from {start:.6g} to {end:.6g} deg; got "
-            f"{asked:.6g} deg; take one between, or none for the middle"
+            f"the crank angle of a drawing must be within the swing, from {start:.6g} to {end:.6g} deg; got "
+            f"{asked:.6g} deg; give one in between, or none for the middle"
         )
     return found[0]
 
@@ -96,13 +96,13 @@ def _notes(of: SwingLook, angle: float, system: System) -> tuple[str, ...]:
     look, swing = of.look, of.swing
     unit, factor = shown_in("mm", system)
     start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
-    widths = "Widths of links are to scale; slider and pins are for show."
-    driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is for show."
+    widths = "Link widths are to scale; slider and pins are schematic."
+    driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is schematic."
     return (
         f"{lengths_in_words(of.linkage, system)}.",
         f"Swings from {start} to {end} deg; drawn at {drawn} deg, both ends dashed.",
         f"The slider goes from {factor * look.inner[0]:.7g} to {factor * look.outer[0]:.7g} {unit}. {driven}",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.own else "Widths of links, slider and pins are for show.",
-        *(() if of.body is None else ("The square on the crank, for show, is about its mass centre.",)),
+        widths if look.own else "Link widths, slider and pins are schematic.",
+        *(() if of.body is None else ("The schematic square on the crank is centred on its mass centre.",)),
     )

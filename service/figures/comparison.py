@@ -92,7 +92,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
             np.where(np.isfinite(found.within), found.within, np.nan),
         ),
     ]
-    notes = ["What robustness costs, best of each front:"]
+    notes = ["Cost of robustness, best design of each front:"]
     for column, item in enumerate(axes):
         if item.target is not None:
             continue

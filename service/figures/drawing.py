@@ -78,10 +78,10 @@ def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -
     away = 1.0 if pin[0] < slider[0] else -1.0
     at = (slider[0], slider[1] + math.copysign(radius, normal))
     aside = "left" if away > 0.0 else "right"
-    _tell(axes, f"{shown(degrees)}°", at, (5.0 * away, 0.0), VERMILION, ha=aside, va="center", weight="bold")
+    _annotate(axes, f"{shown(degrees)}°", at, (5.0 * away, 0.0), VERMILION, ha=aside, va="center", weight="bold")
 
 
-def _tell(axes: Axes, text: str, at: Point, away: Point, colour: str, **style: Any) -> None:
+def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **style: Any) -> None:
     """Write a text some points away from a place."""
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
@@ -95,7 +95,7 @@ def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _arrow(axes, (inner, y), (outer, y))
     text, middle = f"stroke {length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
-    _tell(axes, text, middle, (0, 3.0 * side), BLUE, ha="center", va="bottom" if side > 0.0 else "top")
+    _annotate(axes, text, middle, (0, 3.0 * side), BLUE, ha="center", va="bottom" if side > 0.0 else "top")
 
 
 def _offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
@@ -105,7 +105,7 @@ def _offset(axes: Axes, left: float, e: float, size: float, system: System) -> N
     x = left - 0.045 * size
     _arrow(axes, (x, 0.0), (x, e))
     text = f"offset {length(e, system)}"
-    _tell(axes, text, (x, 0.5 * e), (-3.0, 0.0), BLUE, ha="right", va="center", rotation=90)
+    _annotate(axes, text, (x, 0.5 * e), (-3.0, 0.0), BLUE, ha="right", va="center", rotation=90)
 
 
 def _arrow(axes: Axes, start: Point, end: Point) -> None:
@@ -121,4 +121,4 @@ def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> No
     told = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)
     length = told / factor
     axes.plot([x, x + length], [y, y], color=INK, linewidth=2.0, solid_capstyle="butt")
-    _tell(axes, f"{told:g} {unit}", (x + length, y), (5, 0), INK, va="center")
+    _annotate(axes, f"{told:g} {unit}", (x + length, y), (5, 0), INK, va="center")

@@ -34,7 +34,7 @@ def swing_figure(
     title: str = "",
     subtitle: str = "",
 ) -> Figure:
-    """Return the machine half-way between both ends of its swing, which are dashed, above the curves of both ways.
+    """Return the machine half-way between both ends of its swing, which are dashed, above the curves of both strokes.
 
     title: instead of how it is driven. subtitle: before its dimensions.
     """
@@ -56,7 +56,7 @@ def swing_figure(
 
 
 def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Sheet:
-    """Return the curves of both ways over the crank angle; the way back is drawn where it differs."""
+    """Return the curves of both strokes over the crank angle; the way back is drawn where it differs."""
     ways = both_ways(mechanism, linkage, swing)
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     driven = "slider position error" if swing.driver == "crank" else "crank angle error"

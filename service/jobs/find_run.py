@@ -79,13 +79,13 @@ def find_folder(text: str, place: Path) -> Path:
     if text and path.is_dir():
         return path
     if text and path.exists():
-        raise InputError(f"a run is a folder; got the file {text}; name its folder")
+        raise InputError(f"a run must be a folder; got the file {text}; name its folder")
     matches = [name for name in names if name.startswith(text)] if text else []
     if len(matches) == 1:
         return place / matches[0]
     if matches:
         some = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
-        raise InputError(f"the start of a run's name must be unique; {text!r} fits {some}; give more of it")
+        raise InputError(f"the start of a run's name must be unique; {text!r} matches {some}; give more of it")
     last = f"; the latest is {names[-1]}" if names else ""
     raise InputError(f"there is no run {path_text(text)!r}, neither as a folder nor in {place}{last}")
 

@@ -63,7 +63,7 @@ def _value(value: Any) -> str:
         # Only a list may go on over several lines.
         return line if len(line) <= _WIDEST else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
     word = "null" if value is None else str(value)[:60]
-    raise JobError(f"a job has texts, finite numbers, lists and tables; got {word}; leave the key out instead")
+    raise JobError(f"a job may only contain texts, finite numbers, lists and tables; got {word}; leave the key out")
 
 
 def _text(text: str) -> str:

@@ -61,7 +61,8 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
         found = store.find(folder.name)
         if found is None:
             raise InputError(
-                f"a run goes on from what the store has of it; {folder.name} is not in {store.name}; run its job again"
+                f"a run can only continue from its records in the store; {folder.name} is not in {store.name}; run "
+                "its job again"
             )
         job = found
     if not (job.state in RESUMABLE or _is_left(job)):
@@ -99,7 +100,7 @@ def _is_left(job: Job) -> bool:
 
 
 def _refused(job: Job) -> InputError:
-    return InputError(f"only an interrupted or cancelled run can go on; {job.run} is {job.state}; run its job anew")
+    return InputError(f"only an interrupted or cancelled run can continue; {job.run} is {job.state}; run its job again")
 
 
 @contextlib.contextmanager
@@ -113,7 +114,7 @@ def told(claim: Claim, *, again: str = "") -> Iterator[None]:
     except StoreError as error:
         if not again:
             raise
-        raise StoreError(f"{error}; what was found until then is kept; then go on with: {again}") from error
+        raise StoreError(f"{error}; the designs found so far are kept; then continue with: {again}") from error
     except LeaseLost:
         raise
     except BaseException as error:

@@ -25,8 +25,8 @@ Address = Annotated[
     typer.Option(
         "--store",
         metavar="ADDRESS",
-        help="Where jobs are kept: a file, or postgresql://user@host/database.  [default: SLIDERCRANK_STORE, else "
-        f"{FILE} where runs are kept]",
+        help=f"Store of jobs: a file, or postgresql://user@host/database. [default: SLIDERCRANK_STORE, else {FILE} in "
+        "the folder of runs]",
     ),
 ]
 Name = Annotated[str, typer.Argument(metavar="JOB", help='The job: its number, or "latest".')]
@@ -81,7 +81,7 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 def tell_idle(store: Store) -> None:
     """Say that jobs wait if no worker is there to solve them."""
     if not store.workers_at_work():
-        say("slidercrank: no worker is at work, so jobs wait; start one with: slidercrank serve")
+        say("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
 
 
 @contextmanager
@@ -104,6 +104,6 @@ def find_job(store: Store, name: str) -> Job:
         from ..store.address import without_secrets
 
         raise InputError(
-            f'a job is called by its number, or "latest"; got {without_secrets(name)[:80]!r}; list the jobs'
+            f'a job must be given by its number, or "latest"; got {without_secrets(name)[:80]!r}; list the jobs'
         )
     return store.job(int(name))

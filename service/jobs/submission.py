@@ -79,7 +79,7 @@ def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
 
     here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(
-        f"quantity.{name[:60]}: only functions that the operator allows are run here; got {shown(function)}; {here} "
+        f"quantity.{name[:60]}: only functions that the operator allows may run here; got {shown(function)}; {here} "
         f"(serve, worker or mcp with --allow-quantity {function[:200]}), or solve the job with `slidercrank optimise`"
     )
 

@@ -48,7 +48,7 @@ def play_of_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play:
         pushed = {"push": [rod], "barrel": [barrel]}
     timed = of.swing.duration
     start, end = (math.degrees(angle) for angle in (of.swing.start, of.swing.end))
-    how = "slowly" if timed is None else f"{of.swing.law} law, {timed:g} s each way"
+    how = "slowly" if timed is None else f"{of.swing.law} law, {timed:g} s per stroke"
     return Play(
         summary=f"{lengths_in_words(of.linkage, digits=6)}; from {start:.6g} to {end:.6g} deg, "
         f"the {of.swing.driver} driven, {how}",

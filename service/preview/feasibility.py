@@ -59,11 +59,10 @@ class Possible:
     stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
     the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
     slow_strokes: which strokes are the slow ones of the designs that meet every requirement that was checked, else of
-    those that turn fully; "equal" only if neither is in any of them.
-    feasible: share of the `sampled` designs that meet every requirement that was checked. hardest: the requirement that
-    the fewest designs meet which turn fully, and that share. example: crank, rod and offset, m, near the middle of what
-    is feasible, else the nearest to it; None if nothing turns. unchecked: requirements that would have taken longer
-    than a moment.
+    those that rotate fully fully; "equal" only if neither is in any of them. feasible: share of the `sampled` designs
+    that meet every requirement that was checked. hardest: the requirement that the fewest designs meet which turn
+    fully, and that share. example: crank, rod and offset, m, near the middle of what is feasible, else the nearest to
+    it; None if nothing turns. unchecked: requirements that would have taken longer than a moment.
     """
 
     turning: float

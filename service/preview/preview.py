@@ -140,13 +140,15 @@ def said(problem: Problem, found: Possible, held: Sequence[str]) -> list[str]:
         if name in asked and ends is not None:
             sentences += _beyond(problem, asked[name], ends)
     if found.turning == 0.0:
-        sentences.append("no crank of these ranges turns fully: the rod must be longer than crank and offset together")
+        sentences.append(
+            "no crank within these ranges rotates fully: the rod must be longer than crank and offset together"
+        )
     elif found.sampled and found.feasible == 0.0 and not sentences:
         hardest = ""
         if found.hardest is not None and found.hardest[1] < 1.0:
             name, share = found.hardest
             percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
-            hardest = f"; on its own, {problem.quantity(name).title} is met by {percent} of those that turn"
+            hardest = f"; on its own, {problem.quantity(name).title} is met by {percent} of those that rotate fully"
         values = f" with the job's values of {', '.join(held)}" if held else ""
         sentences.append(
             f"none of {counted(found.sampled, 'design')} tried{values} meets every requirement{hardest}; "

@@ -121,7 +121,7 @@ def analysis_of(
     said, refused = list(notes), list[str]()
     for topic in design:
         if cancelled():
-            said.append(f"interrupted; left out: {', '.join(t.name for t in design[len(found) + len(refused) :])}")
+            said.append(f"interrupted; omitted: {', '.join(t.name for t in design[len(found) + len(refused) :])}")
             break
         try:
             found[topic.name] = topic.numbers(cancelled)

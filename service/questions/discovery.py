@@ -13,14 +13,14 @@ from .wider import WiderQuestion
 ALL = "all"
 
 
-def _found() -> dict[str, Question | WiderQuestion]:
+def _discover_questions() -> dict[str, Question | WiderQuestion]:
     package = __name__.rpartition(".")[0]
     folders = [item.name for item in iter_modules(import_module(package).__path__) if item.ispkg]
     declared = [getattr(import_module(f"{package}.{folder}"), "QUESTION", None) for folder in folders]
     return {one.name: one for one in sorted((one for one in declared if one is not None), key=lambda one: one.place)}
 
 
-QUESTIONS = _found()
+QUESTIONS = _discover_questions()
 """All questions, by name."""
 OF_DESIGNS = {name: one for name, one in QUESTIONS.items() if isinstance(one, Question)}
 """All that one design can be asked, by name."""
@@ -56,6 +56,7 @@ def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> t
             raise InputError(f"{word} must name a topic; got {name!r}; {hint}")
         if name not in (*possible, ALL):
             raise InputError(
-                f"--show {name} needs masses, loads or tolerances; got no job file; give one: analyse JOB --show {name}"
+                f"--show {name} needs masses, loads or tolerances; no job file was given; give one: analyse JOB "
+                f"--show {name}"
             )
     return possible if ALL in asked else tuple(dict.fromkeys(asked))

@@ -109,7 +109,7 @@ def read_inputs(
     known = {one.name: one for one in inputs}
     for name in given:
         if name not in known:
-            rule = f"{question} is asked with {', '.join(known)}" if known else f"{question} is asked with nothing else"
+            rule = f"{question} may only be given {', '.join(known)}" if known else f"{question} has no inputs"
             raise InputError(f"{rule}; got {name}; leave {name} out")
     values = {name: known[name].read(value, said[name]) for name, value in given.items() if value is not None}
     for one in inputs:

@@ -15,8 +15,8 @@ class Plain(Input):
     """An input without a kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, of which a door of texts writes "name=text".
-    least: of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name, "a
-    requirement, =, and by how much it may be missed". metavar: of the option. sent: an example in a body.
+    least: of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name,
+    "REQUIREMENT=AMOUNT". metavar: of the option. sent: an example in a body.
     """
 
     type: Any = float
@@ -77,7 +77,7 @@ def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -
     for text in texts:
         name, equals, value = (piece.strip() for piece in str(text).rpartition("="))
         if not (equals and name and value):
-            raise InputError(f"{word} is {form}; got {shown(text)}; write it like {example}")
+            raise InputError(f"{word} must be {form}; got {shown(text)}; write it like {example}")
         if name in found:
             raise InputError(f"{word} gives each name once; got {name} twice; leave out one")
         found[name] = value

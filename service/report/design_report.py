@@ -60,16 +60,18 @@ def _summary(subject: Subject) -> Section:
     rows = {
         "Lengths": [", ".join(lengths)],
         "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
-        "Choices": [_chosen(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
+        "Choices": [_format_choice(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
         "Beyond what is allowed": [unit_text(line) for line in subject.violated],
         "Machine": _machine(subject),
-        "What it is": _marked(subject) if subject.changed is None else _changed(subject, subject.changed),
+        "What it is": _best_objectives(subject)
+        if subject.changed is None
+        else _change_sentences(subject, subject.changed),
     }
     told = Facts({title: lines for title, lines in rows.items() if lines})
     return Section("Summary", (told, linkage_picture(subject)))
 
 
-def _chosen(subject: Subject, key: str) -> str:
+def _format_choice(subject: Subject, key: str) -> str:
     """Return what was chosen, or an amount that comes with it, in words."""
     column, value = find_column(key, list(subject.row)), subject.row[key]
     known = next((of for of in subject.problem.own if of.field == key), None)
@@ -84,16 +86,16 @@ def _machine(subject: Subject) -> list[str]:
     return [unit_text(line) for line in own if line not in stated]
 
 
-def _marked(subject: Subject) -> list[str]:
+def _best_objectives(subject: Subject) -> list[str]:
     """Return the objectives in which a design of the front is best."""
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
     words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
-        words.append("knee of the front: the nearest to the best values of all objectives")
+        words.append("knee of the front: nearest to the best values of all objectives")
     return words
 
 
-def _changed(subject: Subject, changed: Variation) -> list[str]:
+def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
     """Return sentences on the changes to a design of the front, and on where they leave it."""
     before = subject.result.designs[subject.number - 1]
     other = [
@@ -103,9 +105,9 @@ def _changed(subject: Subject, changed: Variation) -> list[str]:
     ]
     found = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(other)}"]
     if changed.outside:
-        found.append(f"out of the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}")
+        found.append(f"outside the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}")
     if changed.broken:
-        found.append("misses requirements of the job: see below")
+        found.append("misses requirements of the job; see below")
     better = len(changed.dominated_by)
     if better:
         found.append(f"{counted(better, 'design')} of the front at least as good in every objective")

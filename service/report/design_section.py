@@ -33,7 +33,7 @@ def design_section(subject: Subject) -> Section:
         subject.label.capitalize(),
         (
             *_rules(subject),
-            *(Paragraph(f"Beyond what is allowed: {unit_text(line)}.", "bad") for line in subject.violated),
+            *(Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad") for line in subject.violated),
             *_optimality(subject),
             Picture(
                 "The design over a turn of the crank"
@@ -47,8 +47,8 @@ def design_section(subject: Subject) -> Section:
 
 def numbers_section(subject: Subject) -> Section:
     """Return every column of the design that its machine has, rounded and as it is stored."""
-    columns, absent = _of_machine(subject)
-    lengths = _toleranced(subject)
+    columns, absent = _columns_of_machine(subject)
+    lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
     rows = tuple(
         (
@@ -83,7 +83,7 @@ def numbers_section(subject: Subject) -> Section:
     )
 
 
-def _of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
+def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
     """Return the columns that a design's machine has, and titles of the others: a loss where nothing rubs, say.
 
     What the job asks for is never left out.
@@ -91,7 +91,7 @@ def _of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
     part, mechanism = subject.design.part, subject.design.mechanism
     known = {key_in(of.field, subject.system)[0]: of for of in (*QUANTITIES.values(), *part.own)}
     asked = {item.column for item in subject.result.objectives} | {
-        slack.removeprefix("slack_") for slack in _asked(subject)
+        slack.removeprefix("slack_") for slack in _bounds_by_slack(subject)
     }
     columns, absent = [], []
     for column in all_columns(subject.row):
@@ -106,7 +106,7 @@ def _of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
     return columns, absent
 
 
-def _toleranced(subject: Subject) -> dict[str, str]:
+def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
     """Return the dimensions that have a tolerance, with the digits that it makes sensible, by their columns."""
     found = {}
     for key, tolerance in subject.tolerances.items():
@@ -120,7 +120,7 @@ def _rules(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
-    rows, met, asked = [], True, _asked(subject)
+    rows, met, asked = [], True, _bounds_by_slack(subject)
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
         active = _active(subject, column)
@@ -144,7 +144,7 @@ def _rules(subject: Subject) -> list[Block]:
     ]
 
 
-def _asked(subject: Subject) -> dict[str, str]:
+def _bounds_by_slack(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement of the design, those of what was chosen included, by its slack's column."""
     found = {}
     for item in requirements_of(subject.design.part):

@@ -54,7 +54,7 @@ def _facts(found: Mapping[str, Any], system: System) -> dict[str, list[str]]:
     def at(name: str) -> str:
         size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
         if size is None:
-            return "not defined: a linkage within the tolerances does not turn fully"
+            return "undefined: a linkage within the tolerances does not rotate fully"
         return f"{length(size, system, 6)} at {rounded(angle)} deg"
 
     spread = found["monte_carlo"]["percentiles_greatest_mm"]

@@ -22,8 +22,8 @@ def front_section(subject: Subject) -> Section:
     """Return the ranges of the objectives, the marked designs, and the figures of the front."""
     result = subject.result
     said = map(unit_text, front_violations_in_words(result))
-    beyond = (Paragraph(f"Beyond what is allowed: {line}.", "bad") for line in said)
-    blocks: list[Block] = [*beyond, _ranges(subject), _marked(subject)]
+    beyond = (Paragraph(f"Beyond the allowable value: {line}.", "bad") for line in said)
+    blocks: list[Block] = [*beyond, _ranges(subject), _comparison_table(subject)]
     raster = len(result.designs) > _MANY
     if len(result.designs) > 1:
         if len(result.objectives) > 1:
@@ -56,7 +56,7 @@ def _ranges(subject: Subject) -> Table:
     )
 
 
-def _marked(subject: Subject) -> Table:
+def _comparison_table(subject: Subject) -> Table:
     """Return this design next to the best in each objective and the knee."""
     result = subject.result
     titles = {wanted.quantity: wanted.title for wanted in result.objectives}

@@ -18,7 +18,7 @@ def html_file(report: Report) -> bytes:
     """Return the report as the content of an HTML file."""
     parts = []
     for place, section in enumerate(report.sections):
-        parts += _section(section, place)
+        parts += _section_html(section, place)
         if place == 0:
             boxes = "".join(f"<div>{escape(name)} by, date</div>" for name in report.signatures)
             parts.append(f'<div class="signatures">{boxes}</div>')
@@ -32,7 +32,7 @@ def html_file(report: Report) -> bytes:
     return page.encode()
 
 
-def _section(section: Section, place: int) -> list[str]:
+def _section_html(section: Section, place: int) -> list[str]:
     parts = [f'<section aria-labelledby="part-{place}">', f'<h2 id="part-{place}">{escape(section.title)}</h2>']
     for index, block in enumerate(section.blocks):
         parts += _block(block, f"p{place}-{index}")

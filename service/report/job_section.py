@@ -41,14 +41,14 @@ def search_section(subject: Subject, made: str) -> Section:
         "Hypervolume": f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",
         "Outcome": f"{result.status}: {result.message}",
         "Stationary designs": f"{stationary} of {len(result.designs)}",
-        "Computed by": _listed(subject.versions) or "not recorded",
-        "Report drawn by": f"{_listed({name: version_of(name) for name in _DREW})}; {made}",
+        "Computed by": _versions_in_words(subject.versions) or "not recorded",
+        "Report drawn by": f"{_versions_in_words({name: version_of(name) for name in _DREW})}; {made}",
     }
     facts = Facts({title: [line] for title, line in rows.items()})
     return Section("How the front was found", (facts, *_certificate(subject)))
 
 
-def _listed(versions: Mapping[str, str]) -> str:
+def _versions_in_words(versions: Mapping[str, str]) -> str:
     return ", ".join(f"{name} {number}" for name, number in versions.items())
 
 

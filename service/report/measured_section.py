@@ -17,7 +17,7 @@ from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
 _PANELS = 6
-_ADDED = "Shifts that, added to what was measured, fit best; not applied above"
+_ADDED = "Shifts that, added to the measured curves, give the best fit; not applied above"
 
 
 def measured_section(subject: Subject, measured: Measured) -> Section:
@@ -42,7 +42,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
         ),
         Table(
             _ADDED,
-            ("curve", "crank angle, deg", "value", "RMS left", "unit"),
+            ("curve", "crank angle, deg", "value", "remaining RMS", "unit"),
             tuple(shifts),
             (0.36, 0.2, 0.17, 0.17, 0.1),
             frozenset({1, 2, 3}),

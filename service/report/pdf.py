@@ -38,7 +38,7 @@ def pdf_file(report: Report) -> bytes:
         folder = Path(name)
         shutil.copy(_TEMPLATE, folder)
         sections = [
-            {"title": section.title, "blocks": _blocks(section.blocks, folder, number)}
+            {"title": section.title, "blocks": _template_blocks(section.blocks, folder, number)}
             for number, section in enumerate(report.sections)
         ]
         told = {"title": report.title, "subtitle": report.subtitle, "made": report.made}
@@ -48,20 +48,20 @@ def pdf_file(report: Report) -> bytes:
     return bytes(found)
 
 
-def _blocks(blocks: Sequence[Block], folder: Path, section: int) -> list[dict[str, Any]]:
+def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> list[dict[str, Any]]:
     """Return the blocks of a section as the template takes them; pictures are drawn into the folder."""
     found = []
     for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
         if isinstance(block, Picture):
             content = _drawn(block, folder / f"{section}-{number}")
         elif isinstance(block, Paragraph):  # what is said of a table stays with it
-            content = {"tone": block.tone, "text": _joined(block.text), "stays": isinstance(after, Table)}
+            content = {"tone": block.tone, "text": _unbreakable_text(block.text), "stays": isinstance(after, Table)}
         elif isinstance(block, Facts):
-            content = {"rows": {name: list(map(_joined, lines)) for name, lines in block.rows.items()}}
+            content = {"rows": {name: list(map(_unbreakable_text, lines)) for name, lines in block.rows.items()}}
         else:
-            cells = [list(map(_joined, row)) for row in block.rows]
+            cells = [list(map(_unbreakable_text, row)) for row in block.rows]
             places = {"right": sorted(block.right), "bold": sorted(block.bold)}
-            content = asdict(block) | places | {"heads": list(map(_joined, block.heads)), "rows": cells}
+            content = asdict(block) | places | {"heads": list(map(_unbreakable_text, block.heads)), "rows": cells}
         found.append({"kind": type(block).__name__} | content)
     return found
 
@@ -80,6 +80,6 @@ def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
     return {"title": picture.title, "file": file.name, "width": scale * width, "height": scale * height}
 
 
-def _joined(text: str) -> str:
+def _unbreakable_text(text: str) -> str:
     """Return a text with no break within a unit, nor before one of a number."""
     return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _KEPT), text)

@@ -24,7 +24,7 @@ def run_report(
 
     measured: CSV of measured curves to compare.
     """
-    versions, certificate = _kept(folder / "versions.json") or {}, _kept(folder / "certificate.json")
+    versions, certificate = _load_json(folder / "versions.json") or {}, _load_json(folder / "certificate.json")
     kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
     subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
     if measured is not None:
@@ -41,7 +41,7 @@ def run_report(
     return html_file(made)
 
 
-def _kept(file: Path) -> dict[str, Any] | None:
+def _load_json(file: Path) -> dict[str, Any] | None:
     """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged one."""
     if not file.is_file():
         return None

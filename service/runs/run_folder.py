@@ -71,7 +71,7 @@ class RunFolder:
             hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
             hidden.mkdir(mode=0o700)  # its log has what was typed
             try:
-                _write(hidden / MARK, f"Started {self.started}. The run still goes on, or was interrupted.\n")
+                _write(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
                 self.path = _rename(hidden, place / run_name(name))
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
@@ -99,8 +99,8 @@ class RunFolder:
         """Mark a run that was interrupted or cancelled as unfinished again."""
         self._is_as_before = False
         with disk(self.path):
-            _write(self.path / MARK, f"Taken up {self.started}. The run still goes on, or was interrupted.\n")
-        self.log(f"run {self.path.name} goes on")
+            _write(self.path / MARK, f"Taken up {self.started}. The run continues, or was interrupted.\n")
+        self.log(f"run {self.path.name} continues")
 
     @property
     def figures(self) -> Path:
@@ -123,7 +123,7 @@ class RunFolder:
         for name, content in files.items():
             kept = self.path / path_from_text(name)
             if not kept.resolve().is_relative_to(self.path.resolve()):
-                raise RunError(f"the files of a run are in its folder; got {name!r}; name it otherwise")
+                raise RunError(f"the files of a run must be in its folder; got {name!r}; choose another name")
             with disk(self.path):
                 kept.parent.mkdir(parents=True, exist_ok=True)
                 _write(kept, content)
@@ -191,7 +191,7 @@ def write_file(path: Path, content: str | bytes) -> None:
     `RunError` when the disk refuses, `InputError` for a folder.
     """
     if path.is_dir():
-        raise InputError(f"what is written needs the name of a file; got the folder {path}; name a file in it")
+        raise InputError(f"an output must be a file; got the folder {path}; name a file in it")
     with disk(path.parent):
         if path.exists() and not path.is_file():
             with path.open("wb") as stream:
@@ -214,7 +214,9 @@ def _lock(folder: Path) -> int | None:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(handle)
-        raise InputError(f"another process is at work on the run {folder}; wait for it, or stop it") from None
+        raise InputError(
+            f"a run may only be used by one process; another one uses {folder}; wait for it, or stop it"
+        ) from None
     except OSError:  # some network disks have no locks
         os.close(handle)
         return None
@@ -231,7 +233,7 @@ def _rename(hidden: Path, wanted: Path) -> Path:
         except OSError:
             if not path.exists():
                 raise
-    raise RunError(f"no name is left for a run in {wanted.parent}; move old runs away")
+    raise RunError(f"no free name for a run in {wanted.parent}; move old runs away")
 
 
 def _bytes(content: str | bytes) -> bytes:
@@ -272,11 +274,9 @@ def disk(place: Path) -> Iterator[None]:
         yield
     except OSError as error:
         if is_full(error):
-            raise RunError(
-                f"a run needs room on its disk; {room(place)}; make room, or choose another place"
-            ) from error
+            raise RunError(f"Disk full: {room(place)}; free some space, or choose another folder for runs") from error
         reason = error.strerror or str(error)
-        remedy = "make the folder" if isinstance(error, FileNotFoundError) else "free or permit it"
+        remedy = "create the folder" if isinstance(error, FileNotFoundError) else "free it or change its permissions"
         raise RunError(
-            f"{place} must be a folder that can be written; got: {reason}; {remedy}, or choose another place"
+            f"{place} must be a writable folder; got: {reason}; {remedy}, or choose another folder"
         ) from error

@@ -24,9 +24,9 @@ def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Resu
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
-            raise RunError(f"the run {folder} is unfinished: {text}; go on with `{again} {folder.name}`")
+            raise RunError(f"the run {folder} is unfinished: {text}; continue it with `{again} {folder.name}`")
         if not (folder / "front.json").is_file():
-            raise RunError(f"a run has a file front.json; {folder} has none; name another folder")
+            raise RunError(f"a run must have a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
         rows = rows_from_csv((folder / "front.csv").read_text(encoding="utf-8"))
         if json_ready(rows) != record["designs"]:
@@ -85,7 +85,7 @@ def problem_of(folder: Path, result: Result) -> Problem:
 
     job = job_file(folder)
     if job is None:
-        raise RunError(f"a run keeps its job as job.toml or job.json; {folder} has neither; name another run")
+        raise RunError(f"a run must have its job as job.toml or job.json; {folder} has neither; name another run")
     try:
         problem = parse_job(read_job(job), folder=folder)
     except JobError as error:

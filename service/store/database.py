@@ -113,7 +113,7 @@ class Database:
     def _full(self, reason: str) -> Full:
         self.last_full = time.monotonic()
         there = "" if self._folder is None else f"; {room(self._folder)}"
-        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; make room")
+        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; free some space")
 
     def _is_full(self, error: Exception) -> bool:
         cause = error.orig if isinstance(error, DBAPIError) else error

@@ -125,7 +125,7 @@ class Store(Workers):
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
         if any(job.state == "queued" and not job.reason for job in found):
             crew = [worker.busy for worker in self.workers() if worker.at_work]
-            reason = "" if not all(crew) else f"every worker is busy ({len(crew)})" if crew else "no worker is at work"
+            reason = "" if not all(crew) else f"every worker is busy ({len(crew)})" if crew else "no worker is running"
             return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in found]
         return found
 

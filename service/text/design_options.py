@@ -18,8 +18,8 @@ from .options import DesignOfRun
 class SettingOptions:
     """Settings of the optimiser in place of the job's."""
 
-    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Deliver at most so many designs."] = None
-    seed: Annotated[int | None, typer.Option(min=0), "Seed of everything random."] = None
+    designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Return at most N designs."] = None
+    seed: Annotated[int | None, typer.Option(min=0), "Random seed."] = None
 
     @property
     def given(self) -> dict[str, Any]:
@@ -34,14 +34,15 @@ class Selection:
     where: Annotated[
         list[str] | None,
         typer.Option(metavar="CONDITION"),
-        'Only designs that meet it, such as "transmission_angle >= 40 deg" or "slow_stroke = inward". May be repeated.',
+        'Show only designs that meet this condition, such as "transmission_angle >= 40 deg" or "slow_stroke = '
+        'inward". May be repeated.',
     ] = None
     sort: Annotated[
         str | None,
         typer.Option(metavar="NAME"),
         "Sort by a quantity or column: best first for an objective, else smallest first.",
     ] = None
-    reverse: Annotated[bool, "Turn the order round."] = False
+    reverse: Annotated[bool, "Reverse the order."] = False
 
     @property
     def sorts(self) -> bool:
@@ -58,7 +59,7 @@ class Pick:
     """Options that name one design of a run, or choose it by its values."""
 
     design: DesignOfRun = None
-    knee: Annotated[bool, "Choose one design: the nearest to the ideal, objectives by their range."] = False
+    knee: Annotated[bool, "Choose the design nearest to the ideal, with objectives relative to their ranges."] = False
     topsis: Annotated[
         str | None,
         typer.Option(metavar="WEIGHTS"),
@@ -67,8 +68,8 @@ class Pick:
     lexicographic: Annotated[
         str | None,
         typer.Option(metavar="RANKING"),
-        "Choose one design by ranked objectives, each with what it may give up for the next, such as "
-        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range.',
+        "Choose one design by ranked objectives, each with the amount it may give up for the next, such as "
+        '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % refers to its range.',
     ] = None
 
     @property

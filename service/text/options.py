@@ -46,28 +46,28 @@ Units = Annotated[
         "--units",
         envvar="SLIDERCRANK_UNITS",
         show_envvar=False,
-        help="Units of what is shown and written: metric, or inch for in, lbf, lbf in, lb, hp and psi. Values that are "
-        "given name their own unit.  [env: SLIDERCRANK_UNITS]",
+        help="Units of all output: metric, or inch for in, lbf, lbf in, lb, hp and psi. Values that you enter have "
+        "their own units. [env: SLIDERCRANK_UNITS]",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print only JSON on standard output.")]
 DesignOfRun = Annotated[
     int | None, typer.Option(metavar="NO", help="A design of a run: its number in `slidercrank front RUN`.")
 ]
-Runs = Annotated[Path | None, typer.Option(help="Where runs are kept.  [default: SLIDERCRANK_RUNS, else ./runs]")]
+Runs = Annotated[Path | None, typer.Option(help="Folder of runs. [default: SLIDERCRANK_RUNS, else ./runs]")]
 Run = Annotated[
     str,
     typer.Argument(
         metavar="RUN",
-        help='The run: its folder, its name in the place of runs, the start of the name, or "latest".',
+        help='The run: its folder, its name in the folder of runs, the start of the name, or "latest".',
     ),
 ]
 
-Rows = Annotated[int, typer.Option(min=0), "Show at most so many designs; 0 shows all."]
+Rows = Annotated[int, typer.Option(min=0), "Show at most N designs; 0 shows all."]
 AllowQuantity = Annotated[
     list[str] | None,
     typer.Option(metavar="MODULE:FUNCTION"),
-    "Function that jobs may name as a quantity of their own. Repeatable.",
+    "Function that jobs may use as a custom quantity. May be repeated.",
 ]
 
 
@@ -127,9 +127,9 @@ def _flag(name: str) -> str:
 class Dimensions:
     """Crank, rod and offset as they are given."""
 
-    crank: Annotated[Length, 'Crank, such as "40 mm", unless JOB fixes it.'] = None
-    rod: Annotated[Length, "Connecting rod, likewise."] = None
-    offset: Annotated[Length, 'Offset of the slider line, such as "-20 mm", likewise.'] = None
+    crank: Annotated[Length, 'Crank length, such as "40 mm", unless JOB fixes it.'] = None
+    rod: Annotated[Length, "Length of the connecting rod, unless JOB fixes it."] = None
+    offset: Annotated[Length, 'Offset of the slider line, such as "-20 mm", unless JOB fixes it.'] = None
 
     def lengths(self, problem: Problem | None, word: Callable[[str], str] = _flag) -> list[float]:
         """Return crank, rod and offset, m, each as `length_option` gives it."""
@@ -171,10 +171,10 @@ def require_ending(option: str, file: Path | None, *endings: str) -> None:
     if file is None:
         return
     if str(file) == "-":
-        raise InputError(f"{option} writes a file; got -; name one")
+        raise InputError(f"{option} must name a file; got -; name one")
     if file.is_dir() or file.suffix.lower() not in ("", *endings):
         name = file / f"name{endings[0]}" if file.is_dir() else file.with_suffix(endings[0])
-        raise InputError(f"{option} writes a file that ends with {' or '.join(endings)}; got {file}; name it {name}")
+        raise InputError(f"the file of {option} must end with {' or '.join(endings)}; got {file}; name it {name}")
 
 
 def given_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:

@@ -43,8 +43,7 @@ class Output(io.TextIOWrapper):
     def _give_up(self, error: OSError) -> None:
         if not isinstance(error, BrokenPipeError):
             raise OutputLost(
-                f"standard output must take what is written; got: {error.strerror or error}; "
-                "make room, or write elsewhere"
+                f"cannot write to standard output: {error.strerror or error}; free some space, or write elsewhere"
             ) from None
         self.left = True
         give_up_output()

@@ -92,7 +92,7 @@ def freedom_in_words(problem: Problem) -> str:
         return f"all {what} are fixed; requirements are only checked"
     text = f"{left} of {unknowns} {what} left to choose"
     if left < 0:
-        text = f"more equalities than dimensions, by {-left}: a design exists only if they agree"
+        text = f"{-left} more equalities than dimensions: a design exists only if they agree"
     elif left == 0:
         text = f"{text}: the equalities usually leave single designs"
     if sheet.eliminated:
@@ -140,7 +140,7 @@ def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
 def _given(mechanism: Mechanism) -> list[str]:
     lines = []
     if mechanism.speed_profile is not None:
-        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities are those along it")
+        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities follow this profile")
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
     lines += [f"{name}: {_link(getattr(mechanism, name))}" for name in ("crank", "rod")]
@@ -154,8 +154,8 @@ def _given(mechanism: Mechanism) -> list[str]:
     if mechanism.arrangement is not None:
         lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
         lines.append(
-            "of all cylinders: torque, power, work, energy, volumes and shaking; of the one that has the most: forces "
-            "of the joints, motion of the slider; of one whose line is not turned: stresses and wear"
+            "for all cylinders together: torque, power, work, energy, volumes and shaking; for the cylinder with the "
+            "greatest: joint forces and slider motion; for a cylinder whose line is not rotated: stresses and wear"
         )
     if any(mechanism.gravity):
         x, y = mechanism.gravity
@@ -177,11 +177,11 @@ def _motion(problem: Problem) -> list[str]:
     ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from {start} to {end} {unit} and back"
     if start_column(problem.mechanism) is not None:
         moved = f"by {factor * (swing.end - swing.start):.6g} {unit}" if swing.follows else f"to {end} {unit}"
-        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings {moved} from where a design starts, and back"
+        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings {moved} from the start of each design, and back"
     if swing.of == "slider":
         ends += f", the crank pin {swing.side} of the line to the slider pin"
-    timed = "" if swing.duration is None else f", {swing.duration:.6g} s a way"
-    lines = [f"{ends}; the {swing.driver} is driven, law {swing.law}{timed}"]
+    timed = "" if swing.duration is None else f", {swing.duration:.6g} s per stroke"
+    lines = [f"{ends}; driven at the {swing.driver}, law {swing.law}{timed}"]
     if swing.actuator_tolerance:
         lines.append(f"tolerance of the actuator {1e3 * swing.actuator_tolerance:.6g} mm")
     return lines
@@ -321,7 +321,7 @@ def _limits(problem: Problem) -> list[str]:
     """Return the limits that come with each combination of choices, such as what a gearmotor can take."""
     limited = [variant for variant in problem.variants if variant.limits]
     if len(limited) > _MOST_TOLD:
-        return [f"limits that come with {len(limited)} combinations of choices"]
+        return [f"limits set by {len(limited)} combinations of choices"]
     return [
         f"with {' and '.join(variant.labels)}: {_rule(limit, problem, own=True)}"
         for variant in limited

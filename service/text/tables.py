@@ -39,7 +39,7 @@ def show_result(screen: Console, result: Result) -> None:
         screen.print("\nAt the knee:")
         for sentence in result.trade_offs:
             screen.print(f"  {sentence}", soft_wrap=True)
-    said = [f"Beyond what is allowed: {sentence}" for sentence in front_violations_in_words(result)]
+    said = [f"Beyond the allowable value: {sentence}" for sentence in front_violations_in_words(result)]
     for sentence in (*said, *(f"Warning: {sentence}" for sentence in result.warnings)):
         screen.print(f"\n{sentence}.", style="yellow", soft_wrap=True)
 
@@ -202,7 +202,7 @@ def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> N
     if violated:
         screen.print()
     for sentence in violations_in_words(violated, row):
-        screen.print(f"Beyond what is allowed: {sentence}.", style="bold yellow", soft_wrap=True)
+        screen.print(f"Beyond the allowable value: {sentence}.", style="bold yellow", soft_wrap=True)
 
 
 def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:

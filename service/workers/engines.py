@@ -25,15 +25,15 @@ class EngineOptions:
     cores: Annotated[
         int | None,
         typer.Option(min=1, max=1024, metavar="N"),
-        "Evaluate what is heavy in N processes; 1 keeps it in this one.  [default: one for each processor]",
+        "Processes for expensive evaluations; 1 uses only this one. [default: one per processor]",
     ] = None
     scheduler: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS"),
-        "Evaluate what is heavy on a Dask cluster, such as tcp://host:8786.",
+        "Dask cluster for expensive evaluations, such as tcp://host:8786.",
     ] = None
     tls_ca: Annotated[File, "Certificate of the authority, for tls://."] = None
-    tls_cert: Annotated[File, "Certificate of this side, for tls://."] = None
+    tls_cert: Annotated[File, "Certificate of this client, for tls://."] = None
     tls_key: Annotated[File, "Key of that certificate, for tls://."] = None
 
     def checked(self) -> EngineOptions:
@@ -41,17 +41,17 @@ class EngineOptions:
         files = (self.tls_ca, self.tls_cert, self.tls_key)
         if self.scheduler is None and any(files):
             raise InputError(
-                "--tls-ca, --tls-cert and --tls-key are for --scheduler tls://...; give that or leave them out"
+                "--tls-ca, --tls-cert and --tls-key need --scheduler tls://...; give it, or leave them out"
             )
         if self.scheduler is not None and self.cores is not None:
             raise InputError(
-                "heavy evaluation is done either here or on a cluster; got --cores and --scheduler; keep one"
+                "expensive evaluations may run either here or on a cluster; got --cores and --scheduler; keep one"
             )
         if any(files) and not all(files):
             raise InputError("an encrypted connection needs --tls-ca, --tls-cert and --tls-key; give all three")
         for file in files:
             if file is not None and not file.is_file():
-                raise InputError(f"the files of an encrypted connection must be there; got {file}; correct the path")
+                raise InputError(f"the files of an encrypted connection must exist; got {file}; correct the path")
         if self.scheduler is not None:
             _made(self)  # refuses an address that cannot be one
             required("distributed", "a Dask cluster needs")

@@ -60,7 +60,7 @@ class Budget:
         """Return which limit is reached, in words; nothing if none is."""
         seconds, evaluations = self.limits.seconds, self.limits.evaluations
         if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
-            return f"its search took longer than its limit of {seconds:g} s"
+            return f"its search reached its time limit of {seconds:g} s"
         if evaluations is not None and self._evaluations >= evaluations:
             return f"its search reached its limit of {counted(evaluations, 'evaluation')}"
         return ""
@@ -121,7 +121,7 @@ class Heartbeat:
                 self._look_at_cancel()
             except LeaseLost:
                 if not self._end.is_set():  # at the end of a job it is given up as it should be
-                    self.lost = "its lease has ended; another worker goes on from what was committed"
+                    self.lost = "its lease has expired; another worker continues from the last committed round"
             except StoreError:
                 pass  # the writes of the search find out whether it stays so
 
@@ -142,8 +142,8 @@ class Heartbeat:
         if most is None or (taken := self.taken.of_the_job()) <= most or self._end.is_set():
             return
         reason = (
-            f"it may take {size_text(most)} of memory; its worker took {size_text(taken)}; "
-            "give it a higher limit, or ask for less"
+            f"it may use {size_text(most)} of memory; its worker used {size_text(taken)}; give it a higher "
+            "limit, or ask for less"
         )
         _log.error("set aside: %s", reason)
         with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends, and it counts as an attempt
@@ -159,9 +159,9 @@ class Heartbeat:
             return
         if self._waited("told to end") < _HEARS or self._end.is_set():
             return
-        _log.error("ended: its search did not within %g s of being told to", _HEARS)
+        _log.error("ended: its search did not stop within %g s of being asked to", _HEARS)
         try:
-            self.claim.give_up(f"{reason}; its search did not end when it was told to")
+            self.claim.give_up(f"{reason}; its search did not stop when asked to")
         except (LeaseLost, StoreError):
             return  # it has ended after all; or its writes find out
         leave(DEAF)
@@ -177,7 +177,7 @@ class Heartbeat:
         where = "in the middle of a round" if begun else "before its search began"
         _log.warning("handed back: its worker stopped %s", where)
         with contextlib.suppress(LeaseLost, StoreError):
-            self.claim.hand_back(f"its worker stopped {where}; another one goes on")
+            self.claim.hand_back(f"its worker stopped {where}; another one continues")
         leave(0)
 
 

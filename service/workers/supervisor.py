@@ -21,10 +21,10 @@ _LOOK = 0.1  # s between two looks at the processes
 _FIRST, _LONGEST = 0.5, 30.0  # s before a process that ended soon is started again: doubled from one to the other
 _REASONS = {
     0: "it left",
-    EXHAUSTED: "its job took more memory than it may",
-    DEAF: "its job did not end when it was told to",
-    STALE: "earlier jobs left memory in it",
-    REFUSED: "it could do nothing as it was started, see above",
+    EXHAUSTED: "its job used more memory than allowed",
+    DEAF: "its job did not stop when asked to",
+    STALE: "earlier jobs left too little memory in it",
+    REFUSED: "it could not start working, see above",
 }
 """Why a process ended, by its exit code."""
 _SOON = 60.0  # s; one that ran for longer is started again as if it had never ended
@@ -86,7 +86,7 @@ class Supervisor:
                     try:
                         self._look_after(place)
                     except Exception:  # noqa: BLE001 - whatever it is, the other workers are looked after
-                        _log.exception("worker %d could not be looked after; trying again", place.number)
+                        _log.exception("worker %d could not be supervised; trying again", place.number)
         finally:
             self._stop()
 

@@ -106,12 +106,12 @@ def work(
                 if drain and not isinstance(error, Full):
                     raise
                 if not away:
-                    _log.warning("%s; trying again until it is there", error)
+                    _log.warning("%s; trying again until it is available", error)
                 away = True
                 time.sleep(_AWAY)
                 continue
             if away:
-                _log.info("the store is there again")
+                _log.info("the store is available again")
                 away = False
             if claim is not None:
                 memory.begin()
@@ -136,7 +136,7 @@ def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
     if terms.grace is None or most is None or memory.left <= TOLERATED * most:
         return False
     with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
-        claim.hand_back("a fresh worker takes it: earlier jobs left memory in this one")
+        claim.hand_back("a new worker takes it: earlier jobs left too little memory in this one")
     return True
 
 
@@ -173,7 +173,7 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
     try:
         solve()
     except Stopped:
-        claim.hand_back("its worker stopped; another one goes on")
+        claim.hand_back("its worker stopped; another one continues")
         _log.info("handed back")
     except InfeasibleError as error:
         claim.finish(unsearched_result(error, claim.job.run))
@@ -193,13 +193,13 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         if not is_full(error):
             _stumble(claim, error)
             return
-        claim.hand_back(f"waits: a job needs room on the disks it writes to; {full_places(error)}", delay=_FULL)
-        _log.warning("handed back: %s; it is tried again in %g s", full_places(error), _FULL)
+        claim.hand_back(f"waits: Disk full: {full_places(error)}", delay=_FULL)
+        _log.warning("handed back: %s; trying again in %g s", full_places(error), _FULL)
     except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
         _stumble(claim, error)
     except BaseException:
         with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
-            claim.hand_back("its worker was interrupted; another one goes on")
+            claim.hand_back("its worker was interrupted; another one continues")
         raise
 
 
@@ -239,7 +239,7 @@ def _solve(
         try:
             front = search(resume=claim.records())
         except ForeignRecords as error:  # of an earlier release, or another kind of machine
-            claim.start_over(f"begins anew: {error}")
+            claim.start_over(f"starts again: {error}")
             front = search(resume=[])
         result = result_of(front, claim.job.run)
     if not claim.cancel_asked:

@@ -103,7 +103,7 @@ def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
             if settings.drain:
                 raise
             if not away:
-                _log.warning("%s; trying again until it is there", error)
+                _log.warning("%s; trying again until it is available", error)
             away = True
             stop.wait(1.0)
     return None

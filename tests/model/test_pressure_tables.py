@@ -134,7 +134,7 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
     [
         (
             {"pressures": ["8 bar", "-0.2 bar", "1 bar"]},
-            'pressures.*at or above vacuum, 0; got "-0.2 bar"; to what a gauge shows add',
+            'pressures.*at or above vacuum, 0; got "-0.2 bar"; add the ambient pressure, about 1.01325 bar, to a gauge',
         ),
         ({"back_pressure": "-1 bar"}, 'back_pressure.*at or above vacuum, 0; got "-1 bar"'),
         (

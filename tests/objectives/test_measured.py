@@ -77,7 +77,10 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
         ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "got none in 'torque_Nm'; fill them in"),
         ({"crank_angle_deg": [], "torque_Nm": []}, "a curve has a number in a row with a crank angle; got none in"),
         ({"crank_angle_deg": [0.0], "load_N": [1.0]}, "'load_N' is not defined for this machine: it comes from loads"),
-        ({"crank_angle_deg": [0.0], "position_error_mm": [1.0]}, "a position error comes from tolerances; got none"),
+        (
+            {"crank_angle_deg": [0.0], "position_error_mm": [1.0]},
+            "a position error needs tolerances; this job has none",
+        ),
     ],
 )
 def test_values_that_cannot_be_are_refused(table: dict[str, list[float]], words: str) -> None:

@@ -68,7 +68,7 @@ def test_wrong_sweeps_are_refused() -> None:
     ):
         with pytest.raises(InputError, match=message):
             sweep(FEEDER, DESIGN, over, of)
-    with pytest.raises(InputError, match="a sweep is over crank, rod, offset, speed; got 'mass'"):
+    with pytest.raises(InputError, match="a sweep must be over one of crank, rod, offset, speed; got 'mass'"):
         Axis("mass", (1.0,))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="all finite"):
         Axis("rod", (1.0, math.nan))

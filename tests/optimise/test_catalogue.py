@@ -125,7 +125,7 @@ def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) 
 
 def test_a_file_has_no_place_in_tables_of_a_request() -> None:
     tables = {"name": "motor", "file": "gearmotors.csv"}
-    with pytest.raises(JobError, match="a file lies beside the job file"):
+    with pytest.raises(JobError, match="a file must lie beside the job file"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [tables]})
     with pytest.raises(JobError, match="must have two options or more, or a file; got 0"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [{"name": "motor"}]})
@@ -137,8 +137,8 @@ ROW = "A,10,5,1"
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "must begin with a line that names its columns; got an empty file; fill it"),
-        (HEADER, "must have rows below the names of its columns; got none; add them"),
+        ("", "must begin with a line of column names; got an empty file; fill it"),
+        (HEADER, "must have rows below the column names; got none; add them"),
         (
             "name,mechanism.slider.mass (kg)\nA,1\nB,",
             'row 3, column "mechanism.slider.mass (kg)": must be a number; got an empty cell',
@@ -147,13 +147,13 @@ ROW = "A,10,5,1"
         (f"{HEADER}\n=A1,10,5,1", "row 2, column name: must be a name"),
         (
             f'{HEADER}\nA,"10,500",5,1',
-            "must show its decimal sign; got 10,500, which may mean a thousand times as much",
+            "must have an unambiguous decimal sign; got 10,500, which may mean a thousand times as much",
         ),
         (f"{HEADER}\nA,10 N m,5,1", "write 10, as the unit belongs in the heading"),
         (f"{HEADER}\nA,nan,5,1", 'got "nan"'),
         (f"{HEADER}\nA,1e999,5,1", 'got "1e999"'),
         (f"{HEADER}\n{ROW}\n\nA,11,5,1", 'row 4, column name: names must differ; got "A" of row 2 again; rename one'),
-        (f"{HEADER}\nA,10,5", "row 2 must have 4 cells, as the first line; got 3"),
+        (f"{HEADER}\nA,10,5", "row 2 must have 4 cells, like the first line; got 3"),
         (
             "name,peak_torque max (kg)\nA,1",
             'column "peak_torque max (kg)": must have a unit of a torque; got "kg"; write it like (N m)',
@@ -197,8 +197,8 @@ def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str,
         ),
         (
             "name,stroke max (mm)\nA,70",
-            "choice: some option must leave something of [constraints]; got none: A has stroke equals 80 mm and max "
-            "70 mm, which exclude each other; loosen",
+            "choice: at least one option must meet [constraints]; none does: A has stroke equals 80 mm and max "
+            "70 mm, which exclude each other; relax",
         ),
     ],
 )
@@ -234,7 +234,7 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     job = written(tmp_path, "")
     with (tmp_path / "gearmotors.csv").open("wb") as file:
         file.truncate(50_000_000)
-    with pytest.raises(JobError, match="must have at most 10 MB; got more; keep the rows"):
+    with pytest.raises(JobError, match="must have at most 10 MB; got more; keep only the rows"):
         load_job(job)
     (tmp_path / "gearmotors.csv").unlink()
     with pytest.raises(JobError, match="not found; check the name and the folder"):
@@ -244,5 +244,5 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
         with pytest.raises(JobError, match="must lie beside the job file"):
             load_job(job)
     many = "\n".join(f"M {k},{k + 1},{1000 - k}" for k in range(MOST_OPTIONS + 1))
-    with pytest.raises(JobError, match="at most 200 rows that no other one beats in everything; got 201 of 201"):
+    with pytest.raises(JobError, match="at most 200 non-dominated rows; got 201 of 201"):
         read_catalogue(f"name,peak_torque max (N m),rms_torque max (N m)\n{many}\n", "file")

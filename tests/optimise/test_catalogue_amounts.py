@@ -73,7 +73,7 @@ def test_rounding_says_which_row_also_serves() -> None:
     front = sc.solve(sc.problem(tables | {"optimiser": {"samples": 8, "method": "random", "evaluations": 20}}))
     least = front.columns["choice_least_gearmotor"][0]
     assert least in ("GM 30", "GM 45")
-    said = f"gearmotor stays GM 150; the least that also serves the given design is {least}"
+    said = f"gearmotor stays GM 150; the least that also suffices for the given design is {least}"
     assert said in front.rounded(0, 1e-3).notes
 
 
@@ -112,7 +112,7 @@ def test_an_amount_is_no_direction_in_which_a_design_counts_as_stationary() -> N
         ({"price": {"max": "400 USD"}}, 'must be an amount in EUR; got "400 USD"'),
         (
             {"price": {"max": "200 EUR"}},
-            "got none: GM 30 has price 280 EUR, more than the 200 EUR allowed; loosen the constraint",
+            "none does: GM 30 has price 280 EUR, more than the 200 EUR allowed; relax the constraint",
         ),
         ({"prize": {"max": 3}}, "did you mean price"),
         ({"price + crank": {"max": 3}}, "adds EUR and mm; only values of one kind go together"),
@@ -142,20 +142,20 @@ def test_the_refusal_of_a_price_that_a_catalogue_lacks_begins_with_the_columns_t
 def test_notes_say_which_rows_lose_in_what_and_what_limits_nothing() -> None:
     text = "\n".join(notes_of(pusher()))
     assert "gearmotor: of 6 rows 1 is searched; the others lose in peak_torque max: GM 30 to GM 150, GM 45 to" in text
-    assert "not asked for, and kept with each design: price (EUR) and maker" in text
+    assert "not used, but stored with each design: price (EUR) and maker" in text
     text = "\n".join(notes_of(pusher(objectives={"price": "minimise"})))
-    assert "gearmotor: not asked for, and kept with each design: maker" in text
+    assert "gearmotor: not used, but stored with each design: maker" in text
     table = "name,Peak torque (N m),price (EUR)\nA,40,\nB,40,3\n"
     text = "\n".join(notes_of(pusher(table, objectives={"price": "minimise"})))
-    assert "of 2 rows 1 is searched; left out: A (no price, which the job asks for)" in text
+    assert "of 2 rows 1 is searched; omitted: A (no price, which the job requires)" in text
     assert "the column Peak torque (N m) is read as peak_torque max (N m)" in text
-    with pytest.raises(JobError, match="must have a row with price, which the job asks for; got none"):
+    with pytest.raises(JobError, match="must have a row with price, which the job requires; got none"):
         parse_job(pusher("name,peak_torque max (N m),price (EUR)\nA,40,\n" + "B,,\n", objectives={"price": "minimise"}))
 
 
 def test_a_column_called_as_a_number_of_the_mechanism_is_asked_about() -> None:
     with pytest.raises(
-        JobError, match=re.escape('"speed (rpm)": it would be kept with designs and change nothing; did')
+        JobError, match=re.escape('"speed (rpm)": it would be stored with designs but have no effect; did')
     ):
         parse_job(pusher("name,peak_torque max (N m),speed (rpm)\nA,40,30\n"))
     found = parse_job(pusher("name,peak_torque max (N m),mechanism.speed (rpm)\nA,40,30\n"))
@@ -168,7 +168,7 @@ def test_rows_beyond_the_jobs_own_limit_on_an_amount_are_left_out_in_a_note_and_
         (note,) = [line for line in notes_of(tables) if line.startswith("gearmotor: of")]
         (label,) = {variant.labels[0] for variant in found.variants}
         dear = ["GM 150", "GM 110", "GM 80", *(["GM 60"] if bound == "400 EUR" else [])]
-        assert note.startswith("gearmotor: of 6 rows 1 is searched; left out: ")
+        assert note.startswith("gearmotor: of 6 rows 1 is searched; omitted: ")
         assert all(f"{name} (price " in note for name in dear)
         assert note.count(f"more than the {bound} allowed") == len(dear)
         assert label == ("GM 45" if bound == "400 EUR" else "GM 60")

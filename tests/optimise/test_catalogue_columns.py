@@ -84,7 +84,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         with pytest.raises(JobError) as told:
             columns_of(["name", wrong], "file", frozenset())
         assert f'file, column "{wrong}": ' in str(told.value)
-        assert str(told.value).endswith(f"in small letters; got it otherwise; write {right}")
+        assert str(told.value).endswith(f"in lower case; write {right}")
     if name == "transmission_angle":  # one that says its good side
         assert [column.said for column in columns_of(["name", f"{name} (deg)"], "file", frozenset())] == [
             "transmission_angle min (deg)"
@@ -105,9 +105,12 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("rod / crank max (mm)", 'must have a unit of a ratio; got "mm"; leave it out'),
         ("crank == rod max (mm)", "'=' has no meaning in it"),
         ("min(crank max (mm)", "got the formula"),
-        ("1. price (EUR)", "got neither; rename it, or let it begin with # to pass it over"),
+        ("1. price (EUR)", "got neither; rename it, or let it begin with # to skip it"),
         ("peak torqe (N m)", "did you mean peak_torque? rename it"),
-        ("variables.crank (mm)", "a number of the job has its own path; got variables.crank; write crank (mm)"),
+        (
+            "variables.crank (mm)",
+            "a number of the job must be named by its path; got variables.crank; write crank (mm)",
+        ),
         (
             "crank+rod max (mm),crank + rod max (cm)",
             'got it and "crank+rod max (mm)", which are both read as crank + rod max; leave out or rename one',
@@ -116,7 +119,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("max torque (N m)", "did you mean peak_torque? rename it"),
         (
             "price max (EUR)",
-            'got "price", which is none; name the column "price (EUR)" and bound price in [constraints]',
+            'got "price", which is not one; name the column "price (EUR)" and bound price in [constraints]',
         ),
     ],
 )

@@ -52,13 +52,15 @@ def test_friction_under_the_weight_of_a_crank_alone_is_not_called_no_friction() 
     [
         (
             {"force": "5 N", "opposes": "motion", "during": "outward stroke"},
-            'load #2.during: a load with opposes has no such key; got "outward stroke"; a load with direction, '
-            "positions, pressure_positions, crank_angles or pressure_angles has it; possible here: force, opposes",
+            'load #2.during: a load with opposes must not have this key; got "outward stroke"; it belongs to a load '
+            "with direction, positions, pressure_positions, crank_angles or pressure_angles; possible here: force, "
+            "opposes",
         ),
         (
             {"crank_torque": "5 N m", "measured_from": "outer dead centre"},
-            'load #2.measured_from: a load with crank_torque has no such key; got "outer dead centre"; a load with '
-            "stiffness, positions, crank_angles or torque_angles has it; possible here: crank_torque",
+            "load #2.measured_from"
+            ': a load with crank_torque must not have this key; got "outer dead centre"; it belongs to a load with '
+            "stiffness, positions, crank_angles or torque_angles; possible here: crank_torque",
         ),
         (
             {"crank_torque": "5 N m", "mesured_from": 1},
@@ -73,8 +75,8 @@ def test_a_key_of_another_kind_of_load_is_said_to_be_one(load: dict[str, Any], s
 
 def test_a_key_of_another_kind_of_motor_is_said_to_be_one() -> None:
     said = refusal(SIEVE | {"drive": {"motor": {"torque": "5 N m", "no_load_speed": "1500 rpm"}}})
-    assert "drive.motor.no_load_speed: a table with torque has no such key" in said
-    assert "a table with stall_torque or rated_torque has it; possible here: torque" in said
+    assert "drive.motor.no_load_speed: a table with torque must not have this key" in said
+    assert "it belongs to a table with stall_torque or rated_torque; possible here: torque" in said
 
 
 def test_a_misspelt_width_of_a_link_alone_is_a_width() -> None:

@@ -194,25 +194,28 @@ def test_records_of_another_job_method_or_seed_are_refused() -> None:
         replace(given, constraints=given.constraints[1:]),
         robust(given, Robust(kind="worst case")),
     ):
-        with pytest.raises(ForeignRecords, match=r"goes on only with the job, .*; start the run anew"):
+        with pytest.raises(ForeignRecords, match=r"can only continue with its original job, .*; start a new run"):
             solve(other, resume=records)
 
 
 def test_records_of_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     _, records, _, _ = whole("random")
     monkeypatch.setattr(identity, "version_of", lambda name: "0.0.1" if name == "numpy" else "9")
-    with pytest.raises(ForeignRecords, match=r"only with the versions .* install those, or start the run anew"):
+    with pytest.raises(
+        ForeignRecords,
+        match=r"only continue with its original versions; it has .* install the original ones, or start a new run",
+    ):
         solve(asked("random"), resume=records)
 
 
 def test_records_that_are_not_whole_or_not_in_order_are_refused() -> None:
     _, records, _, _ = whole("sobol")
     for broken, words in (
-        (records[1:], "got number 1 in place of 0"),
-        ((*records[:2], records[1]), "got number 1 in place of 2"),
-        ((replace(records[0], words=records[0].words[:-1]),), "must be whole"),
-        ((replace(records[0], words=records[0].words[:3]),), "must be whole"),
-        ((replace(records[0], words=np.roll(records[0].words, 1)),), r"must be whole|computes the same"),
+        (records[1:], "got number 1 instead of 0"),
+        ((*records[:2], records[1]), "got number 1 instead of 2"),
+        ((replace(records[0], words=records[0].words[:-1]),), "must be complete"),
+        ((replace(records[0], words=records[0].words[:3]),), "must be complete"),
+        ((replace(records[0], words=np.roll(records[0].words, 1)),), r"must be complete|computes the same"),
     ):
         with pytest.raises(ForeignRecords, match=words):
             solve(asked("sobol"), resume=broken)
@@ -225,7 +228,7 @@ def test_a_search_that_comes_to_another_step_is_refused() -> None:
     other: list[Record] = []
     solve(replace(given, settings=replace(given.settings, seed=6)), keep=other.append)
     foreign = tuple(replace(record, identity=records[0].identity) for record in other)
-    with pytest.raises(ForeignRecords, match="came to another step"):
+    with pytest.raises(ForeignRecords, match="reached another step"):
         solve(given, resume=(records[0], *foreign[1:]))
 
 

@@ -118,11 +118,11 @@ def test_nothing_depends_on_units_or_zero() -> None:
 
 def test_what_cannot_be_compared_is_said() -> None:
     front = random_fronts(0, 2)[0]
-    with pytest.raises(InputError, match="two fronts or more; got 1"):
+    with pytest.raises(InputError, match="at least two fronts; got 1"):
         compare([front])
-    with pytest.raises(InputError, match="without designs"):
+    with pytest.raises(InputError, match="must have designs"):
         compare([front, front[:0]])
     with pytest.raises(InputError, match="different numbers"):
         compare([front, front[:, :1]])
-    with pytest.raises(InputError, match="share of the range, zero or more; got -1"):
+    with pytest.raises(InputError, match="fraction of the range, zero or more; got -1"):
         compare([front, front], tolerance=-1.0)

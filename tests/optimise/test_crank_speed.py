@@ -193,5 +193,5 @@ def test_a_swing_is_told_that_it_has_no_time_of_a_cycle() -> None:
     swing = job({"cycle_time": "2 s", "direction": "clockwise"})
     swing |= {"motion": {"kind": "swing", "from": "0 deg", "to": "60 deg"}, "objectives": {"rod_to_crank": "minimise"}}
     notes = notes_of(swing)
-    assert "mechanism.cycle_time: a swing follows [motion] instead; leave out the time" in notes
+    assert "mechanism.cycle_time: a swing is set by [motion] instead; leave out the time" in notes
     assert any(note.startswith("mechanism.direction: a swing") for note in notes)

@@ -131,7 +131,7 @@ def test_designs_have_the_values_as_they_are_written() -> None:
         r"(peak torque [\d.]+ N m|time ratio [\d.]+) \(here [\d.]+\), (peak torque|time ratio) [^;]*",
         front.message,
     )
-    with pytest.raises(InputError, match="fixed in this job or with values of its own"):
+    with pytest.raises(InputError, match="fixed or with discrete values in this job"):
         front.rounded(0, 1e-3)
 
 
@@ -146,7 +146,7 @@ def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
     assert near.discrete is not None
     assert (near.discrete.exact, near.discrete.how) == (False, "neighbours of the continuous front")
     assert re.search(
-        r"neighbours of the continuous front: \d+ of 1230 combinations .* judged, the other \d+ not", near.message
+        r"neighbours of the continuous front: \d+ of 1230 combinations .* evaluated, the other \d+ not", near.message
     )
     for values in near.values:
         assert not ((values <= exact.values) & (values < exact.values - 1e-9)).all(axis=1).any()
@@ -204,7 +204,10 @@ def test_five_million_combinations_are_judged_one_by_one() -> None:
 
 def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
     problem = parse_job(job({"offset": ["0 mm", "40 mm"]}))
-    assert "crank has values of the job, multiples of 0.5 mm, and stays" in solve(problem).rounded(0, 1e-3).notes
+    assert (
+        "crank has discrete values in the job, multiples of 0.5 mm, and stays as it is"
+        in solve(problem).rounded(0, 1e-3).notes
+    )
     found = neighbours(Axes.of(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
     assert found[:, :2].tolist() == [[0.0505, 0.125], [0.05, 0.125], [0.0505, 0.112], [0.05, 0.112]]
     assert np.isnan(found[:, 2]).all()
@@ -232,7 +235,7 @@ def test_progress_of_both_searches_goes_on() -> None:
 
 
 def test_other_optimisers_are_refused() -> None:
-    with pytest.raises(InputError, match="other optimisers take ranges; got values of crank, rod, offset"):
+    with pytest.raises(InputError, match="other optimisers need ranges; got discrete values of crank, rod, offset"):
         standard_form(parse_job(job()))
 
 
@@ -314,17 +317,17 @@ def test_requirements_over_the_cycle_that_no_combination_meets_are_told_with_the
     ("given", "words"),
     [
         ({"min": "20 mm", "max": "60 mm"}, "must have one of step, series and values; got none"),
-        ({"min": "20 mm", "step": "1 mm"}, "must have min and max beside step; got no max"),
+        ({"min": "20 mm", "step": "1 mm"}, "must have min and max with step; max"),
         ({"min": "60 mm", "max": "20 mm", "step": "1 mm"}, "must run from min to max"),
         ({"min": "20 mm", "max": "60 mm", "step": "0 mm"}, "must be positive"),
         ({"min": "20 mm", "max": "60 mm", "step": "-1 mm"}, "must be positive"),
         ({"min": "20 mm", "max": "60 mm", "step": "1 nm"}, "got"),
-        ({"min": "20 mm", "max": "60 mm", "step": "70 mm"}, "none of multiples of 70 mm is; widen the range"),
+        ({"min": "20 mm", "max": "60 mm", "step": "70 mm"}, "multiples of 70 mm has none; widen the range"),
         ({"min": "20 mm", "max": "60 mm", "step": "1 kg"}, "kg"),
         ({"min": "20 mm", "max": "60 mm", "series": "R7"}, 'series must be one of R5, R10, R20, R40; got "R7"'),
-        ({"min": "20.1 mm", "max": "22 mm", "series": "R5"}, "none of R5 in mm is; widen the range"),
+        ({"min": "20.1 mm", "max": "22 mm", "series": "R5"}, "R5 in mm has none; widen the range"),
         ({"min": "20 mm", "max": "60 mm", "series": "R5", "step": "1 mm"}, "got step and series"),
-        ({"values": ["20 mm"]}, 'got ["20 mm"]; one stands alone'),
+        ({"values": ["20 mm"]}, 'got ["20 mm"]; give a single value without a list'),
         ({"min": "20 mm", "max": "60 mm", "steps": "1 mm"}, 'got "steps"; correct or remove it'),
         ({"values": ["20 mm", "2 cm"]}, "values must differ"),
         ({"values": ["20 mm", "25 mm"], "min": "1 mm"}, "leave them out"),
@@ -339,10 +342,10 @@ def test_what_cannot_be_is_refused_in_a_sentence(given: dict[str, Any], words: s
 
 
 def test_offsets_from_zero_have_no_series_and_options_set_no_values() -> None:
-    with pytest.raises(JobError, match="preferred numbers are above zero"):
+    with pytest.raises(JobError, match="preferred numbers must be above zero"):
         parse_job(job({"offset": {"min": "0 mm", "max": "20 mm", "series": "R5"}}))
     option = [{"name": name, "values": {"crank": size}} for name, size in (("a", "50 mm"), ("b", "55 mm"))]
-    with pytest.raises(JobError, match="set it too"):
+    with pytest.raises(JobError, match="set by options of the choice"):
         parse_job(job(choice=[{"name": "crank size", "option": option}]))
     with pytest.raises(InputError, match="ascending"):
         Discrete(name="crank", values=(0.2, 0.1), rule="")

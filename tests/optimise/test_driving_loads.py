@@ -129,7 +129,7 @@ def test_the_net_work_of_random_loads_is_the_integral_over_a_swing_and_back() ->
 def test_a_load_that_pushes_with_the_stroke_is_questioned_with_its_sentence_and_its_work() -> None:
     asked = problem(PUSH)
     (said,) = driven_by_loads(asked)
-    assert said.startswith("in every sampled design loads do more work on the machine than they take, by ")
+    assert said.startswith("in every sampled design loads do more work on the machine than they absorb, by ")
     assert "load #1 (350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it;" in said
     least, greatest = map(float, re.findall(r"by ([\d.]+) to ([\d.]+) J", said)[0])
     turn = np.linspace(0.0, 2.0 * math.pi, 20_001)
@@ -158,7 +158,7 @@ def test_what_is_stated_to_help_and_what_gives_back_what_it_takes_is_not_questio
 
 def test_loads_beside_one_that_is_stated_to_drive_are_questioned_alone() -> None:
     (said,) = driven_by_loads(problem(ENGINE, PUSH))
-    assert "loads that are not stated to drive do more work" in said
+    assert "loads that are not declared as driving do more work" in said
     assert "load #2 (350 N" in said
     assert "load #1" not in said
     assert driven_by_loads(problem(ENGINE, {"crank_torque": "-50 N m"})) == []
@@ -172,7 +172,7 @@ def test_a_job_that_requires_delivered_work_states_an_engine() -> None:
 def test_a_torque_with_the_rotation_is_questioned_and_one_against_it_is_not() -> None:
     for speed, torque in (("90 rpm", "5 N m"), ("-90 rpm", "-5 N m")):
         (said,) = driven_by_loads(problem({"crank_torque": torque}, mechanism={"speed": speed}))
-        assert f"by {2.0 * math.pi * 5.0:.4g} J a cycle" in said
+        assert f"by {2.0 * math.pi * 5.0:.4g} J per cycle" in said
     for speed, torque in (("90 rpm", "-5 N m"), ("-90 rpm", "5 N m")):
         assert driven_by_loads(problem({"crank_torque": torque}, mechanism={"speed": speed})) == []
 
@@ -194,7 +194,7 @@ def test_a_cycle_of_two_turns_counts_both() -> None:
         "cycle": "720 deg",
     }
     (said,) = driven_by_loads(problem(table))
-    assert f"by {3.0 * 4.0 * math.pi:.4g} J a cycle" in said
+    assert f"by {3.0 * 4.0 * math.pi:.4g} J per cycle" in said
 
 
 def test_a_load_in_part_of_the_designs_is_said_to_be_in_part() -> None:
@@ -226,12 +226,12 @@ def test_numbers_that_vary_count_in_every_design() -> None:
 @pytest.mark.slow
 def test_the_front_has_the_warning_too() -> None:
     (said,) = front_driven_by_loads(solve(problem(PUSH)))
-    assert said.startswith("in every design loads do more work on the machine than they take")
+    assert said.startswith("in every design loads do more work on the machine than they absorb")
     assert front_driven_by_loads(solve(problem(PRESS))) == []
 
 
 def test_python_warns_once_of_a_problem_whose_loads_drive_it() -> None:
-    with pytest.warns(InputWarning, match="do more work on the machine than they take") as caught:
+    with pytest.warns(InputWarning, match="do more work on the machine than they absorb") as caught:
         asked = stated(deepcopy(JOB))
     asked.evaluate([[0.05, 0.3, 0.02]])
     assert len(caught) == 1

@@ -155,7 +155,7 @@ def test_a_catalogue_of_which_no_option_has_the_stroke_is_refused() -> None:
     strokes = sorted(float(Linkage(r, l, e).stroke) for r, l, e in choices if l > r + e)
     below, above = max(itertools.pairwise(strokes), key=lambda pair: pair[1] - pair[0])
     inside = {"min": f"{below + 0.01} mm", "max": f"{above - 0.01} mm"}
-    with pytest.raises(JobError, match="some option has a design within the ranges; got none"):
+    with pytest.raises(JobError, match="at least one option must have a design within the ranges; none has"):
         parse_job(listed(constraints={"stroke": inside}))
 
 

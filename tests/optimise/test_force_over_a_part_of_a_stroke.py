@@ -98,7 +98,7 @@ def test_the_part_may_be_a_choice_and_says_that_it_cannot_be_a_range() -> None:
     load = {"opposes": "outward stroke", "over": "last 60 mm"}
     asked = problem(load, **{"load.1.over": {"choices": ["last 60 mm", "last 20 mm"]}})
     assert [part.mechanism.loads[0].knots()[0] for part in asked.parts()] == [(0.0, 0.06, 0.06), (0.0, 0.02, 0.02)]
-    with pytest.raises(JobError, match=r"load\.1\.over: must name a number; got last 0\.02 m; let it be a choice"):
+    with pytest.raises(JobError, match=r"load\.1\.over: must name a number; got last 0\.02 m; make it a choice"):
         problem(load, **{"load.1.over": ["last 20 mm", "last 60 mm"]})
 
 

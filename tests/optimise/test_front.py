@@ -101,7 +101,7 @@ def test_a_pick_says_what_is_wrong_with_it() -> None:
 def test_an_empty_front_points_to_its_message() -> None:
     front = replace(pair(), values=np.zeros((0, 2)), columns={}, dimensions=np.zeros((0, 3)))
     for ask in (front.extremes, front.knee):
-        with pytest.raises(InputError, match="see its message"):
+        with pytest.raises(InputError, match="its message says why"):
             ask()
 
 
@@ -244,5 +244,5 @@ def test_a_row_that_is_none_of_the_front_is_refused_in_a_sentence(row: Any) -> N
     front = pair()
     asks = (front.part, front.mechanism, front.rates, front.trade_offs, lambda row: like(front, row))
     for ask in asks:
-        with pytest.raises(InputError, match=f"a row must be one of the front, which has rows 0 to 29; got {row!r}"):
+        with pytest.raises(InputError, match=f"a row must be one of the front's, which are rows 0 to 29; got {row!r}"):
             ask(row)

@@ -96,7 +96,7 @@ def test_several_requirements_that_must_give_way_together_are_said_so() -> None:
     """Neither limit alone is the trouble: torque far too low, rod far too long for any crank."""
     held: dict[str, Bounds] = {"stroke": 0.2, "peak_torque": (None, 0.5), "rod_to_crank": (50.0, None)}
     front = refused(held)
-    assert "giving up any single one is not enough" in front.message
+    assert "dropping any single one is not enough" in front.message
     named = re.search(r"crank (\S+) mm, rod (\S+) mm, offset (\S+) mm", front.message)
     assert named is not None
     r, l, e = (float(size) for size in named.groups())
@@ -126,8 +126,8 @@ def test_a_proportion_that_grows_without_bound_is_diagnosed_too() -> None:
 
 def test_where_no_crank_turns_fully_nothing_else_is_blamed() -> None:
     front = refused({"stroke": 0.2}, crank=(0.15, 0.2), rod=(0.06, 0.1))
-    assert "no crank turns fully" in front.message
-    assert "lengthen the rod" in front.message
+    assert "no crank rotates fully" in front.message
+    assert "allow a longer rod" in front.message
 
 
 def test_given_dimensions_that_miss_a_requirement_say_what_they_have() -> None:
@@ -140,9 +140,9 @@ def test_given_dimensions_that_miss_a_requirement_say_what_they_have() -> None:
 def test_relaxations_are_sentences() -> None:
     lower = Relaxation("transmission_angle", "at least", 40.0, 27.4576, "deg", "least transmission angle")
     assert lower.sentence() == (
-        "least transmission angle at least 40 deg is asked, at most 27.4576 deg can be had with all else kept"
+        "least transmission angle at least 40 deg is asked, at most 27.4576 deg is possible with all else met"
     )
     upper = Relaxation("peak_torque", "at most", 5.0, 20.25, "N m", "peak torque")
-    assert upper.sentence() == "peak torque at most 5 N m is asked, at least 20.25 N m can be had with all else kept"
+    assert upper.sentence() == "peak torque at most 5 N m is asked, at least 20.25 N m is possible with all else met"
     value = Relaxation("time_ratio", "exactly", 1.5, 1.3, "", "time ratio")
-    assert value.sentence() == "time ratio exactly 1.5 is asked, at the nearest 1.3 can be had with all else kept"
+    assert value.sentence() == "time ratio exactly 1.5 is asked, at the nearest 1.3 is possible with all else met"

@@ -264,7 +264,7 @@ def test_the_words_of_the_schema_on_each_branch_are_true(branch: Branch, side: s
         side
     ] in words
     words = keys["MechanismPart"]["properties"]["gravity_direction"]["description"]
-    assert "+x (the outward direction on the open branch, the inward one on the crossed branch)" in words
+    assert "+x (outward on the open branch, inward on the crossed branch); default" in words
     sign = "+x" if outward > 0.0 else "-x"
     words = keys["MechanismPart"]["properties"]["branch"]["description"]
     assert f"{branch}: the slider is on the side of {sign}, and outward is {sign}" in words

@@ -196,7 +196,7 @@ def test_formulas_are_allowed_where_functions_of_ones_own_are_not() -> None:
     tables = job(quantity={"a": {"formula": "2 * crank"}}, constraints={"a": {"max": "0.1 m"}})
     assert isinstance(parse_job(tables, allow_user_code=False).own[0], FormulaQuantity)
     tables["quantity"]["b"] = {"function": "mymodule:mine"}
-    with pytest.raises(JobError, match="functions of your own are not run here"):
+    with pytest.raises(JobError, match="custom functions are not run here"):
         parse_job(tables, allow_user_code=False)
 
 

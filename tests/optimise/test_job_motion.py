@@ -109,7 +109,7 @@ def test_a_free_start_finds_what_the_best_of_many_fixed_ones_does() -> None:
 @pytest.mark.parametrize(
     ("job", "words"),
     [
-        ({"slider_from": "9 m"}, "no design of the ranges makes the swing from 9000 to 800 mm of the slider"),
+        ({"slider_from": "9 m"}, "no design within the ranges reaches the swing from 9000 to 800 mm of the slider"),
         ({"slider_to": "3.1 m"}, "two different slider positions; got 3100 mm twice"),
         ({"slider_to": None, "slider_travel": "-2 m", "from": "10 deg"}, "leave out those of one"),
     ],
@@ -123,29 +123,29 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
-        ({"motion": {"kind": "turn"}}, "turns through has none of what a swing has; got"),
+        ({"motion": {"kind": "turn"}}, "keys of a swing must not be given for a rotating crank; got"),
         ({"motion": {"to": None}}, "motion.to: must have a value"),
         ({"motion": {"swing": "90 deg"}}, "to is where swing leads from from; got all three"),
-        ({"motion": {"slider_from": "3 m"}}, "between two crank angles, or between two places of the slider; got from"),
-        ({"motion": {"crank_side": "right"}}, "asked where the places of the slider state the swing; got right"),
+        ({"motion": {"slider_from": "3 m"}}, "by two crank angles or by two slider positions; got from"),
+        ({"motion": {"crank_side": "right"}}, "may only be given with slider positions; got right"),
         ({"motion": {"law": "table", "duration": "3 s"}}, "got no law_times; add for example law_times"),
         (
             {"motion": {"law": "table", "duration": "3 s", "law_times": [0, 0.5, 1], "law_shares": [0, 1]}},
-            "have as many values; got 3 and 2",
+            "must have the same number of values; got 3 and 2",
         ),
         ({"constraints": {"swing_angle": {"equals": "90 deg"}}}, "states it, by from and to, the same for all designs"),
         (
             {"variables": {**FITTED, "motion": {"to": ["90 deg", "110 deg"]}}},
-            "only its start may vary; got to as a variable",
+            "may vary; got to as a variable",
         ),
         ({"variables": {**FITTED, "motion": {"from": {"choices": ["9 deg", "11 deg"]}}}}, "got a choice"),
         ({"motion": {"to": "11 deg"}}, "two different crank angles"),
         ({"motion": {"to": "400 deg"}}, "less than a turn apart"),
         ({"motion": {"duration": "0 s", "law": "harmonic"}}, "motion.duration: must be positive"),
         ({"motion": {"law": "harmonic"}}, "needs its duration"),
-        ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "has a dead point"),
-        ({"motion": {"from": "-170 deg"}}, "has a dead point"),
-        ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design of the ranges closes"),
+        ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "passes a dead point"),
+        ({"motion": {"from": "-170 deg"}}, "passes a dead point"),
+        ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design within the ranges closes"),
         ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it is of a swing that the slider drives"),
         ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
         (
@@ -155,13 +155,13 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"motion": {"margin": "-5 deg"}}, "motion.margin: must be more than 0 and less than 90 deg; got -5 deg"),
         (
             {"motion": {"margin": "20 deg"}, "constraints": {"swing_transmission_angle": {"min": "30 deg"}}},
-            "motion.margin: it is the min of",
+            "motion.margin: same as the min of",
         ),
         ({"objectives": {"time_ratio": "maximise"}}, "time_ratio is of a crank that turns through"),
         ({"objectives": {"peak_torque / 2": "minimise"}}, "peak_torque is of a crank that turns through"),
-        ({"constraints": {"slow_stroke": "inward"}}, "slow_stroke: it is of a crank that turns through"),
+        ({"constraints": {"slow_stroke": "inward"}}, "slow_stroke: needs a rotating crank"),
         ({"objectives": {"peak_actuator_power": "minimise"}}, "give .motion. a law and a duration"),
-        ({"robust": {}}, "robust: it is of a crank that turns through"),
+        ({"robust": {}}, "robust: needs a rotating crank"),
         ({"friction": {"crank_pin": {"radius": "1 m", "coefficient": 1.5}}}, "friction may lock every design"),
         (
             {"load": [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "0 N"], "measured_from": "inner dead centre"}]},
@@ -198,7 +198,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ),
         (
             {"variables": JOB["variables"] | {"mechanism.speed": ["1 rpm", "2 rpm"]}},
-            "mechanism.speed: a swing follows .motion. instead",
+            "mechanism.speed: a swing is set by .motion. instead",
         ),
     ],
 )
@@ -210,15 +210,18 @@ def test_what_cannot_be_is_refused_in_a_sentence(tables: dict[str, Any], words: 
 def test_tables_of_a_full_turn_are_told_to_say_nothing_of_a_swing() -> None:
     loose = {"joint": "crank pin", "radial_clearance": "0.1 mm", "journal_radius": "10 mm"}
     given = changed(drive={"motor": {"torque": "10 N m"}}, clearance=loose)
-    told = "it is of a crank that turns through, and says nothing of a swing; leave it out"
-    assert [note for note in notes_of(given) if "says nothing" in note] == [f"drive: {told}", f"clearance: {told}"]
+    told = "only applies to a rotating crank and is ignored for a swing; leave it out"
+    assert [note for note in notes_of(given) if "ignored for a swing" in note] == [
+        f"drive: {told}",
+        f"clearance: {told}",
+    ]
 
 
 def test_exponents_of_a_liquid_are_told_to_have_no_use() -> None:
     pump = {"bore": "50 mm", "suction": "1 bar", "discharge": "5 bar", "medium": "liquid", "clearance": 0.1}
     turning = changed(mechanism={"speed": "60 rpm"}, objectives={"peak_torque": "minimise"}, constraints={})
     turning = {key: value for key, value in turning.items() if key != "motion"}
-    told = "load #1: a liquid is not compressed: no use of expansion_exponent; leave it out"
+    told = "load #1: a liquid is not compressed, so it has no expansion_exponent; leave it out"
     assert notes_of(turning | {"load": [pump | {"expansion_exponent": 1.2}]}) == [told]
     assert notes_of(turning | {"load": [pump]}) == []
 
@@ -231,7 +234,7 @@ def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothin
     assert np.isfinite(values[0]).all()
     assert np.array_equal(values[0], values[1])
     assert not any("speed" in note for note in notes_of(changed()))
-    assert "mechanism.speed: a swing follows [motion] instead" in notes_of(given)[-1]
+    assert "mechanism.speed: a swing is set by [motion] instead" in notes_of(given)[-1]
     job = changed()
     del job["motion"]
     with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required"):
@@ -241,7 +244,7 @@ def test_a_swing_needs_no_speed_and_one_that_is_given_is_told_and_changes_nothin
 def test_quantities_of_a_swing_are_refused_without_one() -> None:
     job = changed(mechanism={"speed": "0.1 rpm"})
     del job["motion"]
-    with pytest.raises(JobError, match="peak_actuator_force: it is of a crank that swings; got one that turns through"):
+    with pytest.raises(JobError, match="peak_actuator_force: needs a swinging crank; this crank rotates fully"):
         parse_job(job)
 
 
@@ -280,7 +283,7 @@ def test_nothing_dominates_the_front_of_a_swing_and_all_of_it_is_stationary() ->
     one = problem.analyse(front.dimensions[0])
     assert one["peak_actuator_force"] == pytest.approx(front.values[0, 0], rel=1e-12)
     assert "peak_torque" not in one
-    with pytest.raises(InputError, match="a certificate is of a crank that turns through"):
+    with pytest.raises(InputError, match="a certificate needs a rotating crank; this crank swings; through"):
         certify_designs(problem, front.dimensions)
     with pytest.raises(AssemblyError, match="must close over the whole swing"):
         problem.analyse([1.4, 0.5, 0.0])

@@ -108,7 +108,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     ("[tolerances]", "[tolerances]\npart_of_stroke = [0.5, 0.2]", ["part_of_stroke", "[0.5, 0.2]", "start < end"]),
     ("[tolerances]", "[tolerances]\npart_of_stroke = [0.5]", ["part_of_stroke", "missing"]),
     ("[tolerances]", '[tolerances]\nduring = "outward"', ["tolerances.during", '"outward stroke"']),
-    (ERRORS, "", ["objectives.position_error", "comes from tolerances", "got none", "[tolerances]"]),
+    (ERRORS, "", ["objectives.position_error", "needs tolerances", "this job has none", "[tolerances]"]),
     # Ranges
     (CRANK_RANGE, 'crank = ["160 mm", "80 mm"]', ["variables.crank", "empty range", "swap"]),
     (CRANK_RANGE, 'crank = ["80 mm"]', ["variables.crank", "[lower, upper]", '["80 mm"]']),
@@ -132,7 +132,10 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         STROKE,
         'description = "late"',
-        ["constraints.description: unknown key", "description stands above the first table of the file; move it there"],
+        [
+            "constraints.description: unknown key",
+            "description belongs above the first table of the file; move it there",
+        ],
     ),
     (STROKE, 'strok = { min = "280 mm" }', ["constraints.strok", "did you mean stroke?"]),
     (STROKE, 'stroke = "280 mm"', ["constraints.stroke", "must be exact, a minimum or a maximum", '"280 mm"', "min ="]),
@@ -186,7 +189,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (RATIO, "time_ratio = { target = 0.9 }", ["objectives.time_ratio", "1 or more", "target 0.9"]),
     (RATIO, 'time_ratio = { target = "2 s" }', ["objectives.time_ratio.target", "ratio", "is a time"]),
     (RATIO, "time_ratio = {}", ["objectives.time_ratio.target: is missing", "target ="]),
-    (RATIO, 'stroke = "minimise"', ["objectives.stroke", "held at one value", "leave out one"]),
+    (RATIO, 'stroke = "minimise"', ["objectives.stroke", "with a fixed value", "leave out one"]),
     (OFFSET_RANGE, "offset = 0", ["objectives.time_ratio", "without offset", "variables.offset a range"]),
     # Optimiser
     (DESIGNS, "designs = 0", ["optimiser.designs", "at least 1", "got 0", "designs = 100"]),
@@ -194,7 +197,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (DESIGNS, "designs = 1.5", ["optimiser.designs", "whole number", "1.5"]),
     (DESIGNS, "designs = true", ["optimiser.designs", "whole number", "true"]),
     (DESIGNS, 'method = "slqp"', ["optimiser.method", '"auto"', '"slqp"', 'did you mean "slsqp"?']),
-    (DESIGNS, 'method = "slsqp"', ["slsqp takes one objective", "got 4", "auto, epsilon_constraint"]),
+    (DESIGNS, 'method = "slsqp"', ["slsqp needs one objective", "got 4", "auto, epsilon_constraint"]),
     (DESIGNS, "evaluations = 100", ["auto has no budget", "100", "name a method"]),
     ("seed = 1", "seed = -1", ["optimiser.seed", "at least 0", "-1"]),
     # Syntax
@@ -204,8 +207,8 @@ BAD: list[tuple[str, str, list[str]]] = [
         SPEED + "\n" + SPEED,
         [f"line {LINE + 1}, mechanism.speed: may be given only once; got mechanism.speed in line {LINE} already"],
     ),
-    (SPEED, SPEED + "\nx = " + "[" * 20 + "]" * 20, ["nest at most 8 deep", "flatten"]),
-    (SPEED, SPEED + "\nx = " + "[" * 5000 + "]" * 5000, ["nest at most 8 deep", "flatten"]),
+    (SPEED, SPEED + "\nx = " + "[" * 20 + "]" * 20, ["nested at most 8 deep", "flatten"]),
+    (SPEED, SPEED + "\nx = " + "[" * 5000 + "]" * 5000, ["nested at most 8 deep", "flatten"]),
 ]
 
 
@@ -255,7 +258,7 @@ def test_each_remedy_for_a_stroke_out_of_reach_raises_the_limit(words: str, old:
 def test_a_rule_between_rod_and_offset_needs_an_offset() -> None:
     data = tomllib.loads(FEEDER.replace('offset = ["15 mm", "80 mm"]', "offset = 0"))
     del data["objectives"]["time_ratio"]
-    with pytest.raises(JobError, match=r"rod_to_offset: it needs an offset; got offset fixed at 0; give"):
+    with pytest.raises(JobError, match=r"rod_to_offset: needs an offset; the offset is fixed at 0; give"):
         parse_job(data)
 
 
@@ -317,7 +320,7 @@ def test_very_many_problems_are_cut_short() -> None:
         ({"load": [None]}, "load #1: must be a table such as"),
         ({"robust": {"kind": "percentile", "share": "x"}}, 'robust.share: must be a number; got "x"'),
         ({"choice": [{"name": "a.b", "option": []}]}, "choice #1.name: must begin with a letter"),
-        ({"name": [[[[[[[[[[]]]]]]]]]]}, "nest at most 8 deep"),
+        ({"name": [[[[[[[[[[]]]]]]]]]]}, "nested at most 8 deep"),
         ({"a\nb": 1}, '"a\\nb": unknown key'),
         ({"name": "\ud800"}, "name: must be"),
     ],
@@ -354,7 +357,7 @@ def test_small_messages_tell_the_value_in_the_words_of_the_job() -> None:
     for path in ("eye_concentration", "material.yield_strength"):
         variables: dict[str, Any] = dict(base["variables"])
         variables[f"sections.{path}"] = [2.0, 3.0] if path == "eye_concentration" else ["400 MPa", "500 MPa"]
-        with pytest.raises(JobError, match=f"follows smoothly from sections.{path}, so it cannot vary") as error:
+        with pytest.raises(JobError, match=f"depends smoothly on sections.{path}, so it cannot vary") as error:
             parse_job({**press, "variables": variables, "constraints": {}})
         assert "strength.material" not in str(error.value).replace("sections.material", "")
 

@@ -91,8 +91,8 @@ def test_what_contradicts_the_problem_outright_is_said() -> None:
     given = front(False)
     found = like(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
     assert (found.status, len(found)) == ("infeasible", 0)
-    assert "stroke at least 250 mm, where exactly 200 mm is asked already" in found.message
-    remedy = "ask for other values, or change constraints.stroke and variables.rod in the job and solve it again"
+    assert "stroke at least 250 mm, where exactly 200 mm is required already" in found.message
+    remedy = "choose other values, or change constraints.stroke and variables.rod in the job and solve it again"
     assert found.message.endswith(remedy)
     assert (
         "rod at least 700 mm and at most 800 mm, where at least 60 mm and at most 600 mm is its range" in found.message
@@ -108,11 +108,11 @@ def test_what_no_design_can_meet_is_diagnosed() -> None:
 
 def test_what_asks_for_nothing_new_is_refused() -> None:
     given = front(False)
-    with pytest.raises(InputError, match="say what is to be different"):
+    with pytest.raises(InputError, match="nothing differs from the given design"):
         like(given, 0)
-    with pytest.raises(InputError, match="already meets what is added"):
+    with pytest.raises(InputError, match="already meets the added conditions"):
         like(given, 0, Constraint(quantity="transmission_angle", lower=degrees(20.0)))
     with pytest.raises(InputError, match="crank, rod or offset; got 'speed'"):
         like(given, 0, ranges={"speed": (1.0, None)})
-    with pytest.raises(InputError, match="a range of crank rises; got 50 mm to 40 mm"):
+    with pytest.raises(InputError, match="the range of crank must be ascending; got 50 mm to 40 mm"):
         like(given, 0, ranges={"crank": (0.05, 0.04)})

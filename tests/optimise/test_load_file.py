@@ -110,9 +110,9 @@ def test_a_time_is_a_crank_angle_at_the_speed_of_the_job() -> None:
     first = read(longer, cycle="360 deg")
     assert first.knots()[1] == [*map(float, range(100)), 0.0] or list(first.knots()[1]) == [*range(100), 0.0]
     for tables, words in (
-        ({"mechanism": {"cycle_time": "1 s", "speed_profile": {"cosines": [0.1]}}}, "needs one constant crank speed"),
+        ({"mechanism": {"cycle_time": "1 s", "speed_profile": {"cosines": [0.1]}}}, "needs a constant crank speed"),
         ({"mechanism": {}}, "needs the crank speed; got none"),
-        ({"variables": {**RANGES, "mechanism.speed": ["30 rpm", "60 rpm"]}}, "needs one constant crank speed"),
+        ({"variables": {**RANGES, "mechanism.speed": ["30 rpm", "60 rpm"]}}, "needs a constant crank speed"),
     ):
         with pytest.raises(JobError, match=words):
             with_files(job({"file": "a.csv"}) | tables, {"a.csv": times})
@@ -127,7 +127,7 @@ def test_a_file_of_two_turns_has_a_cycle_of_720_deg() -> None:
     assert read(again) == read(text)
     first = {key: values[:72] for key, values in same.items()}
     assert read(text, cycle="360 deg") == given(**first)
-    with pytest.raises(JobError, match=r"must cover one turn or two, unless the job gives the cycle; got 1\.319 turns"):
+    with pytest.raises(JobError, match=r"must cover one or two turns unless the job gives the cycle; got 1\.319 turns"):
         read("\n".join(text.splitlines()[:97]))
 
 
@@ -160,7 +160,7 @@ def test_a_long_table_is_thinned_within_the_stated_bound_and_its_steps_stay(seed
         assert error.max() <= bound * (1.0 + 1e-9)
     (said,) = sources_of(data)
     assert f"3,600 rows of angle_deg, force_N; first 0, {force[0]:.6g}; last 359.9, {force[-1]:.6g}" in said
-    assert f"{len(kept):,} points kept, which changes no value by more than {bound:.3g} N, 0.05 % of its range" in said
+    assert f"{len(kept):,} points kept; no value changes by more than {bound:.3g} N, 0.05 % of its range" in said
 
 
 def test_a_thousand_points_stay_as_they_are() -> None:
@@ -199,7 +199,11 @@ def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() ->
 @pytest.mark.parametrize(
     ("text", "keys", "words"),
     [
-        ("angle,force_N\n0,1\n9,2", {}, r"one column of a length \(mm\) or an angle \(deg\) or a time \(s\), its unit"),
+        (
+            "angle,force_N\n0,1\n9,2",
+            {},
+            r"one column of a length \(mm\) or an angle \(deg\) or a time \(s\), with its unit",
+        ),
         (
             "time_s,position_mm,force_N\n0,1,2\n1,2,3",
             {},
@@ -211,12 +215,12 @@ def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() ->
         ("position_mm,force_N\n0,1\n9,2\n5,3", {}, '"position_mm" must increase; got 5 after 9; sort the rows'),
         ("angle_deg,force_N\n0,1\n9,2\n9,3\n9,4", {}, "must increase, but for two at a step"),
         ("angle_deg,force_N\n0,1\n9,", {}, 'row 3, column "force_N": must be a number; got an empty cell'),
-        ("angle_deg,force_N\n0,1\n9,2", {"forces": ["1 N"]}, "#1.forces: a load with file has no such key"),
+        ("angle_deg,force_N\n0,1\n9,2", {"forces": ["1 N"]}, "#1.forces: a load with file must not have this key"),
         ("crank angle (mm),force (N)\n0,1\n9,2", {}, 'column "crank angle .mm.": must have the unit of an angle'),
         ("angle in deg,torque in N\n0,1\n9,2", {}, "must have the unit of a torque, .* got N, which is a force"),
         ("angle_deg,pressure_N\n0,1\n9,2", {}, "must have the unit of a pressure, .* got N, which is a force"),
-        ("angle_deg,force_N\n0,1", {}, "must have two points at least; got 1; add rows"),
-        ("angle_deg,force_N\n0,1\n0,1", {}, "must have two points at least; got 1; add rows"),
+        ("angle_deg,force_N\n0,1", {}, "must have at least two points; got 1; add rows"),
+        ("angle_deg,force_N\n0,1\n0,1", {}, "must have at least two points; got 1; add rows"),
         ("Winkel [Grad];Kraft [N]\n0;1\n9;2", {}, 'the unit "Grad" is not known; write deg'),
         ("angle (Deg),force (N)\n0,1\n9,2", {}, 'the unit "Deg" is not known; write deg'),
         ("angle_deg,force_KN\n0,1\n9,2", {}, 'the unit "KN" is not known; write kN'),
@@ -248,7 +252,7 @@ def test_units_stand_after_in_and_among_other_brackets(heads: str) -> None:
 
 
 def test_a_coarse_record_between_one_turn_and_two_is_refused_and_two_turns_are_reported() -> None:
-    with pytest.raises(JobError, match=r"must cover one turn or two, .* got 1\.4 turns"):
+    with pytest.raises(JobError, match=r"must cover one or two turns .* got 1\.4 turns"):
         read("time_s,force_N\n0,1\n0.1,2\n0.3,3\n0.7,4\n", "120 rpm")
     data = with_files(job({"file": "a.csv"}), {"a.csv": "angle_deg,force_N\n0,1\n180,2\n360,3\n540,4\n"})
     assert data["load"][0]["cycle"] == "720 deg"
@@ -256,15 +260,15 @@ def test_a_coarse_record_between_one_turn_and_two_is_refused_and_two_turns_are_r
 
 
 def test_a_file_and_a_force_in_one_load_are_refused_before_the_file_is_read() -> None:
-    with pytest.raises(JobError, match=r'load #1\.force: a load with file has no such key; got "3 N"; possible'):
+    with pytest.raises(JobError, match=r'load #1\.force: a load with file must not have this key; got "3 N"; possible'):
         with_files(job({"file": "a.csv", "force": "3 N"}), {"a.csv": "angle_deg,force_N\n0,1\n9,2"})
 
 
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        ("0,60\n90,61", r"must have [34] different points at least; got 2; add rows"),
-        ("0,60\n90,61\n360,60", r"must have [34] different points at least; got 2; add rows"),
+        ("0,60\n90,61", r"must have at least [34] different points; got 2; add rows"),
+        ("0,60\n90,61\n360,60", r"must have at least [34] different points; got 2; add rows"),
         ("0,60\n90,61\n90,62\n180,60", '"angle_deg" must increase; got 90 deg twice; leave out one of the two'),
     ],
 )
@@ -291,7 +295,7 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
         "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, -2; last 90, 1000.5; separated by semicolons; "
         "decimal comma"
     ]
-    with pytest.raises(JobError, match="load #1: a file lies beside the job file, or its content is sent with the job"):
+    with pytest.raises(JobError, match="load #1: a file must lie beside the job file, or be sent with the job"):
         parse_job(job({"file": "trace.csv"}))
     with pytest.raises(
         JobError, match=re.escape('load #1.file: "a.csv" not found among the files sent with the job (b.csv)')

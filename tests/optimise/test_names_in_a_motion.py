@@ -30,7 +30,7 @@ def by_places() -> Problem:
         ("angles", "swing_angle", r"\[motion\] states it, by from and to"),
         ("angles", "peak_actuator_torque", 'got driver = "slider"; use peak_actuator_force'),
         ("angles", "peak_actuator_power", r"give \[motion\] a law and a duration"),
-        ("turns", "swing_energy", "it is of a crank that swings; got one that turns through"),
+        ("turns", "swing_energy", "needs a swinging crank; this crank rotates fully"),
     ],
 )
 def test_a_quantity_that_a_motion_does_not_have_is_told_with_the_reason(kind: str, name: str, words: str) -> None:
@@ -47,7 +47,7 @@ def test_a_quantity_that_a_motion_does_not_have_is_told_with_the_reason(kind: st
 
 def test_a_quantity_of_a_full_turn_is_not_one_of_a_swing() -> None:
     found = load_job(SUPPORT).analyse(DESIGN)
-    with pytest.raises(InputError, match="stroke is of a crank that turns through; got one that swings"):
+    with pytest.raises(InputError, match="stroke needs a rotating crank; this crank swings"):
         found["stroke"]
     with pytest.raises(InputError, match="no quantity is called 'strok'"):
         found["strok"]
@@ -69,7 +69,7 @@ def test_every_quantity_of_a_full_turn_is_refused_for_a_swing_and_every_other_is
 def test_curves_of_a_full_turn_are_refused_for_a_design_that_swings(ask: str) -> None:
     found = load_job(SUPPORT).analyse(DESIGN)
     given = [{"crank_angle_deg": [20.0, 30.0], "slider_position_mm": [3e3, 2.9e3]}] if ask == "deviations" else []
-    with pytest.raises(InputError, match="got a design that swings"):
+    with pytest.raises(InputError, match="this design swings"):
         getattr(found, ask)(*given)
 
 

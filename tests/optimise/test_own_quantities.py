@@ -174,7 +174,7 @@ def test_names_are_those_that_are_declared_and_no_others() -> None:
 
 
 def test_code_of_others_can_be_refused(tmp_path: Path) -> None:
-    with pytest.raises(JobError, match="functions of your own are not run here"):
+    with pytest.raises(JobError, match="custom functions are not run here"):
         parse_job(job({"function": "a:b"}), allow_user_code=False)
     assert parse_job(job(objectives={"stroke": "minimise"}, constraints={}), allow_user_code=False).own == ()
 
@@ -240,7 +240,7 @@ def test_a_quantity_without_gradient_is_refused_where_one_is_needed_with_what_ca
         job(declared, constraints={"mine": {"equals": 3.0}}, optimiser={"method": "nsga2"})
         | {"objectives": {"stroke": "minimise", "time_ratio": "maximise"}}
     )
-    with pytest.raises(InputError, match=r"mine can be held at one value only with its gradient; .* a min and a max"):
+    with pytest.raises(InputError, match=r"mine needs a gradient to be kept at one value; .* a min and a max"):
         solve(held)
 
 

@@ -267,15 +267,17 @@ def test_a_job_of_values_with_units_is_read_once(monkeypatch: pytest.MonkeyPatch
     [
         (
             {"quantity": "transmission_angle", "lower": 90},
-            "requirements are in SI: transmission_angle, lower = 90 is 90 rad = 5156.62 deg; write 1.5708 for 90 deg",
+            "requirements must be in SI: transmission_angle, lower = 90 is 90 rad = 5156.62 deg; write 1.5708 for 90 "
+            "deg",
         ),
         (
             {"quantity": "stroke", "lower": 0.1, "upper": 150.0},
-            "requirements are in SI: stroke, upper = 150 is 150 m = 150000 mm; write 0.15 for 150 mm",
+            "requirements must be in SI: stroke, upper = 150 is 150 m = 150000 mm; write 0.15 for 150 mm",
         ),
         (
             {"quantity": "displacement_volume", "upper": 500},
-            "requirements are in SI: displacement_volume, upper = 500 is 500 m^3 = 5e+08 cm^3; write 0.0005 for 500 "
+            "requirements must be in SI: displacement_volume, upper = 500 is 500 m^3 = 5e+08 cm^3; write 0.0005 for "
+            "500 "
             "cm^3",
         ),
     ],

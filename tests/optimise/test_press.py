@@ -71,6 +71,6 @@ def stroke() -> float:
 @pytest.mark.parametrize("variant", [7, -3, "GM 40", None])
 def test_a_variant_that_is_none_is_refused(variant: Any) -> None:
     press = load_job(RUNS / "press.toml")
-    with pytest.raises(InputError, match="a variant is one of 0 to 1, see `variants`; got"):
+    with pytest.raises(InputError, match="a variant must be one of 0 to 1, see `variants`; got"):
         press.part(variant)
     assert press.part(-1) == press.parts()[1]

@@ -70,9 +70,9 @@ def test_any_other_sense_is_refused_with_those_that_there_are(sense: object) -> 
 
 @pytest.mark.parametrize("name", ["", "peak torque", "Peak_torque", "peak-torque", None, 3, ("peak_torque",)])
 def test_a_name_that_no_quantity_can_have_is_refused_at_once(name: object) -> None:
-    with pytest.raises(InputError, match="a quantity is named by small letters"):
+    with pytest.raises(InputError, match="the name of a quantity may only have lower-case letters"):
         Objective(quantity=name, sense="minimise")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="a quantity is named by small letters"):
+    with pytest.raises(InputError, match="the name of a quantity may only have lower-case letters"):
         Constraint(quantity=name, lower=1.0)  # type: ignore[arg-type]
 
 
@@ -130,9 +130,9 @@ def test_a_problem_needs_objectives_each_once() -> None:
     base = problem({"peak_torque": "minimise"}, {"stroke": (0.1, None)})
     with pytest.raises(InputError, match="at least one objective"):
         replace(base, objectives=())
-    with pytest.raises(InputError, match="peak_torque is given twice"):
+    with pytest.raises(InputError, match="peak_torque may be given only once"):
         replace(base, objectives=base.objectives * 2)
-    with pytest.raises(InputError, match="constraint on stroke is given twice"):
+    with pytest.raises(InputError, match="constraint on stroke may be given only once"):
         replace(base, constraints=base.constraints * 2)
 
 
@@ -192,7 +192,7 @@ def test_objectives_come_in_the_order_of_the_quantities_whatever_that_of_the_tab
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"crank": (0.02, 0.06)}, "crank of a Problem must be Range; got (0.02, 0.06); change what is there by"),
+        ({"crank": (0.02, 0.06)}, "crank of a Problem must be Range; got (0.02, 0.06); change the problem with"),
         ({"rod": 0.1}, "rod of a Problem must be Range; got 0.1"),
         ({"constraints": ("stroke",)}, "constraints of a Problem must be a tuple of Constraint; got 'stroke'"),
         ({"objectives": ["stroke"]}, "objectives of a Problem must be a tuple of Objective; got 'stroke'"),
@@ -212,7 +212,7 @@ def test_the_table_of_quantities_has_every_key_that_jobs_may_name_and_what_it_ne
     assert list(known.index) == list(schema["Objectives"]["properties"])
     assert set(schema["Constraints"]["properties"]) - set(known.index) == {"slow_stroke"}  # no quantity
     assert set(known.index[known["needs"] == ""]) >= {"stroke", "rod_to_offset", "transmission_angle"}
-    assert known.loc["swing_energy", "needs"] == "it comes from the table [motion]"
-    assert known.loc["motion_deviation", "needs"] == "it comes from the table [target_motion]"
-    assert known.loc["position_error", "needs"] == "a position error comes from tolerances"
+    assert known.loc["swing_energy", "needs"] == "it needs the table [motion]"
+    assert known.loc["motion_deviation", "needs"] == "it needs the table [target_motion]"
+    assert known.loc["position_error", "needs"] == "a position error needs tolerances"
     assert "material and pins" in str(known.loc["rod_stress", "needs"])

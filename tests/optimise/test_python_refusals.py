@@ -36,34 +36,37 @@ door: Any = sc
 NO_PROBLEM: Any = {"name": "Press"}
 NO_FRONT: Any = door.problem(TABLES)
 SLIPS: dict[str, tuple[Any, str]] = {
-    "form": (lambda: door.standard_form(NO_PROBLEM), "standard_form takes a problem; got dict; make one by problem or"),
-    "openmdao": (lambda: door.openmdao_component(NO_PROBLEM), "openmdao_component takes a problem; got dict"),
-    "jax": (lambda: door.jax_function(NO_PROBLEM), "jax_function takes a problem; got dict"),
-    "torch": (lambda: door.torch_function(NO_PROBLEM), "torch_function takes a problem; got dict"),
-    "quantities": (lambda: door.quantities(NO_PROBLEM), "quantities takes a problem; got dict"),
-    "progress": (lambda: door.solve(NO_FRONT, progress="yes"), "progress is True, for a bar, or a function"),
-    "like": (lambda: door.like(NO_FRONT, 0), "like takes a front; got Problem; solve(problem) gives one"),
-    "wish": (lambda: door.wish(NO_FRONT, {"peak_torque": 1.0}), "a wish takes a front; got Problem"),
+    "form": (
+        lambda: door.standard_form(NO_PROBLEM),
+        "standard_form needs a problem; got dict; make one with problem or",
+    ),
+    "openmdao": (lambda: door.openmdao_component(NO_PROBLEM), "openmdao_component needs a problem; got dict"),
+    "jax": (lambda: door.jax_function(NO_PROBLEM), "jax_function needs a problem; got dict"),
+    "torch": (lambda: door.torch_function(NO_PROBLEM), "torch_function needs a problem; got dict"),
+    "quantities": (lambda: door.quantities(NO_PROBLEM), "quantities needs a problem; got dict"),
+    "progress": (lambda: door.solve(NO_FRONT, progress="yes"), "progress must be True, for a bar, or a function;"),
+    "like": (lambda: door.like(NO_FRONT, 0), "like needs a front; got Problem; solve(problem) returns one"),
+    "wish": (lambda: door.wish(NO_FRONT, {"peak_torque": 1.0}), "a wish needs a front; got Problem"),
     "like by text": (
         lambda: door.like(front(), 0, "time_ratio >= 1.2"),
-        "a requirement of like is a Constraint; got 'time",
+        "a requirement for like must be a Constraint; got 'time",
     ),
     "range": (
         lambda: door.like(front(), 0, ranges={"rod": 0.1}),
-        "bounds of rod are (least, greatest), numbers or None",
+        "bounds of rod must be (least, greatest), numbers or None",
     ),
     "one bound": (
         lambda: front().pick("peak_torque", crank_mm=40),
-        "bounds of crank_mm are (least, greatest), numbers",
+        "bounds of crank_mm must be (least, greatest), numbers",
     ),
-    "short bound": (lambda: front().pick("peak_torque", crank_mm=(40,)), "got (40,); for example (1.0, None)"),
-    "bound as text": (lambda: front().pick("peak_torque", crank_mm=("40 mm", None)), "bounds of crank_mm are"),
-    "bound nan": (lambda: front().pick("peak_torque", crank_mm=(float("nan"), None)), "bounds of crank_mm are"),
+    "short bound": (lambda: front().pick("peak_torque", crank_mm=(40,)), "got (40,); write for example (1.0, None)"),
+    "bound as text": (lambda: front().pick("peak_torque", crank_mm=("40 mm", None)), "bounds of crank_mm must be"),
+    "bound nan": (lambda: front().pick("peak_torque", crank_mm=(float("nan"), None)), "bounds of crank_mm must be"),
     "weight": (
         lambda: front().topsis({"peak_torque": "high"}),
         "the weight of peak_torque must be a number; got 'high'",
     ),
-    "ranking": (lambda: front().lexicographic(3), "a ranking is of names and of Priority(...); got 3"),
+    "ranking": (lambda: front().lexicographic(3), "a ranking may only contain names and Priority(...); got 3"),
     "share": (lambda: door.Priority(quantity="peak_torque", share="10 %"), "zero or more, a number; got '10 %'"),
     "units": (lambda: front().trade_offs(0, "imperial"), "system must be 'metric' or 'inch'; got 'imperial'"),
     "bound of a constraint": (
@@ -72,13 +75,16 @@ SLIPS: dict[str, tuple[Any, str]] = {
     ),
     "degrees": (
         lambda: front().pick("peak_torque", transmission_angle=(40, None)),
-        "lies within {'transmission_angle': (40, None)}, whose transmission_angle is ",
+        "is within {'transmission_angle': (40, None)}, whose transmission_angle is ",
     ),
     "words": (
         lambda: front().pick("peak_torque", status=(1, None)),
-        "bounds are of numbers; got status, a column of words",
+        "bounds may only be on numbers; got status, a column of words",
     ),
-    "no designs": (lambda: nothing().pick("peak_torque"), "a pick needs the designs of a front; got none: no design"),
+    "no designs": (
+        lambda: nothing().pick("peak_torque"),
+        "a pick needs a front with designs; this one is empty: no design",
+    ),
     "direction": (
         lambda: door.Linkage(0.04, 0.1, 0.02).slow_stroke(direction="clockwise"),
         "direction must be positive (counter-clockwise) or negative (clockwise); got 'clockwise'",
@@ -136,5 +142,5 @@ def test_public_functions_are_called_what_they_are_called() -> None:
 def test_tables_that_hold_themselves_are_refused() -> None:
     endless: dict[str, object] = dict(TABLES)
     endless["load"] = [endless]
-    with pytest.raises(sc.JobError, match="got one that holds itself"):
+    with pytest.raises(sc.JobError, match="got one that contains itself"):
         sc.problem(endless)

@@ -140,7 +140,7 @@ def test_equalities_targets_and_position_errors_stay_nominal() -> None:
 @pytest.mark.parametrize(
     ("quantities", "words"),
     [
-        (("stroke",), "cannot equal a value within tolerances.*give min and max"),
+        (("stroke",), "cannot be kept at one value within tolerances.*give min and max"),
         (("time_ratio",), "has a target"),
         (("peak_power",), "choose from peak_torque"),
     ],
@@ -165,11 +165,11 @@ def test_a_job_with_the_table_robust_is_a_robust_problem() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"tolerances": {"crank_angle": "0.1 deg"}}, "robust: it needs tolerances of crank, rod or offset"),
+        ({"tolerances": {"crank_angle": "0.1 deg"}}, "robust: needs tolerances of crank, rod or offset"),
         ({"robust": {"share": 1.5}}, "robust.share"),
         ({"robust": {"kind": "best"}}, "robust.kind"),
         ({"robust": {"share": 0.9999}}, "raise samples or lower share"),
-        ({"robust": {"quantities": ["stroke"]}}, "robust: stroke cannot equal a value"),
+        ({"robust": {"quantities": ["stroke"]}}, "robust: stroke cannot be kept at one value"),
     ],
 )
 def test_a_wrong_table_robust_is_refused_by_its_key(change: dict[str, Any], words: str) -> None:

@@ -164,8 +164,8 @@ def test_near_designs_follow_the_one_whose_round_numbers_keep_an_exact_stroke_at
     assert all(
         miss.quantity == "stroke" and 0.0 < miss.amount < 0.1 for row in range(1, 5) for miss in found.misses(row)
     )
-    assert found.message.endswith("keeps every requirement; others lose clearly less and miss little")
-    assert "within 4 steps (not 16, as 3 numbers are rounded together)" in replace(found, reach=4).message
+    assert found.message.endswith("keeps every requirement; others lose clearly less but miss little")
+    assert "within 4 steps (not 16, because 3 numbers are rounded together)" in replace(found, reach=4).message
 
 
 def end_of(search: Steps[Rounded]) -> Rounded:
@@ -280,8 +280,8 @@ def plain_front() -> ParetoFront:
             "step of crank must be at least 2e-07 mm, 1e-09 of 200 mm, the greatest in its range; got 1e-10 mm",
         ),
         ({"rod": 0.7}, "the step of rod must have a multiple within its range, 60 mm to 600 mm; got 700 mm"),
-        ({"rods": 0.001}, "a step is for one of crank, rod, offset; got 'rods'"),
-        ({}, "say what to round"),
+        ({"rods": 0.001}, "a step must be for one of crank, rod, offset; got 'rods'"),
+        ({}, "rounding needs a step"),
     ],
 )
 def test_a_wrong_step_is_refused(to: Any, words: str) -> None:
@@ -365,7 +365,7 @@ def test_a_stroke_that_may_be_missed_a_little_is_met() -> None:
         ({"stroke": float("nan")}, "the allowed miss of stroke must be a finite number"),
         ({"stroke": True}, "the allowed miss of stroke must be a length; got true"),
         ({"stroke": 1e-4, "stroke_mm": 1e-4}, "got two for stroke"),
-        ("stroke=0.1 mm", "what may be missed comes by quantity"),
+        ("stroke=0.1 mm", "allowed misses must be a dict by quantity"),
     ],
 )
 def test_a_wrong_allowance_is_refused(allow: Any, words: str) -> None:
@@ -378,7 +378,7 @@ def test_progress_is_reported_in_stages_and_what_it_raises_ends_the_search() -> 
     stages: list[Stage] = []
     front.rounded(2, 0.0005, progress=stages.append)
     assert stages[0].stage == "screening combinations"
-    assert stages[-1].stage == "looking for the nearest"
+    assert stages[-1].stage == "searching for the nearest"
     assert all(0 <= one.step < one.steps for one in stages)
 
     def end(at: Stage) -> None:
@@ -393,12 +393,12 @@ def test_what_is_fixed_or_has_no_step_stays_and_is_told() -> None:
     front = solve(problem(PLAIN, HELD, offset=0.0503, designs=6, samples=256))
     found = front.rounded(1, 0.0005)
     assert set(found.dimensions[:, 2]) == {0.0503}
-    assert found.notes == ("offset is fixed in this job and stays, though it is no multiple of the step",)
+    assert found.notes == ("offset is fixed in this job and stays as it is, although it is not a multiple of the step",)
     assert front.rounded(1, 0.0001).notes == ()
     alone = front.rounded(1, {"rod": 0.001})
     assert set(alone.dimensions[:, 0]) == {front.dimensions[1, 0]}
     assert alone.notes == ("crank has no step and stays as it is", "offset has no step and stays as it is")
-    with pytest.raises(InputError, match="got offset, fixed in this job"):
+    with pytest.raises(InputError, match="got offset, fixed or with discrete values in this job;"):
         front.rounded(1, {"offset": 0.001})
 
 
@@ -448,7 +448,7 @@ def test_nothing_that_turns_is_said() -> None:
     front = solve(problem(PLAIN, {"transmission_angle": (0.02, None)}, **sizes, designs=4, samples=128))
     found = front.rounded(0, {"rod": 0.055, "offset": 0.018, "crank": 0.0332})
     assert (found.judged, len(found), found.met) == (0, 0, False)
-    assert "turns fully; give smaller steps" in found.message
+    assert "rotates fully; give smaller steps" in found.message
     assert len(found.designs) == 0
 
 
@@ -486,5 +486,5 @@ def test_very_many_numbers_are_refused_and_many_looked_at_nearby() -> None:
     rounding = "slidercrank.optimise.front.rounding_search._MOST"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rounding, 1 << 9)
-        with pytest.raises(InputError, match="at most 9 numbers are rounded together; got 10"):
+        with pytest.raises(InputError, match="at most 9 numbers may be rounded together; got 10"):
             wide.rounded(3, steps)

@@ -114,9 +114,9 @@ def test_an_option_of_a_choice_may_ask_for_its_slow_stroke() -> None:
     choice = [{"name": "tool", "option": options}]
     problem = parse_job(job(choice=choice))
     assert [(sheet.variant, sheet.sign) for sheet in sheets(problem)] == [(0, -1.0), (1, 1.0)]
-    with pytest.raises(JobError, match="slow stroke is either the outward or the inward one"):
+    with pytest.raises(JobError, match="slow stroke must be either the outward or the inward one"):
         parse_job(job(choice=choice, constraints={"slow_stroke": "inward"}))
-    with pytest.raises(JobError, match="choice: options that are chosen together ask for the same slow stroke"):
+    with pytest.raises(JobError, match="choice: options that are chosen together must have the same slow stroke"):
         parse_job(job(choice=[*choice, {"name": "other", "option": options[::-1]}]))
 
 
@@ -125,11 +125,11 @@ def test_an_option_of_a_choice_may_ask_for_its_slow_stroke() -> None:
     [
         (
             {"variables": {"offset": ["0 mm", "200 mm"]}},
-            "below 0; got an offset from 0 to 200 mm; let the offset reach",
+            "below 0; got an offset from 0 to 200 mm; let the offset go",
         ),
         (
             {"variables": {"offset": "0 mm"}, "objectives": {"time_ratio": None}},
-            "got an offset from 0 to 0 mm; let the offset reach below 0$",
+            "got an offset from 0 to 0 mm; let the offset go below 0$",
         ),
         ({"variables": {"offset": {"choices": ["10 mm", "20 mm"]}}}, "below 0; got an offset from 10 to 20 mm"),
         (
@@ -146,7 +146,7 @@ def test_an_option_of_a_choice_may_ask_for_its_slow_stroke() -> None:
         ),
         (
             {"variables": {"crank": ["60 mm", "80 mm"], "rod": ["300 mm", "600 mm"], "offset": ["-5 mm", "200 mm"]}},
-            r"slow from a time ratio of 1.01 on, .* allow 1.00\d+ at most; .*time_ratio = \{ min = 1.00\d+ \}",
+            r"slow from a time ratio of 1.01 unless .* allow at most 1.00\d+; .*time_ratio = \{ min = 1.00\d+ \}",
         ),
         ({"constraints": {"slow_stroke": "outwards"}}, 'must be "outward" or "inward"; got "outwards"; did you mean'),
         ({"objectives": {"slow_stroke": "minimise"}}, "objectives.slow_stroke: unknown key"),
@@ -184,7 +184,7 @@ def test_a_problem_in_python_refuses_what_has_no_side() -> None:
                 "slow_stroke": "equal",
             }
         )
-    with pytest.raises(InputError, match="let the offset reach below 0, or let the crank turn clockwise"):
+    with pytest.raises(InputError, match="let the offset go below 0, or let the crank turn clockwise"):
         solve(type(problem)(**{**vars(problem), "slow_stroke": "outward"}))
 
 
@@ -203,7 +203,10 @@ def test_infeasibility_names_the_slow_stroke_that_stands_in_the_way() -> None:
     asked = {"time_ratio": {"min": 1.3}, "peak_torque": {"max": "65 N m"}}
     front = solve(parse_job(job(constraints={**asked, "slow_stroke": "inward"}, objectives={"time_ratio": None})))
     assert front.status == "infeasible"
-    assert "slow stroke inward is asked, with the outward one slow or neither all else can be kept" in front.message
+    assert (
+        "slow stroke inward is required; all other requirements can be met if the outward stroke is slow, or neither"
+        in front.message
+    )
     front = solve(parse_job(job(constraints={**asked, "slow_stroke": "outward"}, objectives={"time_ratio": None})))
     assert front.status == "done"
 
@@ -220,10 +223,10 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_before_and_after_the_search()
     )
     assert after.startswith("in 8 of 8 designs the loaded stroke (the outward one, against the load) is the faster one")
     for sentence in (before, after):
-        assert 'require slow_stroke = "outward" among the constraints, with an offset of the other sign' in sentence
+        assert 'require slow_stroke = "outward" among the constraints, with the opposite sign of the offset' in sentence
     (before,) = expected_warnings(parse_job(job()))
     assert before.startswith("in some sampled designs")
-    assert "other sign" not in before
+    assert "opposite sign" not in before
 
 
 @pytest.mark.parametrize(

@@ -137,11 +137,11 @@ def test_direction_of_rotation_matters_when_the_strokes_are_loaded_differently()
 def test_no_crank_turns_fully() -> None:
     front = solve(problem({"transmission_angle": "maximise"}, crank=(0.15, 0.2), rod=(0.06, 0.1)))
     assert front.status == "infeasible"
-    assert "no crank turns fully" in front.message
+    assert "no crank rotates fully" in front.message
 
 
 def test_tables_of_a_job_are_no_problem_yet() -> None:
-    with pytest.raises(InputError, match="solve takes a problem; got dict; make one by problem or load_job"):
+    with pytest.raises(InputError, match="solve needs a problem; got dict; make one with problem or load_job"):
         solve({})  # type: ignore[arg-type]
 
 

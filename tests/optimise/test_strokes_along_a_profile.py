@@ -71,7 +71,7 @@ def test_offsets_of_both_signs_are_searched_and_may_both_have_the_slow_stroke() 
     front = solve(parse_job(job(**above)))
     assert front.status == "done"
     assert min(outward_to_inward(front.problem, front.dimensions)) >= 1.01 - 1e-4
-    with pytest.raises(JobError, match="let the offset reach below 0"):
+    with pytest.raises(JobError, match="let the offset go below 0"):
         parse_job(job(**above, mechanism={"speed_profile": None}))
 
 
@@ -201,7 +201,10 @@ def test_an_infeasible_job_says_that_the_slow_stroke_stands_in_the_way() -> None
     strong = {"speed_profile": {"cosines": [0.0], "sines": [0.6]}}
     front = solve(parse_job(job(mechanism=strong, constraints={"slow_stroke": "inward"})))
     assert front.status == "infeasible"
-    assert "slow stroke inward is asked, with the outward one slow or neither all else can be kept" in front.message
+    assert (
+        "slow stroke inward is required; all other requirements can be met if the outward stroke is slow, or neither"
+        in front.message
+    )
     assert "outward-to-inward time ratio" not in front.message
 
 

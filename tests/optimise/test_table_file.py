@@ -113,16 +113,19 @@ def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbe
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a;b\n1,5;2.5\n", "must have one decimal sign; got 1,5 and 2.5; write all numbers alike"),
-        ('a,b\n"1,300",5\n', "must show its decimal sign; got 1,300, which may mean a thousand times as much"),
-        ("a;b\n1,300;2.500\n", "must show its decimal sign; got 1,300 and 2.500"),
+        ("a;b\n1,5;2.5\n", "must use one decimal sign; got 1,5 and 2.5; write all numbers alike"),
+        (
+            'a,b\n"1,300",5\n',
+            "must have an unambiguous decimal sign; got 1,300, which may mean a thousand times as much",
+        ),
+        ("a;b\n1,300;2.500\n", "must have an unambiguous decimal sign; got 1,300 and 2.500"),
         ("a;b\n12.34,5;2\n", 'row 2, column "a": must be a number; got "12.34,5"'),
         ("a;b\n1;2 mm\n", 'row 2, column "b": must be a number; got "2 mm"; write 2, as the unit belongs'),
         ("a;b\n1;=A2\n", 'got the formula "=A2"; save values instead of formulas'),
-        ("a,b\n0,5,1\n", "row 2 must have 2 cells, as the first line; got 3; .* separate them by semicolons"),
-        ("a,b\n\n1\n", "row 3 must have 2 cells, as the first line; got 1"),
-        ("sep=;\na,b\n1,2\n", 'must have its cells separated as its line "sep=;" says; got "a,b"; correct that line'),
-        ("1;2\n3;4\n", "must begin with a line that names its columns, with units; got '1, 2'"),
+        ("a,b\n0,5,1\n", "row 2 must have 2 cells, like the first line; got 3; .* separate them by semicolons"),
+        ("a,b\n\n1\n", "row 3 must have 2 cells, like the first line; got 1"),
+        ("sep=;\na,b\n1,2\n", 'must separate its cells as its line "sep=;" states; got "a,b"; correct that line'),
+        ("1;2\n3;4\n", "must begin with a line of column names with units; got '1, 2'"),
     ],
 )
 def test_a_number_that_could_be_another_one_is_refused_with_row_and_remedy(text: str, words: str) -> None:

@@ -27,7 +27,7 @@ def test_random_titles_above_random_tables_are_skipped_and_counted(separator: st
         table = read_table(text, "the file")
         assert table.heads == ("time (ms)", *(f"force {n} (N)" for n in range(1, width))), text
         np.testing.assert_array_equal(np.column_stack(table.numbers(range(width))), numbers)
-        said = f"{titles} title line{'s' if titles > 1 else ''} above the names of the columns skipped"
+        said = f"{titles} title line{'s' if titles > 1 else ''} above the column names skipped"
         assert said in table.understood(range(width))
 
 
@@ -50,7 +50,7 @@ def test_what_may_be_a_row_or_the_names_is_no_title(text: str, titles: int, head
 
 
 def test_a_row_of_more_cells_names_the_lines_above_as_a_cause() -> None:
-    with pytest.raises(InputError, match=r"row 2 must have 2 cells.*or delete lines above the names of the columns"):
+    with pytest.raises(InputError, match=r"row 2 must have 2 cells.*or delete lines above the column names"):
         read_table("Press 7,a\n1,2,3\n4,5,6\n", "the file")
 
 

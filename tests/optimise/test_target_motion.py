@@ -104,15 +104,15 @@ motion_deviation = "minimise"
             "angle,position\n0,1\n",
             'the columns have no units; got "angle", "position"; write, for example, "angle .deg.,position .mm.',
         ),
-        ("crank_angle_deg,position_mm\n0,100\n90\n", "row 3 must have 2 cells, as the first line; got 1"),
+        ("crank_angle_deg,position_mm\n0,100\n90\n", "row 3 must have 2 cells, like the first line; got 1"),
         (
             "crank_angle_deg,position_mm\n0,100\n90,wide\n180,120\n",
             'row 3, column "position_mm": must be a number; got "wide"',
         ),
         ("crank_angle_deg,position_mm\n0,100\n90,110\n80,120\n", "must increase"),
-        ("crank_angle_deg,position_mm\n0,100\n90,110\n", "3 different points at least"),
+        ("crank_angle_deg,position_mm\n0,100\n90,110\n", "at least 3 different points"),
         ('crank_angle_deg,position_mm\n"0,100\n', "must be a table in CSV; got unexpected end of data in row 2"),
-        ("", "must begin with a line that names its columns"),
+        ("", "must begin with a line of column names"),
     ],
 )
 def test_a_wrong_file_of_points_is_refused(content: str | None, said: str, tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_a_file_of_too_many_points_is_named_with_what_to_do(tmp_path: Path) -> N
     lines = [f"{0.03 * place:.2f},100" for place in range(11_000)]
     (tmp_path / "motion.csv").write_text("\n".join(["crank_angle_deg,position_mm", *lines]), encoding="utf-8")
     given = job({"file": "motion.csv"}, {"motion_deviation": "minimise"})
-    said = r"target_motion\.file: \"motion\.csv\" must have at most 10,000 points that count; got 11,000; .* line in 2"
+    said = r"target_motion\.file: \"motion\.csv\" must have at most 10,000 significant points; got 11,000; .* line in 2"
     with pytest.raises(JobError, match=said):
         problem(given, folder=tmp_path)
 
@@ -137,7 +137,7 @@ def test_a_file_elsewhere_is_refused(tmp_path: Path) -> None:
         (tmp_path / "job.toml").write_text(TOML.replace("motion.csv", file))
         with pytest.raises(JobError, match="must lie beside the job file"):
             load_job(tmp_path / "job.toml")
-    with pytest.raises(JobError, match="a file lies beside the job file"):
+    with pytest.raises(JobError, match="a file must lie beside the job file"):
         parse_job(job({"file": "motion.csv"}, {"motion_deviation": "minimise"}))
 
 
@@ -145,7 +145,7 @@ def test_a_file_elsewhere_is_refused(tmp_path: Path) -> None:
 def test_a_deviation_without_a_target_is_refused(table: str) -> None:
     asked = {"objectives": {"motion_deviation_rms": "minimise"}, "constraints": {"motion_deviation_rms": {"max": 1e-3}}}
     data = job(None, {"time_ratio": "maximise"})
-    with pytest.raises(JobError, match=rf"{table}.motion_deviation_rms: .* comes from a target motion; got none"):
+    with pytest.raises(JobError, match=rf"{table}.motion_deviation_rms: .* needs a target motion; got none"):
         parse_job({**data, table: asked[table]})
 
 

@@ -32,15 +32,14 @@ def refusal(text: str) -> str:
 
 REFUSED = {
     "[[load]\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
-        "[[load]; write [[load]]"
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got [[load]; write [[load]]"
     ),
     "\n[variables  # of the search\n": (
-        "line 2: a heading must be one name between the same brackets, its parts joined by points; got "
+        "line 2: a heading must be one name in matching brackets, its parts joined by dots; got "
         "[variables; write [variables]"
     ),
     "variables]\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got "
         "variables]; write [variables]"
     ),
     "[friction]\nguide = .5\n": (
@@ -144,30 +143,29 @@ REFUSED = {
         'line 4, load #2.force: a value with a unit must be in quotes; got force = 2 N; write force = "2 N"'
     ),
     "[sections,material]\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got "
         "[sections,material]; write [sections.material]"
     ),
     "[ objec tives ]\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got [ "
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got [ "
         "objec tives ]; write [objectives]"
     ),
     "objectives:\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got "
         "objectives:; write [objectives]"
     ),
     "{objectives}\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got "
         "{objectives}; write [objectives]"
     ),
     "(load)\n": (
-        "line 1: a heading must be one name between the same brackets, its parts joined by points; got "
-        "(load); write [[load]]"
+        "line 1: a heading must be one name in matching brackets, its parts joined by dots; got (load); write [[load]]"
     ),
     "[mechanism]\nspeed = ''60 rpm''\n": (
         "line 2, mechanism.speed: text must be in straight quotes; got speed = ''60 rpm''; write speed = \"60 rpm\""
     ),
     '[mechanism]\nspeed = "60 rpm""\n': (
-        'line 2, mechanism.speed: there is one " too many; got speed = "60 rpm""; write speed = "60 rpm"'
+        'line 2, mechanism.speed: one " too many; got speed = "60 rpm""; write speed = "60 rpm"'
     ),
     '[mechanism]\nspeed "=60 rpm"\n': (
         'line 2, mechanism.speed: there must be = between a key and its value; got speed "=60 rpm"; '
@@ -203,8 +201,7 @@ REFUSED = {
         'mm"]; write crank = ["20 mm", "60 mm"]'
     ),
     '[variables]\ncrank = ["20 mm", "60 mm"]]\n': (
-        'line 2, variables.crank: there is one ] too many; got crank = ["20 mm", "60 mm"]]; write crank '
-        '= ["20 mm", "60 mm"]'
+        'line 2, variables.crank: one ] too many; got crank = ["20 mm", "60 mm"]]; write crank = ["20 mm", "60 mm"]'
     ),
     '[variables]\ncrank = "20 mm", "60 mm"]\n': (
         'line 2, variables.crank: a list must be in square brackets; got crank = "20 mm", "60 mm"]; '
@@ -243,7 +240,7 @@ REFUSED = {
         'write peak_torque = "minimise"'
     ),
     "größe = 1\n": (
-        'line 1, "größe": a key outside of quotes must be in the letters a to z, digits, _ and -; got '
+        'line 1, "größe": a key outside quotes must consist of the letters a to z, digits, _ and -; got '
         'größe = 1; write "größe" = 1'
     ),
     "of both strokes at full speed\n": (

@@ -202,19 +202,19 @@ def test_nothing_within_what_is_allowed_is_said() -> None:
 
 
 REFUSED: dict[str, tuple[object, int | None, str]] = {
-    "nothing": ({}, None, "nothing is wished"),
-    "all free": ({"peak_torque": "free"}, None, "nothing is wished"),
+    "nothing": ({}, None, "no wish was given"),
+    "all free": ({"peak_torque": "free"}, None, "no wish was given"),
     "no number": ({"peak_torque": float("nan")}, None, "must be a finite number; got nan"),
     "infinite": ({"peak_torque": "inf"}, None, "must be a finite number"),
     "another unit": ({"peak_torque": "5 mm"}, None, 'must be a torque; got "5 mm", which is a length'),
     "no unit": ({"peak_torque": "110"}, None, "with its unit"),
-    "no word": ({"peak_torque": "better"}, None, 'a wish is a value such as "25 N m", "improve"'),
+    "no word": ({"peak_torque": "better"}, None, 'a wish must be a value such as "25 N m", "improve"'),
     "no objective": ({"stroke": 0.2}, None, "one of the objectives peak_torque, time_ratio, footprint; got 'stroke'"),
     "twice": ({"time_ratio": 1.2, " time_ratio": "free"}, None, "got two for time_ratio"),
-    "no table": ("peak_torque", None, "wishes come by objective"),
-    "of no design": ({"peak_torque": "improve"}, None, "got no design; name one of the front"),
+    "no table": ("peak_torque", None, "wishes must be a dict by objective"),
+    "of no design": ({"peak_torque": "improve"}, None, "got none; name one of the front"),
     "all at once": (dict.fromkeys(("peak_torque", "time_ratio", "footprint"), "improve"), 3, "is Pareto-optimal"),
-    "only kept": ({"peak_torque": "keep"}, 3, "nothing is wished"),
+    "only kept": ({"peak_torque": "keep"}, 3, "no wish was given"),
     "better as worse": ({"time_ratio": "improve", "peak_torque": "may worsen to 1 mN m"}, 3, "which is better"),
     "no row": ({"time_ratio": "improve"}, 99, "a row must be one of the front"),
 }
@@ -246,8 +246,8 @@ def test_a_front_of_one_design_takes_wishes() -> None:
 
 def test_one_objective_or_no_design_is_refused() -> None:
     alone = solve(problem({"peak_torque": "minimise"}, HELD, samples=256))
-    with pytest.raises(InputError, match="for several objectives; got one, peak_torque"):
+    with pytest.raises(InputError, match="needs at least two objectives; got one, peak_torque"):
         wish(alone, {"peak_torque": 1.0})
     none = solve(problem({"peak_torque": "minimise", "time_ratio": "maximise"}, {"stroke": 0.9}, samples=256))
-    with pytest.raises(InputError, match="needs the designs of a front; got none: "):
+    with pytest.raises(InputError, match="needs a front with designs; this one is empty: "):
         wish(none, {"peak_torque": 1.0})

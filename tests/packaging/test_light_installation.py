@@ -124,7 +124,7 @@ def place(script: str, root: Path, tmp_path_factory: pytest.TempPathFactory) -> 
     done = run(f"{script}{COMMAND}", folder, "optimise", str(root / "runs/feeder.toml"), "--designs", "8", "--json")
     assert done.returncode == 0, done.stderr
     assert len(json.loads(done.stdout)["designs"]) == 8
-    assert 'without figures, which need the extra "figures": pip install "slidercrank[figures]"' in done.stderr
+    assert 'no figures drawn: they need the extra "figures": pip install "slidercrank[figures]"' in done.stderr
     (folder / "press.toml").write_text(PRESS, encoding="utf-8")
     return folder
 

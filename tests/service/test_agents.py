@@ -287,7 +287,7 @@ def test_a_cancelled_search_ends_soon_and_goes_on_to_the_same_front(agent: Agent
     (tmp_path / "job.toml").write_text(LONG, encoding="utf-8")
     expected = command("optimise", tmp_path / "job.toml", "--runs", tmp_path, "--no-figures")
     assert lasting(found) == lasting(expected)
-    assert "only an interrupted or cancelled run can go on" in agent.refused("optimise", resume=latest["run"])
+    assert "only an interrupted or cancelled run can continue; on" in agent.refused("optimise", resume=latest["run"])
 
 
 @pytest.mark.slow
@@ -295,8 +295,8 @@ def test_a_search_that_its_limit_cuts_off_says_so_and_goes_on(agent: Agent) -> N
     found = agent.answer("optimise", job=LONG, seconds=0.05)
     assert found.is_error
     sentence = text_of(found)
-    assert "its search took longer than its limit of 0.05 s" in sentence
-    (run,) = re.findall(r"go on with optimise, resume = (\S+)", sentence)
+    assert "its search reached its time limit of 0.05 s" in sentence
+    (run,) = re.findall(r"continue it with optimise, resume = (\S+)", sentence)
     assert agent.ask("optimise", resume=run)["status"] == "done"
 
 
@@ -315,7 +315,7 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
     for tool in ("check", "optimise", "ask"):
         inputs = {"crank": "100 mm", "rod": "400 mm", "offset": "30 mm"} if tool == "ask" else {}
         found = agent.answer(tool, job=job.replace("FUNCTION", "os:getcwd"), **inputs)
-        assert "only functions that the operator allows are run here; got os:getcwd" in text_of(found).replace('"', "")
+        assert "only functions that the operator allows may run here; got os:getcwd" in text_of(found).replace('"', "")
     (agent.folder / "job.toml").write_text(job.replace("FUNCTION", "own_loud:loud").replace("own_loud", "own_other"))
     shutil.copy(agent.folder / "own_loud.py", agent.folder / "own_other.py")
     command("optimise", agent.folder / "job.toml", "--runs", agent.runs, "--designs", 2, "--no-figures")
@@ -328,17 +328,17 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
     ("tool", "inputs", "sentence"),
     [
         ("lists", {}, "there is no tool 'lists'; choose from list, describe"),
-        ("list", {"what": "jobs"}, 'list takes nothing; got "what"; leave it out'),
-        ("describe", {}, "describe needs name; it is missing; add it"),
+        ("list", {"what": "jobs"}, 'list has no inputs; got "what"; leave it out'),
+        ("describe", {}, "describe needs name, which is missing; add it"),
         ("describe", {"name": "peak_torqe"}, "got 'peak_torqe'; did you mean peak_torque?"),
-        ("describe", {"name": "mechanism.nothing"}, "list what there is"),
+        ("describe", {"name": "mechanism.nothing"}, "call `list` for all names"),
         ("describe", {"name": 5}, "name must be text in quotes; got 5"),
         ("check", {"job": "feder"}, "got 'feder'; give one of them"),
         ("check", {"job": "name = "}, "line 1"),
         ("check", {"job": {"name": None}}, "name"),
         ("check", {"job": {"a": {"b": {"c": {"d": {"e": {"f": {"g": {"h": {"i": {"j": 1}}}}}}}}}}}, "at most 8 deep"),
         ("check", {"job": 5}, "job must be"),
-        ("optimise", {}, "a search is of a job, or goes on with a run; got neither"),
+        ("optimise", {}, "a search needs a job, or a run to continue; got neither"),
         ("optimise", {"job": "feeder", "resume": "latest"}, "got both"),
         ("optimise", {"resume": "latest", "seed": 2}, "leave them out"),
         ("optimise", {"resume": "nothing"}, "there is no run 'nothing'"),
@@ -348,25 +348,25 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
         ("front", {"run": "latest", "design": 99}, "the run has designs 1 to "),
         ("front", {"run": "latest", "where": ["nothing > 1"]}, "nothing"),
         ("front", {"run": "latest", "where": ["time_ratio > 99"]}, "none of the "),
-        ("front", {"run": "latest", "columns": ["nothing"]}, "no quantity or column is called 'nothing'"),
-        ("front", {"run": "latest", "knee": True, "design": 1}, "a design is chosen in one way"),
+        ("front", {"run": "latest", "columns": ["nothing"]}, "there is no quantity or column 'nothing'"),
+        ("front", {"run": "latest", "knee": True, "design": 1}, "a design must be chosen in one way"),
         ("front", {"run": "latest", "units": "feet"}, "units must be "),
         ("front", {"run": "\0"}, "a run is a folder in "),
         ("front", {"run": "x" * 5000}, "a run is a folder in "),
-        ("ask", {}, "a design is of a run or of a job; got neither"),
+        ("ask", {}, "a design must come from a run or a job; got neither"),
         ("ask", {"run": "latest", "crank": "20 mm"}, "leave out one of the two"),
         ("ask", {"run": "latest", "topics": ["pres"]}, "did you mean press?"),
-        ("ask", {"run": "latest", "inputs": {"rated_torque": "5 N m"}}, "rated_torque is an input of press"),
+        ("ask", {"run": "latest", "inputs": {"rated_torque": "5 N m"}}, "rated_torque is an input of the topic press"),
         ("ask", {"run": "latest", "inputs": {"nothing": "5 N m"}}, "got 'nothing'; leave it out"),
         ("ask", {"run": "latest", "topics": ["inverse"]}, "inverse needs slider_position; got none"),
-        ("ask", {"run": "latest", "topics": ["inverse", "press"]}, "inverse is asked alone"),
+        ("ask", {"run": "latest", "topics": ["inverse", "press"]}, "inverse may not be combined with other topics"),
         ("ask", {"run": "latest", "topics": ["press"], "inputs": {"rated_torque": "5 mm"}}, "rated_torque must be"),
         ("ask", {"job": "feeder", "crank": "20 mm"}, 'rod is needed; write it like rod "40 mm"'),
         ("ask", {"job": "feeder", "crank": "9 kg", "rod": "1 m", "offset": "0 m"}, "crank must be a length"),
         ("ask", {"job": "support", "topics": ["motor"], **SWUNG}, "swing analyses its designs"),
         ("ask", {"job": "feeder", "topics": ["pres"]}, "topics must name a topic"),
         ("front", {"run": "latest", "knee": True, "topsis": "stroke=1"}, "got knee and topsis; keep one"),
-        ("front", {"run": "latest", "topsis": "stroke, b"}, "a design is chosen by the objectives of its run"),
+        ("front", {"run": "latest", "topsis": "stroke, b"}, "a design must be chosen by the objectives of its run"),
         ("front", {"run": "latest", "where": ["time_ratio"]}, 'write it like "transmission_angle >= 40 deg"'),
         (
             "files",
@@ -513,9 +513,9 @@ def test_a_fault_of_the_server_is_one_sentence(monkeypatch: pytest.MonkeyPatch) 
         return run
 
     for error, sentence in (
-        (KeyError("x"), "unexpected KeyError: 'x'; this is a fault of slidercrank"),
-        (MemoryError(), "there must be memory enough"),
-        (OSError(28, "No space left on device"), "make room"),
+        (KeyError("x"), "unexpected KeyError: 'x'; this is a bug in slidercrank"),
+        (MemoryError(), "not enough memory"),
+        (OSError(28, "No space left on device"), "free some space"),
         (InputError("a rule; got it; mend it"), "a rule; got it; mend it"),
     ):
         monkeypatch.setitem(server._BY_NAME, "list", Tool("list", broken(error)))

@@ -135,7 +135,7 @@ def test_balance_is_that_of_the_model(job: Path, command: Command) -> None:
 def test_what_is_found_is_shown_and_drawn(job: Path, tmp_path: Path, command: Command) -> None:
     done = command("allocate", job, *ALLOCATE, "--kind", "RSS", "--figures", tmp_path / "figures")
     assert done.exit_code == 0, done.stderr
-    for words in ("0.04 mm", "the greatest that is possible", "1 µm more of it saves", "in the job: 29"):
+    for words in ("0.04 mm", "the greatest bound", "raising it by 1 µm saves", "in the job: cost 29"):
         assert words in done.stdout
     done = command("balance", job, "--offset", "60 mm", *ROD, "--measure", "rms", "--figures", tmp_path / "figures")
     assert done.exit_code == 0, done.stderr
@@ -162,7 +162,7 @@ def test_the_counterweight_that_is_shown_can_be_put_into_the_job(job: Path, comm
         (("allocate", "--offset", "60 mm", "--limit", "0.1"), "--limit must be a length with its unit"),
         (("allocate", "--limit", "0.1 mm"), "--offset is needed"),
         (("allocate", *ALLOCATE, "--kind", "average"), "kind must be 'worst case' or 'rss'"),
-        (("balance", "--offset", "60 mm", "--rod-mass", "2 kg"), "got --rod-mass alone; add --rod-radius"),
+        (("balance", "--offset", "60 mm", "--rod-mass", "2 kg"), "got only --rod-mass; add --rod-radius"),
         (("balance", "--offset", "60 mm", "--arm", "0.5 m"), "without a rod balance"),
         (("balance", "--offset", "60 mm", "--measure", "mean"), "measure must be"),
         (("balance", "--offset", "60 mm", "--mass", "2 mm"), "--mass must be a mass"),
@@ -187,7 +187,7 @@ def test_a_job_without_costs_has_no_allocation(job: Path, command: Command) -> N
     job.write_text(text[: text.index("[costs]")] + text[text.index("[variables]") :])
     done = command("allocate", job, *ALLOCATE)
     assert (done.exit_code, done.stdout) == (2, "")
-    assert "got a job without [costs]; add for example" in done.stderr
+    assert "this job has no [costs]; add for example" in done.stderr
 
 
 def test_check_says_what_the_tolerances_cost(job: Path, command: Command) -> None:

@@ -118,7 +118,7 @@ def test_figures_are_drawn_with_and_without_a_job(tmp_path: Path, command: Comma
         (("--crank", "40 mm", "--rod", "64 mm", "--speed", "5 m/s"), "--speed must be an angular speed"),
         (("--crank", "50 mm", "--rod", "60 mm", "--offset", "20 mm"), "rod must exceed crank + |offset|"),
         (("none.toml", "--crank", "50 mm"), "no such file"),
-        (("latest",), "got latest; a run stands in its place with --design N"),
+        (("latest",), "the job file latest does not exist; correct its name, or add --design N"),
     ],
 )
 def test_wrong_values_are_exit_code_2(arguments: tuple[str, ...], words: str, command: Command) -> None:

@@ -56,7 +56,7 @@ def test_a_run_without_designs_is_proven_infeasible(tmp_path: Path, command: Com
     assert command("optimise", job, "--no-figures").exit_code == 3
     done = command("certify", "latest")
     assert done.exit_code == 0
-    assert "proven: no design of the ranges meets all requirements" in done.stdout
+    assert "proven: no design within the ranges meets all requirements" in done.stdout
     assert json.loads(command("certify", "latest", "--json").stdout)["infeasible"] is True
 
 

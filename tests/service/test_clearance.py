@@ -84,7 +84,7 @@ def test_text_says_the_joint_and_the_numbers_with_their_uncertainty(run: Clearan
     assert "1 mm at the crank pin" in text
     assert "peak slider acceleration" in text
     assert "±" in text
-    assert "3 turns after 1" in text
+    assert "3 turns, after 1" in text
     assert "loads" not in text
     assert len(text.splitlines()) < 20
 
@@ -99,9 +99,11 @@ def test_a_run_cancelled_early_has_no_statistics() -> None:
 
 def test_ideal_joints_are_refused() -> None:
     ideal = replace(MACHINE, clearance=None)
-    with pytest.raises(InputError, match=r"needs a loose joint; got ideal joints only; add .* \[clearance\]"):
+    with pytest.raises(
+        InputError, match=r"needs a joint with clearance; all joints of this job are ideal; add .* \[clearance\]"
+    ):
         numbers(ideal, LINKAGE)
-    with pytest.raises(InputError, match="loose joint"):
+    with pytest.raises(InputError, match="needs a joint with clearance; all joints are ideal"):
         speed_runs(ideal, LINKAGE)
 
 

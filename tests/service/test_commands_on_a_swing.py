@@ -132,11 +132,16 @@ def test_inverse_gives_the_crank_angles_of_the_swing(command: Command, place: Pa
             at = float(linkage.at(math.radians(angle)).slider_position)
             found = asked(command, place, "inverse", "--design", number, f"--slider-position={1e3 * at!r} mm")
             assert [each["crank_angle_deg"] for each in found["solutions"]] == pytest.approx([angle], rel=1e-9)
-            assert "one other crank angle that gives it lies outside of the swing from 11.16 to 101.16" in found["note"]
+            assert (
+                "one other crank angle for this position lies outside the swing from 11.16 to 101.16" in found["note"]
+            )
     inside = float(linkage.at(math.radians(120.0)).slider_position)
     done = command("inverse", "latest", "--design", number, f"--slider-position={inside!r} m", "--runs", place / "runs")
     assert done.exit_code == 2
-    stays = r"stays between [\d.]+ and [\d.]+ mm while the crank swings from 11\.16 to 101\.16 deg; got [\d.]+ mm"
+    stays = (
+        r"must be between [\d.]+ and [\d.]+ mm, the slider's travel while the crank swings from 11\.16 to 101\.16 deg; "
+        r"got [\d.]+ mm"
+    )
     assert re.search(stays, " ".join(done.stderr.split()))
 
 
@@ -147,7 +152,7 @@ def test_inverse_gives_the_crank_angles_of_the_swing(command: Command, place: Pa
         ("analyse", ("--design", 1, "--show", "balance"), "swing analyses its designs"),
         ("analyse", ("--design", 1, "--measured", "curves.csv"), "swing analyses its designs"),
         ("report", ("--design", 1, "--measured", "curves.csv"), "what --measured compares is of a crank that turns"),
-        ("certify", (), "the residuals of the front tell how near its designs are to optimal"),
+        ("certify", (), "the residuals of the front show how close its designs are to optimal"),
         ("front", ("--where", "stroke >= 1 m"), "'stroke'"),
     ],
 )

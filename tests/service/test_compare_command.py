@@ -72,7 +72,7 @@ def test_the_table_says_the_same(names: list[str], command: Command) -> None:
         line = next(line for line in done.stdout.splitlines() if name in line)
         assert line.split()[:2] == [str(index + 1), name]
         assert f"{expected.hypervolumes[index]:.5f}" in line.split()
-    assert "Of the two neither dominates" in done.stdout
+    assert "Neither of the two dominates" in done.stdout
     assert "50.0" in done.stdout
 
 
@@ -96,8 +96,8 @@ def test_objectives_may_come_in_another_order(runs: Path, command: Command) -> N
 def test_wrong_comparisons_are_exit_code_2(names: list[str], runs: Path, command: Command) -> None:
     other = keep(runs, "other", part(slice(0, 9), names=("peak_torque", "transmission_angle")))
     for arguments, message in (
-        (names[:1], "two runs or more; got one"),
-        ([names[0], names[0]], "each run is compared once"),
+        (names[:1], "a comparison needs at least two runs; got one"),
+        ([names[0], names[0]], "a run may be named only once"),
         ([names[0], other], f"{other} has minimise peak_torque, maximise transmission_angle"),
         ([names[0], "absent"], "there is no run 'absent'"),
     ):

@@ -59,7 +59,7 @@ def test_the_command_tells_the_whole(pytestconfig: pytest.Config, command: Comma
     assert "energy change" in command(*line).stdout
     said = command("check", str(job)).stdout
     assert "on one crankshaft: 2 cylinders at 0, 180 deg" in said
-    assert "of all cylinders: torque, power" in said
+    assert "for all cylinders together: torque, power" in said
 
 
 @pytest.mark.parametrize(

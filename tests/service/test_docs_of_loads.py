@@ -41,7 +41,7 @@ def test_check_reports_of_an_example_what_the_page_says(example: Example, comman
     for line in example.reported:
         assert line in done.stdout + done.stderr
     assert example.reported or "load" not in example.tables
-    warned = "loads do more work on the machine than they take" in done.stdout + done.stderr
+    warned = "loads do more work on the machine than they absorb" in done.stdout + done.stderr
     assert warned == any("loads do more work" in line for line in example.reported)
 
 

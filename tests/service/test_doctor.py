@@ -42,7 +42,7 @@ def looked_at(command: Command, *options: object) -> tuple[int, dict[str, tuple[
 def test_a_fresh_machine_is_healthy_and_stays_as_it_is(runs: Path, command: Command) -> None:
     code, found = looked_at(command)
     assert code == 0
-    assert found["store"] == ("ok", f"there is none at {runs / 'slidercrank.db'} yet; the first job makes it")
+    assert found["store"] == ("ok", f"no store at {runs / 'slidercrank.db'} yet; the first job creates it")
     assert "slidercrank 0." in found["versions"][1]
     assert not runs.exists()
 
@@ -57,9 +57,9 @@ def test_a_store_in_use_is_healthy(file: Path, command: Command) -> None:
     assert code == 0
     assert {name: grade for name, (grade, _) in found.items() if grade != "ok"} == {}
     assert found["jobs"] == ("ok", "1 done, 1 queued")
-    assert found["workers"] == ("ok", "1 at work")
+    assert found["workers"] == ("ok", "1 running")
     text = command("doctor").stdout
-    assert "ok       integrity          nothing is damaged\n" in text
+    assert "ok       integrity          no damage found\n" in text
 
 
 def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Command) -> None:
@@ -67,7 +67,7 @@ def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Comm
         add(store)
     code, found = looked_at(command)
     assert (code, found["workers"][0]) == (1, "problem")
-    assert "1 job without one; start slidercrank serve or slidercrank worker" in found["workers"][1]
+    assert "1 job waiting without a worker; start slidercrank serve or slidercrank worker" in found["workers"][1]
 
 
 def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) -> None:
@@ -83,8 +83,8 @@ def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) 
         end_lease(str(file), 1)
         code, found = looked_at(command)
     assert code == 0
-    assert found["workers"] == ("note", "1 at work; 1 not heard of for more than 120 s: stopped, or cut off")
-    assert found["leases"] == ("note", "those of jobs 1 have ended; the next free worker goes on with them")
+    assert found["workers"] == ("note", "1 running; 1 not heard from for more than 120 s: stopped or disconnected")
+    assert found["leases"] == ("note", "the leases of jobs 1 have expired; the next free worker continues them")
 
 
 def test_what_is_no_database_is_a_problem(file: Path, command: Command) -> None:
@@ -101,7 +101,7 @@ def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, 
     connection.close()
     code, found = looked_at(command)
     assert (code, found["tables"][0]) == (1, "problem")
-    assert "they have version 9999, this software knows" in found["tables"][1]
+    assert "their version is 9999, but this release supports" in found["tables"][1]
     with sqlite3.connect(file) as connection:
         assert connection.execute("SELECT version_num FROM alembic_version").fetchall() == [("9999",)]
     connection.close()
@@ -150,7 +150,7 @@ def test_a_full_disk_is_a_problem(
 def test_a_place_that_cannot_be_written_is_a_problem(command: Command) -> None:
     code, found = looked_at(command, "--runs", "/proc/none")
     assert (code, found["runs"][0]) == (1, "problem")
-    assert "/proc/none cannot be written" in found["runs"][1]
+    assert "/proc/none is not writable" in found["runs"][1]
 
 
 @needs_proc

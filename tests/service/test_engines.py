@@ -40,12 +40,12 @@ def test_workers_share_the_processors(monkeypatch: pytest.MonkeyPatch) -> None:
     ("options", "words"),
     [
         ({"cores": 2, "scheduler": "tcp://127.0.0.1:8786"}, "keep one"),
-        ({"tls_ca": Path("ca.pem")}, "are for --scheduler"),
+        ({"tls_ca": Path("ca.pem")}, "need --scheduler"),
         ({"scheduler": "tls://127.0.0.1:8786", "tls_ca": Path("ca.pem")}, "give all three"),
-        ({"scheduler": "somewhere"}, "is like tcp://host:8786"),
+        ({"scheduler": "somewhere"}, "must look like tcp://host:8786"),
         (
             {"scheduler": "tls://h:1", "tls_ca": Path("a"), "tls_cert": Path("b"), "tls_key": Path("c")},
-            "must be there; got a;",
+            "must exist; got a;",
         ),
     ],
 )

@@ -206,10 +206,10 @@ def test_a_design_like_another_is_asked_for_by_it(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("front", "latest", "--sort", "peak_torqe"), "no quantity or column is called 'peak_torqe'; did you mean"),
+        (("front", "latest", "--sort", "peak_torqe"), "there is no quantity or column 'peak_torqe'; did you mean"),
         (("front", "latest", "--lexicographic", "yours"), "got 'yours'; name one of them"),
         (("front", "latest", "--lexicographic", "stroke"), "peak_torque_robust, .*got 'stroke'; name one of them"),
-        (("like", "latest", 1, "--where", "yours >= 3"), "no quantity or column is called 'yours'"),
+        (("like", "latest", 1, "--where", "yours >= 3"), "there is no quantity or column 'yours'"),
     ],
 )
 def test_an_unknown_name_is_refused_with_those_of_the_run(

@@ -163,7 +163,7 @@ def test_panels_mark_the_extremes_on_their_curves(name: str, count: int, tmp_pat
             # A degree in ten million: the sampled angles have those of the marks on both sides.
             distances = np.abs(curve.x[:, None] - mark.x[None, :]).min(axis=0)
             assert np.all(distances < 1e-7)
-        assert bool(marks) != ("undetermined" in format_text(panel.note))
+        assert bool(marks) != ("undefined" in format_text(panel.note))
     assert overlaps(draw_sheet(sheet)) == []
     file = TOPICS["extremes"].of(MACHINES[name], LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")

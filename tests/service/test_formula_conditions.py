@@ -56,18 +56,18 @@ def test_a_formula_that_has_a_column_is_that_column() -> None:
 @pytest.mark.parametrize(
     ("condition", "said"),
     [
-        ("offst - crank >= 1 mm", "no quantity or column is called 'offst'; did you mean offset"),
+        ("offst - crank >= 1 mm", "there is no quantity or column 'offst'; did you mean offset"),
         ("offset - crank >= 1 N", 'must be a length; got "1 N", which is a force'),
         ("offset - crank >= 1", "must be a length with its unit"),
         ("offset - peak_torque >= 1 mm", "subtracts mm and N m"),
-        ("offset - slow_stroke >= 1 mm", "holds words|subtracts mm and no unit"),
+        ("offset - slow_stroke >= 1 mm", "a column of words|subtracts mm and no unit"),
         ("2 * 3 >= 1", r"got 2 \* 3, which is the same for every design"),
         ("offset - >= 1 mm", "missing at its end"),
-        ("offset - crank", "a condition is a quantity or a formula, one of"),
+        ("offset - crank", "a condition must have a quantity or a formula, then one of"),
         ("crank < offset + 3 mm", r'compare the difference, like "crank - \(offset \+ 3 mm\) < 0 mm"'),
         ("3 mm <= crank", 'write it like "crank >= 3 mm"'),
-        ("10 mm <= crank <= 50 mm", "compares once; got .*; give two conditions"),
-        ("mechanism.speed > 3 rpm", "no column is called 'mechanism.speed': numbers that vary have one; leave it out"),
+        ("10 mm <= crank <= 50 mm", "may only have one comparison; got .*; give two conditions"),
+        ("mechanism.speed > 3 rpm", "there is no column 'mechanism.speed': only variables have one; leave it out"),
     ],
 )
 def test_a_wrong_formula_in_a_condition_is_refused(condition: str, said: str) -> None:

@@ -57,7 +57,7 @@ def test_optimise_says_within_seconds_that_the_disk_of_the_store_is_full_and_goe
     assert stopped.exit_code == 2
     assert "the store needs room on its disk" in stopped.stderr
     assert f"{runs} has " in stopped.stderr
-    assert " free; make room; what was found until then is kept" in stopped.stderr
+    assert " free; free some space; the designs found so far are kept" in stopped.stderr
     full_after(0, lifted=True)
     (run,) = (path for path in runs.iterdir() if path.is_dir())
     assert f"optimise --resume {run.name}" in stopped.stderr
@@ -77,7 +77,7 @@ def test_what_a_database_says_of_a_full_disk_is_told_with_the_place(tmp_path: Pa
             for name in range(20):
                 connection.execute(text(f"CREATE TABLE t{name} (a)"))
 
-    with pytest.raises(Full, match=rf"{tmp_path} has .* free; make room"):
+    with pytest.raises(Full, match=rf"{tmp_path} has .* free; free some space"):
         grow()
     database.close()
 
@@ -92,7 +92,7 @@ def test_a_run_folder_on_a_full_disk_names_the_place(
     job = fronts.job_file(tmp_path)
     stopped = command("optimise", job, "--no-figures", "--store", tmp_path / "store.db")
     assert stopped.exit_code == 2
-    assert f"a run needs room on its disk; {runs} has " in stopped.stderr
+    assert f"Disk full: {runs} has " in stopped.stderr
 
 
 def test_a_job_that_finds_another_disk_full_waits_for_it_and_is_not_failed(
@@ -115,7 +115,7 @@ def test_a_job_that_finds_another_disk_full_waits_for_it_and_is_not_failed(
             time.sleep(0.02)
         assert store.job(job.id).state == "done"
         reasons = [event.data.get("reason", "") for event in store.events(job.id)]
-    assert any(f"waits: a job needs room on the disks it writes to; {tmp_path / 'cache'} has" in one for one in reasons)
+    assert any(f"waits: Disk full: {tmp_path / 'cache'} has" in one for one in reasons)
 
 
 def solve_meanwhile(

@@ -79,7 +79,7 @@ CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "one formula written twice": (
         changed_job(constraints={"crank + rod": {"min": "300 mm"}, "crank +  rod": {"max": "200 mm"}}),
-        "requirements on one formula must leave something",
+        "the requirements on one formula must not contradict each other; something",
     ),
     "a slow stroke on the other side": (
         changed_job(constraints={"slow_stroke": "outward"}, variables={"offset": ["0 mm", "200 mm"]}),

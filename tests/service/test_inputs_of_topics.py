@@ -65,9 +65,9 @@ def test_any_value_gives_the_same_numbers_by_option_and_in_the_api(
 
 def test_a_topic_that_the_machine_lacks_is_refused_with_its_input_too(client: httpx.Client, solved: Solved) -> None:
     answer = client.get(f"{solved.path}/designs/2/topics/tolerances", params={"limit_mm": 0.3})
-    assert (answer.status_code, "a position error comes from tolerances; got none" in answer.text) == (422, True)
+    assert (answer.status_code, "a position error needs tolerances; this job has none" in answer.text) == (422, True)
     answer = client.get(f"{solved.path}/designs/2/topics/motor", params={"limit_mm": 0.3})
-    assert "the topic motor is asked with nothing else; got limit; leave limit out" in answer.text
+    assert "the topic motor has no inputs; got limit; leave limit out" in answer.text
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_an_input_without_its_unit_is_refused_and_not_lost(
     answer = client.get(f"{solved.path}/designs/2/{path}", params=given)
     assert answer.status_code == 422
     name = next(iter(given))
-    assert f"{name} has its unit in its name here; got {name}; call it {name}_" in answer.json()["detail"]
+    assert f"{name} must have its unit in its name here; got {name}; call it {name}_" in answer.json()["detail"]
 
 
 def test_the_list_of_topics_has_what_each_is_asked_with(client: httpx.Client) -> None:
@@ -119,7 +119,7 @@ def test_texts_and_numbers_in_si_are_read_and_none_is_not_given() -> None:
     assert read_inputs((LIMIT,), {"limit": "0.5 mm"}, "yield") == read_inputs((LIMIT,), {"limit": 5e-4}, "yield")
     assert read_inputs((LIMIT,), {"limit": None}, "yield") == {}
     assert Input("share", RATIO, "Share", "A share.").read("0.5", "share") == 0.5
-    with pytest.raises(InputError, match="yield is asked with limit; got speed; leave speed out"):
+    with pytest.raises(InputError, match="yield may only be given limit; got speed; leave speed out"):
         read_inputs((LIMIT,), {"speed": 1.0}, "yield")
-    with pytest.raises(InputError, match="motor is asked with nothing else; got limit; leave limit out"):
+    with pytest.raises(InputError, match="motor has no inputs; got limit; leave limit out"):
         read_inputs((), {"limit": 1.0}, "motor")

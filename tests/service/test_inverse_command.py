@@ -99,7 +99,7 @@ def test_a_dead_centre_has_no_crank_speed_and_says_why(command: Command) -> None
     angle = math.degrees(float(LINKAGE.dead_centre_angles[1]))
     assert solution.pop("crank_angle_deg") == pytest.approx(angle, rel=1e-9)
     assert solution == {"stroke": None, "crank_speed_rpm": None, "crank_acceleration_rad_s2": None}
-    assert "a slider at rest goes with any crank speed" in found["note"]
+    assert "the slider is at rest at any crank speed" in found["note"]
     done = command("inverse", *arguments)
     assert "dead centre" in done.stdout
     assert "undefined" in done.stdout
@@ -183,7 +183,7 @@ def test_a_linkage_that_does_not_turn_fully_has_solutions(command: Command) -> N
         (("--crank", "50 mm", "--rod", "50 mm", "--slider-position", "0 mm"), "leaves the crank free to turn"),
         (("--crank", "50 mm", "--rod", "60 mm", "--offset", "200 mm", *HERE), "the linkage closes at no crank angle"),
         (("none.toml", *SIZES, *HERE), "no such file"),
-        (("latest", *SIZES, *HERE), "got latest; a run stands in its place with --design N"),
+        (("latest", *SIZES, *HERE), "the job file latest does not exist; correct its name, or add --design N"),
         ((*HERE, "--design", "3"), "name it: slidercrank inverse RUN --design NO"),
     ],
 )

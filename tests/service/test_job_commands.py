@@ -74,7 +74,10 @@ def test_schema_is_that_of_job_files(command: Command) -> None:
 def test_a_number_without_a_unit_is_told_as_it_is_read(tmp_path: Path, command: Command) -> None:
     job = fronts.job_file(tmp_path)
     job.write_text(job.read_text().replace('["20 mm", "200 mm"]', "[0.02, 0.2]"))
-    assert "a number without a unit is in SI: variables.crank = 0.02 is 0.02 m = 20 mm" in command("check", job).stdout
+    assert (
+        "numbers without a unit are read in SI: variables.crank = 0.02 is 0.02 m = 20 mm"
+        in command("check", job).stdout
+    )
 
 
 def test_doubtful_numbers_come_first_in_a_check_and_are_said_by_every_command(tmp_path: Path, command: Command) -> None:

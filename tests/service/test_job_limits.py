@@ -43,7 +43,7 @@ def test_time_is_spent_when_it_has_passed() -> None:
     time.sleep(0.06)
     assert budget.spent()
     message = budget.explained(result("cancelled")).message
-    assert message == "2 designs; its search took longer than its limit of 0.05 s"
+    assert message == "2 designs; its search reached its time limit of 0.05 s"
 
 
 def test_a_search_that_was_done_in_time_says_nothing_of_limits() -> None:

@@ -44,7 +44,7 @@ def test_a_design_like_another_with_more_transmission_angle(kept: Path, command:
 def test_what_cannot_be_met_is_exit_code_3(kept: Path, command: Command) -> None:
     done = command("like", "latest", 1, "--runs", kept, "--where", "stroke <= 200 mm", "--json")
     assert done.exit_code == 3
-    assert "stroke at most 200 mm, where exactly 280 mm is asked already" in done.stderr
+    assert "stroke at most 200 mm, where exactly 280 mm is required already" in done.stderr
     assert json.loads(done.stdout)["status"] == "infeasible"
 
 
@@ -54,10 +54,14 @@ def test_what_cannot_be_met_is_exit_code_3(kept: Path, command: Command) -> None
         (99, ["rod <= 300 mm"], "the run has designs 1 to"),
         (1, ["rod < 300 mm"], ">=, <= or =; got 'rod < 300 mm'"),
         (1, ["rod <= 300"], "the value in 'rod <= 300'"),
-        (1, ["slow_stroke = inward"], "formulas of these; got 'slow_stroke = inward'"),
-        (1, ["residual <= 1"], "by quantities, dimensions and formulas of these"),
-        (1, ["rod <= 200 mm", "rod >= 300 mm"], "the conditions on rod contradict each other"),
-        (1, ["rod >= 60 mm"], "already meets what is added"),
+        (
+            1,
+            ["slow_stroke = inward"],
+            "condition must begin with a quantity, a dimension or a formula of these; got 'slow_stroke = inward'",
+        ),
+        (1, ["residual <= 1"], "must begin with a quantity, a dimension or a formula of these"),
+        (1, ["rod <= 200 mm", "rod >= 300 mm"], "the conditions on rod must not contradict each other"),
+        (1, ["rod >= 60 mm"], "already meets the added conditions"),
     ],
 )
 def test_a_wrong_request_is_exit_code_2(

@@ -23,7 +23,7 @@ measured_from = "outer dead centre"
 during = "outward stroke"
 """
 SENTENCE = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
-QUESTION = f"in every {{}} loads do more work on the machine than they take, by 98 J a cycle: load #1 ({SENTENCE})"
+QUESTION = f"in every {{}} loads do more work on the machine than they absorb, by 98 J per cycle: load #1 ({SENTENCE})"
 
 
 def test_check_says_of_a_load_what_it_does_and_questions_one_that_pushes(tmp_path: Path, command: Command) -> None:
@@ -47,7 +47,7 @@ def test_a_run_has_the_same_numbers_on_the_terminal_and_in_its_report(tmp_path: 
     place, file = tmp_path / "runs", tmp_path / "report.html"
     assert command("optimise", job, "--runs", place, "--no-figures").exit_code == 0
     told = re.findall(
-        r"more work on the machine than they take, by .*? a cycle", command("front", "latest", "--runs", place).output
+        r"more work on the machine than they absorb, by .*? a cycle", command("front", "latest", "--runs", place).output
     )
     assert len(told) == 1
     reported = command("report", "latest", "--runs", place, "--design", 1, "--out", file)

@@ -76,7 +76,9 @@ def test_the_command_says_why_a_locked_design_has_no_mean_torque(command: Comman
     (listed,) = re.findall(r"([^:]*): friction locks this design: the self-locking margin must be more", text)
     titles = [QUANTITIES[name].title for name in ("mean_torque", "delivered_work", *FORCED)]
     assert all(title in listed for title in (*titles, "share"))
-    assert "friction locks" in " ".join(command(*line, "--show", "extremes").stdout.split("Extremes over")[1].split())
+    assert "friction locks" in " ".join(
+        command(*line, "--show", "extremes").stdout.split("Extreme values over")[1].split()
+    )
 
 
 def test_the_api_says_why_a_locked_design_has_no_mean_torque(client: httpx.Client) -> None:
@@ -133,7 +135,7 @@ def test_a_sweep_has_no_forces_where_friction_locks_and_says_why(command: Comman
         assert row["reason"].startswith("efficiency, peak torque: friction locks this design: the self-locking")
     done = command(*line, *of)
     assert not re.search(r"-inf", done.stdout)
-    assert "2 of 3 without a value; the first: efficiency, peak torque: friction locks" in " ".join(done.stderr.split())
+    assert "2 of 3 have no value; the first: efficiency, peak torque: friction locks" in " ".join(done.stderr.split())
     alone = json.loads(command(*line, "--of", "efficiency", "--json").stdout)
     assert alone[1]["reason"].startswith("friction locks this design")
 

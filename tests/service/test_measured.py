@@ -128,12 +128,12 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "must begin with a line that names its columns; got an empty file"),
-        ("\n\n# only this\n", "must begin with a line that names its columns; got an empty file"),
-        ("crank_angle_deg,slider_position_mm\n", "must have rows below the names of its columns; got none"),
+        ("", "must begin with a line of column names; got an empty file"),
+        ("\n\n# only this\n", "must begin with a line of column names; got an empty file"),
+        ("crank_angle_deg,slider_position_mm\n", "must have rows below the column names; got none"),
         (
             "0,430\n90,300\n",
-            "must begin with a line that names its columns, with units; got '0, 430'; add one such as crank_angle_deg",
+            "must begin with a line of column names with units; got '0, 430'; add one such as crank_angle_deg",
         ),
         (PLAIN.replace("300.5", "abc"), 'row 3, column "slider_position_mm": must be a number; got "abc"'),
         (PLAIN.replace("300.5", "inf"), 'row 3, column "slider_position_mm": must be a number; got "inf"'),
@@ -144,13 +144,16 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("\n0,", "\ndeg,"), 'row 2, column "crank_angle_deg": must be a number; got "deg"'),
         (
             PLAIN.replace("300.5", "300,5"),
-            "row 3 must have 2 cells, as the first line; got 3; correct it, or delete lines above the names",
+            "row 3 must have 2 cells, like the first line; got 3; correct it, or delete lines above the column names",
         ),
         (
             PLAIN.replace("300.5", '"300,5"').replace("240", "240.5"),
-            "must have one decimal sign; got 300,5 and 240.5; write all numbers alike",
+            "must use one decimal sign; got 300,5 and 240.5; write all numbers alike",
         ),
-        (PLAIN.replace("300.5", '"1,300"'), "must show its decimal sign; got 1,300, which may mean a thousand times"),
+        (
+            PLAIN.replace("300.5", '"1,300"'),
+            "must have an unambiguous decimal sign; got 1,300, which may mean a thousand times",
+        ),
         (PLAIN.replace("300.5", '"300"x'), "must be a table in CSV; got ',' expected after '\"' in row 3; correct it"),
         (
             PLAIN.replace("slider_position_mm", "crank_angle_deg"),
@@ -260,7 +263,7 @@ def test_the_command_says_what_it_read_and_which_sign_is_decimal(tmp_path: Path,
         "point is read as a decimal point, so 1.300 is 1.3; if it separates thousands, write 1300"
     )
     assert json.loads(command(*arguments, "--json").stdout)["measured"]["understood"] == expected
-    assert f"Read from the file: {expected}" in " ".join(command(*arguments).stdout.split())
+    assert f"Interpretation of the file: {expected}" in " ".join(command(*arguments).stdout.split())
 
 
 def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: Command) -> None:
@@ -291,7 +294,7 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     place = tmp_path / "figures"
     told = command(*arguments, "--figures", place)
     assert told.exit_code == 0, told.stderr
-    for words in ("Measured minus computed, 200 rows", f"{position['rms_mm']:.6g}", "-8 ", "left out: room"):
+    for words in ("Measured minus computed, 200 rows", f"{position['rms_mm']:.6g}", "-8 ", "omitted: room"):
         assert words in told.stdout
     assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
     sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(measured_text(file), fronts.MACHINE, LINKAGE))
@@ -329,7 +332,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
     assert "undefined" in stream.getvalue()
     assert "nan" not in stream.getvalue()
     (panel,) = topic.figure(locked, LINKAGE, measured=measured).panels
-    assert panel.note == "undetermined where friction locks"
+    assert panel.note == "undefined where friction locks"
     draw_sheet(topic.figure(locked, LINKAGE, measured=measured))
 
 

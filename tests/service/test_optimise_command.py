@@ -170,7 +170,7 @@ def test_a_place_that_cannot_be_written_is_said_before_anything_is_computed(
     (tmp_path / "file").write_text("")
     done = command("optimise", job, "--runs", tmp_path / "file" / "runs")
     assert done.exit_code == 2
-    assert "must be a folder that can be written" in done.stderr
+    assert "must be a writable folder" in done.stderr
 
 
 def test_a_fault_is_one_message_with_the_place_of_the_log(
@@ -231,7 +231,7 @@ def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
     for store in (foreign, "postgresql://clerk:geheim@127.0.0.1:1/jobs"):
         done = command("optimise", job, "--no-figures", "--designs", 3, "--store", store)
         assert done.exit_code == 0, done.stderr
-        assert "without it, `jobs` does not list the run" in done.stderr
+        assert "without a store, `jobs` does not list this run" in done.stderr
         (run,) = (path for path in runs.iterdir() if path.is_dir())
         assert (run / "front.csv").exists()
         assert "geheim" not in (run / "log.txt").read_text() + done.stderr

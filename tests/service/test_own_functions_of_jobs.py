@@ -122,7 +122,9 @@ def test_a_function_that_did_not_answer_is_not_asked_again(
     ended = store.job(job)
     assert (ended.state, len(starts)) == ("cancelled", 1)
     assert ended.records > 0
-    assert ended.reason.startswith("cancelled; functions of its own took too long to tell of what was found")
+    assert ended.reason.startswith(
+        "cancelled; custom functions were too slow to report the designs found so far, found"
+    )
     assert functions() <= before
 
 

@@ -126,8 +126,8 @@ def test_along_a_speed_profile_a_press_has_forces_and_angles_but_no_speeds_and_t
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({}, "got none; give a touch distance"),
-        ({"touch_distance": 0.01}, "this design needs none; give a rated torque"),
+        ({}, "a touch distance is missing; give it as an input"),
+        ({"touch_distance": 0.01}, "the peak torque of this design is zero; give a rated torque"),
         ({"touch_distance": 0.2, "rated_torque": 1.0}, "less than the stroke, 100 mm; got 200 mm"),
         ({"touch_distance": 0.01, "rated_torque": 1.0, "dwell_distance": 0.1}, "less than the stroke, 100 mm; got 100"),
     ],
@@ -178,6 +178,6 @@ def test_a_press_without_a_job_needs_its_distance_and_its_torque(command: Comman
     expected = press.numbers(Mechanism(), linkage, touch_distance=0.005, rated_torque=50.0)
     assert found == expected
     assert (found["touch_speed_m_s"], found["touch_force_N"] > 0.0) == (None, True)
-    for few, reason in ((given[:2], "give a rated torque, such as 50 N m"), (given[2:], "give a touch distance")):
+    for few, reason in ((given[:2], "give a rated torque, such as 50 N m"), (given[2:], "a touch distance is missing")):
         refused = command(*asked, *few)
         assert (refused.exit_code, refused.stderr.count(reason)) == (2, 1)

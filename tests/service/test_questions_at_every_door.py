@@ -211,8 +211,12 @@ def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, 
 @pytest.mark.parametrize(
     ("name", "given", "sentence"),
     [
-        ("allocate", ("limit", 0.3), "an allocation needs what the tolerances cost; got a job without [costs]; add"),
-        ("sections", None, "sizing sections needs the table [sections]; got none; add it with a material and pins"),
+        ("allocate", ("limit", 0.3), "allocation needs the costs of the tolerances; this job has no [costs]; add"),
+        (
+            "sections",
+            None,
+            "sizing sections needs the table [sections]; this job has none; add it with a material and pins",
+        ),
         ("counterweight", ("arm", 200.0), "moment"),
     ],
 )
@@ -243,7 +247,7 @@ def test_a_job_that_swings_is_sized_at_no_door(name: str) -> None:
         sc.load_job("runs/support.toml").ask(name, [1.4, 1.8, -0.05], **given)
     words = ["--crank", "1.4 m", "--rod", "1.8 m", "--offset", "-50 mm", *(["--limit", "1 mm"] if given else [])]
     done = CliRunner().invoke(command_line, [command, "runs/support.toml", *words])
-    assert str(refused.value).startswith(f"{command} is of a crank that turns through; got a job whose crank swings")
+    assert str(refused.value).startswith(f"{command} needs a rotating crank; the crank of this job swings")
     assert (done.exit_code, done.stderr.splitlines()[-1]) == (2, f"slidercrank: {refused.value}")
 
 
@@ -285,19 +289,19 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
         {},
         "a question is asked by its name; got 'weather'; choose from inverse, swing, ",
     ),
-    ("press", {"touch": 1.0}, "press is asked with touch_distance, dwell_distance, rated_torque; got touch; leave"),
-    ("motor", {"limit": 1.0}, "the topic motor is asked with nothing else; got limit; leave limit out"),
+    ("press", {"touch": 1.0}, "press may only be given touch_distance, dwell_distance, rated_torque; got touch; leave"),
+    ("motor", {"limit": 1.0}, "the topic motor has no inputs; got limit; leave limit out"),
     ("press", {"touch_distance": "12 kg"}, 'touch_distance must be a length; got "12 kg", which is a mass; write it'),
     ("press", {"touch_distance": "12"}, 'touch_distance must be a length with its unit; got "12"; write it like'),
     ("press", {"touch_distance": 0.0}, "touch_distance must be positive; got 0"),
     ("press", {"touch_distance": [0.1]}, "touch_distance must be a length; got [0.1]"),
     ("press", {"touch_distance": float("nan")}, "touch_distance must be a finite number; got nan"),
     ("press", {"touch_distance": 3.0}, "distances before a dead centre must be less than the stroke, 280 mm; got 3000"),
-    ("press", {}, "a press touches its work at a distance before the dead centre; got none; give a touch distance"),
+    ("press", {}, "a touch distance is missing; give it as an input, or in the job"),
     ("inverse", {}, "inverse needs slider_position; got none; give it like 240 mm"),
     ("inverse", {"slider_position": None}, "inverse needs slider_position; got none"),
     ("inverse", {"slider_position": 9.0}, "the slider position must be in reach of the open branch"),
-    ("inverse", {"slider_position": 0.3, "start": 0.1}, "inverse is asked with slider_position, slider_velocity, "),
+    ("inverse", {"slider_position": 0.3, "start": 0.1}, "inverse may only be given slider_position, slider_velocity, "),
     ("swing", {"start": 0.1}, "a swing runs from one crank angle to another; got no end; give both"),
     (
         "swing",
@@ -312,11 +316,11 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
     ("allocate", {"limit": "0.3 mm", "kind": "mean"}, "kind must be 'worst case' or 'rss'; got 'mean'"),
     ("allocate", {"limit": "0.3 mm", "kind": 2}, "kind must be 'worst case' or 'rss'; got 2"),
     ("allocate", {"limit": 0.0}, "limit must be positive; got 0"),
-    ("counterweight", {"rod_mass": 1.0}, "needs rod_radius and rod_mass; got rod_mass alone; add rod_radius"),
-    ("counterweight", {"rod_radius": 0.1}, "needs rod_radius and rod_mass; got rod_radius alone; add rod_mass"),
+    ("counterweight", {"rod_mass": 1.0}, "needs rod_radius and rod_mass; got only rod_mass; add rod_radius"),
+    ("counterweight", {"rod_radius": 0.1}, "needs rod_radius and rod_mass; got only rod_radius; add rod_mass"),
     ("counterweight", {"mass": "2 mm"}, 'mass must be a mass; got "2 mm"'),
-    ("sections", {"width": "2 mm"}, "sections is asked with nothing else; got width; leave width out"),
-    ("uneven_speed", {}, "an uneven speed needs a profile; got a constant speed"),
+    ("sections", {"width": "2 mm"}, "sections has no inputs; got width; leave width out"),
+    ("uneven_speed", {}, "an uneven speed needs a speed profile; the speed of this job is constant"),
 ]
 
 
@@ -336,12 +340,12 @@ def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> N
         problem.ask("balance", [0.2, 0.1, 0.06])
     with pytest.raises(InputError, match="designs need 3 numbers each"):
         problem.ask("balance", [0.2, 0.1])
-    with pytest.raises(InputError, match="the topic balance is of a crank that turns through; got a job whose"):
+    with pytest.raises(InputError, match="the topic balance needs a rotating crank; the crank of this job"):
         sc.load_job("runs/support.toml").ask("balance", [1.4, 1.8, -0.05])
     with pytest.raises(InputError, match="a design of a problem with choices"):
         sc.load_job(JOBS / "catalogue.toml").ask("balance", [0.04, 0.1, 0.02])
     for row in (99, -1, 1.0):
-        with pytest.raises(InputError, match=f"a row must be one of the front, which has rows 0 to 2; got {row}"):
+        with pytest.raises(InputError, match=f"a row must be one of the front's, which are rows 0 to 2; got {row}"):
             fronts.front(designs=3).ask("balance", row)  # type: ignore[arg-type]
 
 
@@ -375,7 +379,7 @@ def test_installed_packages_add_questions_by_entry_point(monkeypatch: pytest.Mon
             problem.ask("reach", [0.1, 0.4, 0.0])
         announced.questions.cache_clear()
         offered.update(mine={}, theirs={})
-        with pytest.raises(InputError, match="no installed package has one; install slidercrank anew"):
+        with pytest.raises(InputError, match="no installed package has one; reinstall slidercrank"):
             problem.ask("reach", [0.1, 0.4, 0.0])
     finally:
         announced.questions.cache_clear()

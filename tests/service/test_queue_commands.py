@@ -82,7 +82,7 @@ def test_a_job_that_needs_a_file_beside_it_is_kept_whole(
         (("JOB", "--store", "mysql://here/jobs"), "a store is at postgresql://user@host/database"),
         pytest.param(
             ("JOB", "--store", "/proc/none/store.db"),
-            "/proc/none must be a folder that can be written",
+            "/proc/none must be a writable folder",
             marks=pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder of Linux"),
         ),
     ],
@@ -122,7 +122,7 @@ def test_a_function_of_a_job_is_called_where_whoever_runs_it_allows_it(
     else:
         assert job["state"] == "failed"
         assert (
-            'only functions that the operator allows are run here; got "lengths:rod"; have it allowed' in job["reason"]
+            'only functions that the operator allows may run here; got "lengths:rod"; have it allowed' in job["reason"]
         )
 
 
@@ -136,7 +136,7 @@ def test_jobs_are_listed_with_what_they_found(
     command("submit", job)
     lines = [line.split() for line in command("jobs").stdout.splitlines()]
     rows = {line[0]: " ".join(line[3:]) for line in lines if line and line[0].isdecimal()}
-    assert rows["3"] == "Short test [job] queued no worker is at work"
+    assert rows["3"] == "Short test [job] queued no worker is running"
     assert rows["2"] == "Short test [job] infeasible none"
     assert rows["1"].startswith("Short test [job] done 4 designs; best time ratio 1.")
     assert list(rows) == ["3", "2", "1"]
@@ -167,7 +167,7 @@ def test_without_a_store_there_are_no_jobs_and_none_is_made(runs: Path, command:
 def test_a_state_that_no_job_has_is_refused(command: Command) -> None:
     done = command("jobs", "--state", "lost")
     assert done.exit_code == 2
-    assert "a job is queued, running, done, infeasible, cancelled or failed; got --state 'lost'" in done.stderr
+    assert "--state must be queued, running, done, infeasible, cancelled or failed; got 'lost'" in done.stderr
 
 
 @pytest.mark.parametrize("name", ["watch", "cancel", "resume", "delete"])
@@ -175,8 +175,8 @@ def test_a_state_that_no_job_has_is_refused(command: Command) -> None:
     ("job", "message"),
     [
         ("9", "there is no job 9; list the jobs"),
-        ("99999999999999999999", "a job is called by its number"),
-        ("first", "a job is called by its number, or \"latest\"; got 'first'; list the jobs"),
+        ("99999999999999999999", "a job must be given by its number"),
+        ("first", "a job must be given by its number, or \"latest\"; got 'first'; list the jobs"),
         ("latest", "there is no job in"),
     ],
 )
@@ -328,7 +328,7 @@ def test_ctrl_c_leaves_watching_and_not_the_job(
     monkeypatch.setattr("slidercrank.service.commands.submit.time.sleep", interrupt)
     done = command("watch", "latest")
     assert done.exit_code == 130
-    assert "job 1 is left as it is; stop it with: slidercrank cancel 1\n" in done.stderr
+    assert "job 1 continues; stop it with: slidercrank cancel 1\n" in done.stderr
     assert store.job(1).state == "queued"
 
 
@@ -356,7 +356,7 @@ def test_watching_waits_for_a_database_that_is_away(
 def test_jobs_that_wait_for_a_worker_are_told_of(
     store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    idle = "no worker is at work, so jobs wait; start one with: slidercrank serve"
+    idle = "no worker is running, so jobs wait; start one with: slidercrank serve"
     assert idle in command("submit", job).stderr
     assert idle in command("jobs").stderr
     assert json.loads(command("jobs", "--json").stdout)[0]["state"] == "queued"

@@ -98,12 +98,12 @@ def test_a_stopped_run_goes_on_and_ends_as_if_it_had_not_been(
             command(*arguments)
         run = only(runs)
         assert (run / MARK).exists()
-        assert f"go on with `slidercrank optimise --resume {run.name}`" in command("front", run.name).stderr
+        assert f"continue it with `slidercrank optimise --resume {run.name}`" in command("front", run.name).stderr
     else:
         stopped = command(*arguments)
         run = only(runs)
         assert stopped.exit_code == 130
-        assert f"go on with: slidercrank optimise --resume {run.name}" in stopped.stderr
+        assert f"continue with: slidercrank optimise --resume {run.name}" in stopped.stderr
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
     assert kept(runs) == 3
     again = command("optimise", "--resume", run.name, "--json", "--no-figures")
@@ -115,7 +115,7 @@ def test_a_stopped_run_goes_on_and_ends_as_if_it_had_not_been(
     assert {file.name for file in run.iterdir()} == {
         *("job.toml", "front.csv", "front.json", "versions.json", "log.txt")
     }
-    assert "goes on" in (run / "log.txt").read_text()
+    assert " continues" in (run / "log.txt").read_text()
 
 
 def contents(place: Path) -> dict[Path, bytes]:
@@ -130,7 +130,7 @@ def test_a_refused_resume_changes_nothing_in_a_run_that_is_done(job: Path, runs:
     for name in (run.name, run, 1):
         refused = command("optimise", "--resume", name, "--no-figures")
         assert refused.exit_code == 2
-        assert f"only an interrupted or cancelled run can go on; {run.name} is done" in refused.stderr
+        assert f"only an interrupted or cancelled run can continue; {run.name} is done" in refused.stderr
         assert contents(runs) == before
     assert command("front", run.name).exit_code == 0
     elsewhere = runs.parent / "elsewhere"  # where the run has no folder yet
@@ -217,9 +217,9 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
     run = only(runs)
     before = designs(run)
     for arguments, words in (
-        ((), "needs a job file, or a run to go on with"),
+        ((), "needs a job file, or a run to continue"),
         ((job, "--resume", "latest"), "got both"),
-        (("--resume", "latest", "--seed", 5), "the designs and the seed that it began with"),
+        (("--resume", "latest", "--seed", 5), "its original number of designs and seed"),
         (("--resume", "nothing"), "there is no run 'nothing'"),
     ):
         done = command("optimise", *arguments)
@@ -234,7 +234,10 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
 
 @pytest.mark.skipif(os.name == "nt", reason="locks of Unix")
 def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
-    with RunFolder(tmp_path, "x") as run, pytest.raises(InputError, match="another process is at work on the run"):
+    with (
+        RunFolder(tmp_path, "x") as run,
+        pytest.raises(InputError, match="a run may only be used by one process; another one uses"),
+    ):
         RunFolder.again(run.path)
     with RunFolder.again(run.path) as again:
         assert not (again.path / MARK).exists()

@@ -117,7 +117,7 @@ def test_an_equality_that_cannot_be_met_is_exit_code_3_with_the_nearest_and_thei
         assert (
             f"{number}: misses stroke by {-row['slack_stroke_mm']:.4g} mm ({row['misses'][0]['side']})" in done.stdout
         )
-    assert "keeps every requirement; these are the nearest; allow a miss of stroke, such as --allow" in done.stderr
+    assert "meets every requirement; these are the nearest; allow a miss of stroke, such as --allow" in done.stderr
 
 
 def test_the_option_that_is_suggested_makes_the_nearest_designs_do(kept: Path, command: Command) -> None:
@@ -153,7 +153,7 @@ def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch
     done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
     assert done.exit_code == 3, done.stderr
     assert shown[0].startswith("screening combinations 0/")
-    assert shown[-1].startswith("looking for the nearest ")
+    assert shown[-1].startswith("searching for the nearest ")
 
 
 def test_a_search_that_is_interrupted_ends_with_exit_code_130(
@@ -179,8 +179,8 @@ def test_a_search_that_is_interrupted_ends_with_exit_code_130(
         (1, ["0.5"], "--to must be a length with its unit"),
         (1, ["1/0 in"], '--to must be a length; got "1/0 in"'),
         (1, ["1/32 kg"], '--to must be a length; got "1/32 kg"'),
-        (1, ["crank="], '--to is a step, or a name, = and a step; got "crank="; write it like "0.5 mm" or "rod=1 mm"'),
-        (1, [""], '--to is a step, or a name, = and a step; got ""; write it like'),
+        (1, ["crank="], '--to must be STEP or NAME=STEP; got "crank="; write it like "0.5 mm" or "rod=1 mm"'),
+        (1, [""], '--to must be STEP or NAME=STEP; got ""; write it like'),
         (1, ["crank=1 kg"], "--to must be a length"),
         (1, ["mechanism.slider.mass=1 mm"], "--to must be a mass"),
         (1, ["rood=1 mm"], "--to is for crank, rod, offset, mechanism.slider.mass; got 'rood'"),
@@ -226,7 +226,7 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
         ),
         (["transmission_angle=.5%"], 'must be an angle, not a percentage; got ".5%"; write "0.2 deg"'),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
-        (["0.1 mm"], '--allow is a requirement, =, and by how much it may be missed; got "0.1 mm"'),
+        (["0.1 mm"], '--allow must be REQUIREMENT=AMOUNT; got "0.1 mm"'),
         (["stroke=1 mm", "stroke=2 mm"], "--allow gives each name once; got stroke twice"),
         (["stroke_in=1 mm", "stroke=2 mm"], "got two for stroke"),
     ],

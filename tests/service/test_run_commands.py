@@ -106,11 +106,11 @@ def test_columns_are_those_asked_for(stored: Result, command: Command) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--where", "transmission_angle"), "a condition is"),
+        (("--where", "transmission_angle"), "a condition must have"),
         (("--where", "transmission_angle >= 40"), "with its unit"),
-        (("--sort", "torque_peak"), "no quantity or column is called 'torque_peak'"),
-        (("--columns", "crank,nothing"), "no quantity or column is called 'nothing'"),
-        (("--columns", ","), "no quantity or column is called ''"),
+        (("--sort", "torque_peak"), "there is no quantity or column 'torque_peak'"),
+        (("--columns", "crank,nothing"), "there is no quantity or column 'nothing'"),
+        (("--columns", ","), "there is no quantity or column ''"),
         (("--rows", "-1"), "--rows"),
     ],
 )
@@ -152,9 +152,12 @@ def test_export_writes_to_standard_output(stored: Result, command: Command) -> N
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "say what to export"),
+        ((), "nothing to export; give --csv FILE"),
         (("--csv", "-", "--json", "-"), "only one of"),
-        (("--csv", "none/there/a.csv"), "No such file or directory; make the folder, or choose another place"),
+        (
+            ("--csv", "none/there/a.csv"),
+            "No such file or directory; create the folder, or choose another folder",
+        ),
     ],
 )
 def test_an_export_to_nowhere_is_refused(
@@ -207,11 +210,11 @@ def test_a_design_is_chosen_among_those_that_meet_the_conditions(stored: Result,
     [
         (("--knee", "--topsis", "peak_torque=1"), "got knee and topsis; keep one"),
         (("--topsis", "stroke=1"), "time_ratio, peak_torque, transmission_angle, position_error; got 'stroke'"),
-        (("--topsis", "peak_torque"), "an objective, =, and a number"),
+        (("--topsis", "peak_torque"), "must be OBJECTIVE=NUMBER,"),
         (("--topsis", "peak_torque=1, peak_torque=2"), "each objective once"),
         (("--topsis", "peak_torque=0"), "one above zero"),
         (("--topsis", ""), "separated by single commas"),
-        (("--lexicographic", "peak_torque:2"), "a torque with its unit, or a share of the range; got 2"),
+        (("--lexicographic", "peak_torque:2"), "a torque with its unit, or a percentage of the range; got 2"),
         (("--lexicographic", "peak_torque:2 mm"), "the tolerance in 'peak_torque:2 mm'"),
         (("--lexicographic", "peak_torque:-5 %"), "the tolerance in 'peak_torque:-5 %'"),
         (("--lexicographic", "peak_torque, peak_torque"), "each once"),
@@ -260,8 +263,8 @@ def test_front_shows_the_design_of_a_number(stored: Result, command: Command) ->
     [
         (("--design", 31), "the run has designs 1 to 30; got 31"),
         (("--design", 0), "the run has designs 1 to 30; got 0"),
-        (("--design", 1, "--knee"), "a design is chosen in one way"),
-        (("--design", 1, "--where", "stroke > 1 mm"), "a design is chosen in one way"),
+        (("--design", 1, "--knee"), "a design must be chosen in one way"),
+        (("--design", 1, "--where", "stroke > 1 mm"), "a design must be chosen in one way"),
     ],
 )
 def test_a_wrong_number_of_a_design_is_refused(

@@ -119,7 +119,7 @@ def test_wrong_input_after_the_result_keeps_the_result(tmp_path: Path) -> None:
 
 def test_a_place_that_is_no_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "runs").write_text("a file")
-    with pytest.raises(RunError, match=r"must be a folder that can be written; got: .*choose another place"):
+    with pytest.raises(RunError, match=r"must be a writable folder; got: .*choose another folder"):
         RunFolder(tmp_path / "runs", "x")
 
 
@@ -128,7 +128,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_written(tmp_path: Path, mon
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(RunError, match="needs room on its disk"):
+    with pytest.raises(RunError, match="Disk full"):
         RunFolder(tmp_path, "x")
     assert list(tmp_path.iterdir()) == []
 

@@ -90,7 +90,7 @@ def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "arguments", "message"),
     [
-        (JOB, ("--rod", "200 mm"), "sizing sections needs the table [sections]; got none"),
+        (JOB, ("--rod", "200 mm"), "sizing sections needs the table [sections]; this job has none"),
         (JOB + SECTIONS, (), "--rod is needed"),
         (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "got 450, 350 and 520 MPa; exchange those"),
         (

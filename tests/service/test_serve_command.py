@@ -41,20 +41,24 @@ def test_an_address_of_another_machine_is_refused(command: Command) -> None:
 def test_without_a_token_only_this_machine_is_let_in(command: Command) -> None:
     for host in ("0.0.0.0", "::", "192.168.1.2", "jobs.example.org"):
         message = refused(command, "serve", "--no-token", "--host", host)
-        assert f"without a token only this machine may be let in; got --no-token and --host {host}" in message
+        assert (
+            f"without a token the service may only listen on this machine; got --no-token and --host {host}" in message
+        )
 
 
 @pytest.mark.parametrize("token", ["short", "with spaces in between", "with-ümlauts-in-it", ""])
 def test_a_token_that_protects_nothing_is_refused(
     token: str, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert "a token has at least 16 printable ASCII characters" in refused(command, "serve", "--token", token)
+    assert "a token must have at least 16 printable ASCII characters" in refused(command, "serve", "--token", token)
     monkeypatch.setenv("SLIDERCRANK_TOKEN", token)
-    assert "a token has at least 16 printable ASCII characters" in refused(command, "serve")
+    assert "a token must have at least 16 printable ASCII characters" in refused(command, "serve")
 
 
 def test_a_token_and_none_contradict_each_other(command: Command) -> None:
-    assert "got --token and --no-token" in refused(command, "serve", "--token", TOKEN, "--no-token")
+    assert "--token and --no-token exclude each other; got both" in refused(
+        command, "serve", "--token", TOKEN, "--no-token"
+    )
 
 
 @pytest.mark.parametrize("name", ["serve", "worker"])

@@ -72,7 +72,7 @@ def test_a_name_that_fits_none_or_many_is_refused(text: str, words: str, place: 
 
 
 def test_a_file_is_no_run(place: Path) -> None:
-    with pytest.raises(InputError, match="a run is a folder; got the file"):
+    with pytest.raises(InputError, match="a run must be a folder; got the file"):
         find_run(str(place / NAMES[0] / "front.json"), place)
 
 
@@ -102,13 +102,13 @@ def test_a_run_is_read_under_the_path_where_it_is_now(stored: Path, tmp_path: Pa
 
 
 def test_an_unfinished_run_says_so_although_all_files_are_there(stored: Path) -> None:
-    (stored / MARK).write_text("Started 2026-01-31 10:00:00. The run still goes on, or was interrupted.\n")
-    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; go on with"):
+    (stored / MARK).write_text("Started 2026-01-31 10:00:00. The run continues, or was interrupted.\n")
+    with pytest.raises(RunError, match=r"is unfinished: Started 2026-01-31 10:00:00.*interrupted; continue it with"):
         read_run(stored)
 
 
 def test_a_folder_without_a_front_is_no_run(tmp_path: Path) -> None:
-    with pytest.raises(RunError, match=r"a run has a file front\.json"):
+    with pytest.raises(RunError, match=r"a run must have a file front\.json"):
         read_run(tmp_path)
 
 

@@ -23,7 +23,7 @@ def run(command: str) -> subprocess.CompletedProcess[str]:
 def test_output_that_cannot_be_written_is_one_sentence(command: str) -> None:
     done = run(command)
     assert done.returncode == 2
-    assert done.stderr.startswith("slidercrank: standard output must take what is written; got: ")
+    assert done.stderr.startswith("slidercrank: cannot write to standard output: ")
     assert done.stderr.count("\n") == 1
 
 
@@ -70,4 +70,4 @@ def test_too_little_memory_is_no_fault_of_the_software(
     monkeypatch.setattr("slidercrank.service.commands.doctor.diagnose", fail)
     done = command("doctor")
     assert (done.exit_code, done.stdout) == (2, "")
-    assert "there must be memory enough" in done.stderr
+    assert "not enough memory" in done.stderr

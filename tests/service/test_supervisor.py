@@ -86,7 +86,7 @@ def test_workers_that_are_told_to_stop_hand_their_job_back_between_rounds(store:
     with Supervisor(settings(store, lease=60.0), 1, program=MADE_UP):
         until(lambda: store.job(job.id).records >= 2, "second round")
     after = store.job(job.id)
-    assert (after.state, after.reason) == ("queued", "its worker stopped; another one goes on")
+    assert (after.state, after.reason) == ("queued", "its worker stopped; another one continues")
     assert after.records >= 2
     assert after.attempts == 0
     assert store.workers() == []
@@ -100,7 +100,7 @@ def test_a_worker_in_an_endless_round_hands_its_job_back_when_its_grace_is_over(
     assert gone(process)
     after = store.job(job.id)
     assert (after.state, after.records) == ("queued", 1)
-    assert after.reason == "its worker stopped in the middle of a round; another one goes on"
+    assert after.reason == "its worker stopped in the middle of a round; another one continues"
 
 
 def test_a_job_whose_search_has_not_begun_is_handed_back_before_the_grace_is_over(store: Store) -> None:
@@ -111,7 +111,7 @@ def test_a_job_whose_search_has_not_begun_is_handed_back_before_the_grace_is_ove
     assert time.monotonic() - begin < 10.0
     after = store.job(job.id)
     assert (after.state, after.attempts) == ("queued", 0)
-    assert after.reason == "its worker stopped before its search began; another one goes on"
+    assert after.reason == "its worker stopped before its search began; another one continues"
 
 
 def test_a_worker_that_cannot_stop_is_killed(
@@ -137,10 +137,10 @@ def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_on
     failed = store.job(greedy.id)
     assert failed.state == "failed"
     assert re.fullmatch(
-        r"it may take 300 MB of memory; its worker took \d{3} MB; give it a higher limit, or ask for less",
+        r"it may use 300 MB of memory; its worker used \d{3} MB; give it a higher limit, or ask for less",
         failed.reason,
     )
-    assert "worker 1 ended: its job took more memory than it may; another one starts in 0 s" in caplog.messages
+    assert "worker 1 ended: its job used more memory than allowed; another one starts in 0 s" in caplog.messages
 
 
 @pytest.mark.slow
@@ -152,8 +152,8 @@ def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> No
         until(lambda: store.job(greedy.id).state == "failed", "end of the jobs")
     assert (store.job(leaves.id).state, store.job(fits.id).state) == ("done", "done")
     told = [event.data.get("reason") for event in store.events(fits.id)]
-    assert "a fresh worker takes it: earlier jobs left memory in this one" in told
-    assert re.search(r"it may take 350 MB of memory; its worker took \d{3} MB", store.job(greedy.id).reason)
+    assert "a new worker takes it: earlier jobs left too little memory in this one" in told
+    assert re.search(r"it may take 350 MB of memory; its worker used \d{3} MB", store.job(greedy.id).reason)
 
 
 @pytest.mark.slow
@@ -168,8 +168,8 @@ def test_a_job_that_hears_nothing_does_not_keep_its_worker(ends: str, store: Sto
         until(lambda: store.job(after.id).state == "done", "end of the next job")
     ended = store.job(loops.id)
     assert (ended.state, ended.records) == ("cancelled", 1)
-    assert ended.reason.endswith("; its search did not end when it was told to")
-    assert ended.reason.startswith("its search took longer" if ends == "out of time" else "cancelled before")
+    assert ended.reason.endswith("; its search did not stop when asked to")
+    assert ended.reason.startswith("its search reached" if ends == "out of time" else "cancelled before")
 
 
 def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
@@ -254,8 +254,8 @@ def test_a_worker_waits_for_a_store_that_is_away_until_it_is_told_to_stop(tmp_pa
     [
         (0, "it left"),
         (1, "exit code 1"),
-        (REFUSED, "it could do nothing as it was started, see above"),
-        (EXHAUSTED, "its job took more memory than it may"),
+        (REFUSED, "it could not start working, see above"),
+        (EXHAUSTED, "its job used more memory than allowed"),
         (-11, "killed by SIGSEGV"),
         (-200, "killed by signal 200"),
     ],

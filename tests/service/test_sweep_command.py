@@ -59,7 +59,7 @@ def test_table_has_the_values_and_says_how_many_are_missing(command: Command, jo
     done = command("sweep", job, "--rod", "64 mm", "--over", "offset=0 mm..30 mm:4", "--of", "stroke")
     assert done.exit_code == 0, done.output
     assert "88.7923" in done.stdout
-    assert "1 of 4 without a value; the first: rod must exceed" in done.stderr
+    assert "1 of 4 have no value; the first: rod must exceed" in done.stderr
 
 
 def test_grid_of_two_is_drawn(command: Command, job: Path, tmp_path: Path) -> None:
@@ -72,14 +72,17 @@ def test_grid_of_two_is_drawn(command: Command, job: Path, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--over", "offset"), "a sweep is a name, its ends with units"),
+        (("--over", "offset"), "a sweep needs a name, two ends with units"),
         (("--over", "offset=0..20 mm:5"), "--over offset must be a length with its unit"),
         (("--over", "offset=0 mm..20 mm:1"), "2 to 10,000 values"),
         (("--over", "offset=5 mm..5 mm:3"), "two different ends"),
         (("--over", "offset=0 mm..20 rpm:3"), "--over offset must be a length"),
         (("--over", "rod=-1 mm..20 mm:3"), "--over rod must be positive"),
-        (("--over", "mass=1 mm..20 mm:3"), "a sweep is over crank, rod, offset, speed; got 'mass'"),
-        (("--over", "offset=0 mm..20 mm:3", "--offset", "3 mm"), "offset is swept by --over and given by --offset"),
+        (("--over", "mass=1 mm..20 mm:3"), "a sweep must be over one of crank, rod, offset, speed; got 'mass'"),
+        (
+            ("--over", "offset=0 mm..20 mm:3", "--offset", "3 mm"),
+            "offset may be set by --over or by --offset; got both",
+        ),
         (("--over", "offset=0 mm..20 mm:3", "--over", "offset=1 mm..2 mm:3"), "different parameters"),
         (("--over", "speed=0 rpm..9 rpm:3"), "--offset is needed"),
         (("--over", "offset=0 mm..1 mm:3", "--of", "torque"), "no quantity is called 'torque'"),
@@ -156,5 +159,5 @@ def test_unusual_sweeps_can_be_drawn(axes: list[Axis], of: list[str]) -> None:
 def test_a_name_that_is_not_swept_is_what_is_wrong(name: str, said: str, command: Command, job: Path) -> None:
     done = command("sweep", job, "--over", f"{name}=1 kg..2 kg:3", "--of", "stroke")
     assert done.exit_code == 2
-    assert f"a sweep is over crank, rod, offset, speed; got {name!r}" in done.stderr
+    assert f"a sweep must be over one of crank, rod, offset, speed; got {name!r}" in done.stderr
     assert said in done.stderr

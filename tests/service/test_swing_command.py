@@ -159,7 +159,7 @@ def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, g
     sizes = SIZES if name != "sweep" else SIZES[:4]
     done = command(name, "runs/support.toml", *sizes, *options)
     assert done.exit_code == 2
-    assert f"{name} is of a crank that turns through; got a job whose crank swings" in " ".join(done.stderr.split())
+    assert f"{name} needs a rotating crank; the crank of this job swings" in " ".join(done.stderr.split())
 
 
 @pytest.mark.parametrize(

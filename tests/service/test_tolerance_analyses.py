@@ -99,8 +99,8 @@ def test_text_of_the_tolerances_is_short_and_has_their_numbers() -> None:
     for key in ("worst_case_mm", "exact_worst_case_mm", "root_sum_square_mm"):
         assert f"{found[key]:.4g} mm" in text
     assert "crank pin clearance" in text
-    assert "scatter wider" in text
-    assert "scatter wider" not in text_of(tolerance_analysis, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
+    assert "scatter more widely" in text
+    assert "scatter more widely" not in text_of(tolerance_analysis, tolerance_analysis.numbers(PUBLISHED, SUPPORT))
 
 
 def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_case_is_not_given() -> None:
@@ -109,14 +109,14 @@ def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_cas
     assert found["exact_worst_case_mm"] is None
     assert found["monte_carlo"]["stuck"] > 0
     text = text_of(tolerance_analysis, found)
-    assert "does not turn fully" in text
+    assert "does not rotate fully" in text
     bands = error_bands(TIGHT, CLOSE, samples=500)
     assert bands.least is None
     assert len(lines_of(tolerances_figure(bands), 0)) == 5  # two each of worst case and root-sum-square, and zero
 
 
 def test_without_tolerances_there_is_nothing_to_analyse() -> None:
-    with pytest.raises(InputError, match="comes from tolerances; got none; add for example"):
+    with pytest.raises(InputError, match="needs tolerances; this job has none; add for example"):
         tolerance_analysis.numbers(Mechanism(speed=1.0), SUPPORT)
 
 

@@ -31,7 +31,7 @@ def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: py
         "from slidercrank.service.questions.question import Question\nQUESTION = Question(__name__, 35, 'rain')\n"
     )
     monkeypatch.setattr(questions, "__path__", [*questions.__path__, str(tmp_path)])
-    found = list(discovery._found())
+    found = list(discovery._discover_questions())
     assert found.index("weather") == list(QUESTIONS).index("motor") + 1
     assert [name for name in found if name != "weather"] == list(QUESTIONS)
 
@@ -39,5 +39,5 @@ def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: py
 def test_without_a_job_all_topics_are_those_that_need_none() -> None:
     assert chosen_topics([ALL], job=False) == ("press", "polygons", "extremes")
     assert chosen_topics([ALL], job=True) == tuple(TOPICS)
-    with pytest.raises(InputError, match="--show motor needs masses, loads or tolerances; got no job file"):
+    with pytest.raises(InputError, match="--show motor needs masses, loads or tolerances; no job file was given"):
         chosen_topics(["motor"], job=False)

@@ -118,7 +118,7 @@ def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() 
     for units, farthest in expected:
         _, table, note = plain_blocks(topic.blocks(record), units)
         assert table.heads[3:] == ("error", "0 %", "25 %", "50 %", "75 %", "100 %")
-        assert note.sentence.endswith(f"with other offsets, in % of {farthest}.")
+        assert note.sentence.endswith(f"for other offsets, in % of {farthest}.")
 
 
 def test_sensitivities_are_per_inch_in_text_and_json() -> None:
@@ -139,7 +139,7 @@ def test_sensitivities_are_per_inch_in_text_and_json() -> None:
             if isinstance(value, float):
                 assert inch[name][key.replace("_per_mm", "_per_in")] == pytest.approx(scale * value, rel=1e-12)
     head, table, *_ = plain_blocks(topic.blocks(record), "inch")
-    assert head.sentence.startswith("Change of each quantity for 1 in more of a dimension")
+    assert head.sentence.startswith("Change of each quantity if a dimension grows by 1 in")
     stroke = next(row for row in table.rows if row[0] == "stroke")
     assert stroke[1:4] == (f"{inch['stroke']['value']:.5g}", "in", f"{inch['stroke']['crank_per_in']:+.4g}")
 

@@ -42,7 +42,7 @@ def test_the_command_tells_and_draws(pytestconfig: pytest.Config, command: Comma
     assert uneven["mean_torque_Nm"] == pytest.approx(found["mean_torque_Nm"], rel=1e-9)
     assert (tmp_path / "uneven_speed.png").stat().st_size > 10_000
     assert "at constant speed" in command(*line).stdout
-    assert "2 harmonics of the crank angle; quantities are those along it" in " ".join(
+    assert "2 harmonics of the crank angle; quantities follow this profile" in " ".join(
         command("check", job).stdout.split()
     )
 
@@ -122,7 +122,7 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
     job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
     times = np.linspace(0.0, 1.0, lines)
     _recorded(tmp_path, times, np.full(lines, 60.0), digits=9)
-    said = r"file: \"speed\.csv\" must have at most 10,000 points that count; got [\d,]+; .* keep one line in"
+    said = r"file: \"speed\.csv\" must have at most 10,000 significant points; got [\d,]+; .* keep one line in"
     with pytest.raises(InputError, match=said) as told:
         load_job(job)
     assert "crank_angles" not in str(told.value)
@@ -160,7 +160,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
     ("profile", "said"),
     [
         ("{ cosines = [1.2] }", "got -20 % of the mean at 180 deg"),
-        ("{ }", "harmonics or of points; got neither"),
+        ("{ }", "harmonics or points; got neither"),
         ('{ file = "no.csv" }', r"speed_profile\.file: \"no\.csv\" not found"),
         (
             '{ crank_angles = [0, 1, 2, 3], speeds = ["9 rpm", "-8 rpm", "9 rpm", "9 rpm"] }',
@@ -172,7 +172,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
         ),
         ('{ file = "gap.csv" }', "row 3, column .speed_rpm.: must be a number; got .nan.; write the number alone"),
         ('{ file = "short.csv" }', "must cover at least one turn; got 54 deg"),
-        ('{ file = "rising.csv" }', r"must repeat after a turn, to 2 %; got 900 rpm at its start and 1024\.7"),
+        ('{ file = "rising.csv" }', r"must repeat after a turn, within 2 %; got 900 rpm at its start and 1024\.7"),
         (
             '{ crank_angles = ["0 deg", "90 deg", "180 deg", "270 deg"], '
             'speeds = ["90 rpm", "91 rpm", "92 rpm", "91 rpm"] }',
@@ -192,5 +192,5 @@ def test_profiles_that_cannot_be_are_refused(
 
 
 def test_a_constant_speed_is_told_what_to_add() -> None:
-    with pytest.raises(InputError, match="got a constant speed; add to the job"):
+    with pytest.raises(InputError, match="the speed of this job is constant; add to the job"):
         analysis.numbers(Mechanism(speed=3.0), Linkage(0.03, 0.1, 0.0))

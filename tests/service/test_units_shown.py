@@ -167,7 +167,7 @@ def test_conditions_name_their_own_unit_whatever_is_shown(run: Path, command: Co
 
 
 def test_a_dimension_without_a_column_is_no_ratio_of_it() -> None:
-    with pytest.raises(InputError, match="no quantity or column is called 'rod'"):
+    with pytest.raises(InputError, match="there is no quantity or column 'rod'"):
         find_column("rod", ["crank_mm", "rod_to_offset", "rod_to_crank"])
     assert find_column("stiffness", ["rod_to_offset", "stiffness_N_mm"]).key == "stiffness_N_mm"
 

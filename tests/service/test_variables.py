@@ -79,7 +79,7 @@ def test_a_run_keeps_what_was_chosen_and_draws_each_design_with_its_own_machine(
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("mechanism.slider.mass", "is written like"),
+        ("mechanism.slider.mass", "--set must look like"),
         ("mechanism.slidr.mass=2 kg", "did you mean mechanism.slider.mass"),
         ("mechanism.slider.mass=2 mm", "must be a mass"),
     ],

@@ -64,7 +64,9 @@ def test_analyse_says_what_is_violated_and_by_how_much(job: Path, command: Comma
     assert inch == pytest.approx({k.replace("MPa", "psi"): factor * v for k, v in found["violated"].items()}, rel=1e-9)
     shown = command("analyse", job, *size).stdout
     by = found["violated"][f"{SHEAR}_MPa"]
-    assert f"Beyond what is allowed: shear of the crank pin is {found[f'{SHEAR}_MPa']:.4g} MPa, {by:.4g} MPa" in shown
+    assert (
+        f"Beyond the allowable value: shear of the crank pin is {found[f'{SHEAR}_MPa']:.4g} MPa, {by:.4g} MPa" in shown
+    )
     assert "more than the allowed 202.1 MPa (shear yield strength of the material)." in shown
 
 
@@ -72,7 +74,7 @@ def test_python_says_what_is_violated_of_a_design_and_of_a_front() -> None:
     problem = parse_job(TABLES)
     found = problem.analyse(DESIGN)
     assert found.violated == pytest.approx({name: found[name] - 1e6 * by for name, by in ALLOWED.items()}, rel=1e-12)
-    assert "beyond what is allowed: pressure at the crank pin, shear of the crank pin" in repr(found)
+    assert "beyond the allowable value: pressure at the crank pin, shear of the crank pin" in repr(found)
     assert "beyond what is allowed" in found._repr_html_()
     front = sc.solve(problem)
     assert front.violated.keys() == ALLOWED.keys()
@@ -103,9 +105,9 @@ def test_a_run_keeps_and_shows_it(kept: Result, command: Command) -> None:
     assert one["violated"] == {key: [by[1]] for key, by in kept.violated.items()} == part_of(kept, [1]).violated
     count = len(kept.designs)
     whole = command("front", "latest").stdout
-    assert f"Beyond what is allowed: shear of the crank pin in {count} of {count} designs, at worst" in whole
+    assert f"Beyond the allowable value: shear of the crank pin in {count} of {count} designs, at worst" in whole
     assert "Warning: " not in whole
-    assert "Beyond what is allowed: shear of the crank pin is" in command("front", "latest", "--design", 2).stdout
+    assert "Beyond the allowable value: shear of the crank pin is" in command("front", "latest", "--design", 2).stdout
 
 
 def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> None:
@@ -140,7 +142,7 @@ def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> 
 
 def test_a_safety_below_zero_comes_with_its_cause() -> None:
     said = [violations_in_words({"static_safety": 1.0 - safety}, {"static_safety": safety}) for safety in (-0.1, 0.9)]
-    assert [line.endswith("a pin as wide as its bar, or wider, leaves nothing of the bar") for (line,) in said] == [
+    assert [line.endswith("a pin as wide as its bar, or wider, leaves no material in the bar") for (line,) in said] == [
         True,
         False,
     ]
@@ -152,5 +154,7 @@ def test_a_report_says_it_in_its_summary_beside_the_requirements_and_of_the_fron
     assert "Beyond what is allowed" in summary
     assert "shear of the crank pin is" in summary
     said = [block.text for part in report.sections for block in part.blocks if isinstance(block, Paragraph)]
-    assert sum(text.startswith("Beyond what is allowed: ") for text in said) == 4
-    assert sum(bool(re.match(r"Beyond what is allowed: .* in \d+ of \d+ designs, at worst", one)) for one in said) == 2
+    assert sum(text.startswith("Beyond the allowable value: ") for text in said) == 4
+    assert (
+        sum(bool(re.match(r"Beyond the allowable value: .* in \d+ of \d+ designs, at worst", one)) for one in said) == 2
+    )

@@ -241,7 +241,7 @@ def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> No
 def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: Doors) -> None:
     if len(other.front):
         (sentence,) = set(other.refusals("certify", None, {}))
-        assert sentence.startswith("a certificate is of a crank that turns through; got a swing")
+        assert sentence.startswith("a certificate needs a rotating crank; this crank swings; ")
         done = other.command("certify", None, {})
         assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {sentence}")
         force = float(np.median(other.front.values[:, 0]))
@@ -253,7 +253,7 @@ def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: D
     else:
         assert assert_alike(other, "certify", None, {})["infeasible"]
         (sentence,) = set(other.refusals("wish", None, {"at": {"time_ratio": "1.2"}}))
-        assert sentence.startswith("a wish needs the designs of a front; got none: ")
+        assert sentence.startswith("a wish needs a front with designs; this one is empty: ")
         assert other.command("wish", None, {"at": {"time_ratio": "1.2"}}).exit_code == 3
 
 
@@ -290,14 +290,17 @@ SWEEPS: list[tuple[dict[str, Any], str]] = [
     ({"over": "rod=80 mm, 90 mm"}, 'sweep needs of; got none; give it like "crank + rod"'),
     (
         {"over": "rod=80 mm, 90 mm", "of": "stroke", "to": 1},
-        "sweep is asked with over, of, crank, rod, offset; got to; ",
+        "sweep may only be given over, of, crank, rod, offset; got to; ",
     ),
-    ({"over": "mass=1 kg, 2 kg", "of": "stroke"}, "a sweep is over crank, rod, offset, speed; got 'mass'; "),
+    (
+        {"over": "mass=1 kg, 2 kg", "of": "stroke"},
+        "a sweep must be over one of crank, rod, offset, speed; got 'mass'; ",
+    ),
     ({"over": "rod=80", "of": "stroke"}, 'over rod must be a length with its unit; got "80"; write it like '),
     ({"over": "rod=80 mm, 90 mm", "of": "stroke"}, 'crank is needed; write it like crank "40 mm"'),
     (
         {"over": "rod=80 mm, 90 mm", "of": "stroke", "rod": "3 mm"},
-        "rod is swept by over and given by rod; leave out one",
+        "rod may be set by over or by rod; got both; leave out one",
     ),
     (
         {"over": "rod=80 mm, 90 mm", "of": "stroke", "crank": "3 kg"},
@@ -305,7 +308,7 @@ SWEEPS: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"over": ["rod=80 mm", "crank=3 mm", "offset=3 mm"], "of": "stroke"},
-        "a sweep is over one or two parameters; got 3",
+        "a sweep must have one or two parameters; got 3",
     ),
 ]
 
@@ -331,14 +334,14 @@ def test_a_job_that_swings_is_swept_at_no_door(tmp_path: Path) -> None:
 
 WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
     ("wish", None, {}, "wish needs at; got none; give it like "),
-    ("wish", None, {"at": {"time_ratio": "1.3"}, "of": 3}, "wish is asked with at; got of; leave of out"),
+    ("wish", None, {"at": {"time_ratio": "1.3"}, "of": 3}, "wish may only be given at; got of; leave of out"),
     ("wish", None, {"at": 3}, "at must be a table of keys; got 3; write it like "),
-    ("wish", None, {"at": ["time_ratio"]}, 'at is an objective, =, and a value or a class; got "time_ratio"; write'),
-    ("wish", None, {"at": {"nothing": "1"}}, "a wish is for one of the objectives "),
-    ("wish", 1, {"at": {"time_ratio": "keep", "transmission_angle": "keep"}}, "nothing is wished; give one of "),
+    ("wish", None, {"at": ["time_ratio"]}, 'at must be OBJECTIVE=VALUE or OBJECTIVE=CLASS; got "time_ratio"; write'),
+    ("wish", None, {"at": {"nothing": "1"}}, "a wish must name one of the objectives "),
+    ("wish", 1, {"at": {"time_ratio": "keep", "transmission_angle": "keep"}}, "no wish was given; give one of "),
     ("certify", None, {"epsilon": "a little"}, 'epsilon must be a number; got "a little"; write it like 0.01'),
     ("certify", None, {"epsilon": True}, "epsilon must be a number; got true; write it like 0.01"),
-    ("certify", None, {"delta": 0.1}, "certify is asked with epsilon, seconds; got delta; leave delta out"),
+    ("certify", None, {"delta": 0.1}, "certify may only be given epsilon, seconds; got delta; leave delta out"),
     ("round", 1, {}, 'round needs to; got none; give it like "0.5 mm"'),
     ("round", None, {"to": "1 mm"}, "round is of one design; got none; name it"),
     ("round", 1, {"to": "1 kg"}, 'to must be a length; got "1 kg", which is a mass; write it like '),
@@ -348,14 +351,14 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
         "round",
         1,
         {"to": "1 mm", "allow": "stroke"},
-        'allow is a requirement, =, and by how much it may be missed; got "st',
+        'allow must be REQUIREMENT=AMOUNT; got "st',
     ),
-    ("like", 1, {"where": ["nothing <= 2"]}, "no quantity or column is called 'nothing'; "),
+    ("like", 1, {"where": ["nothing <= 2"]}, "there is no quantity or column 'nothing'; "),
     (
         "like",
         1,
         {"where": ["rod != 2 mm"]},
-        "a design is asked for with >=, <= or =; got 'rod != 2 mm'; write it like ",
+        "a condition must use >=, <= or =; got 'rod != 2 mm'; write it like ",
     ),
     ("like", None, {"where": "rod <= 2 mm"}, "like is of one design; got none; name it"),
     ("certify", 0, {}, "certify is of a whole front; got one design; leave it out"),
@@ -387,10 +390,13 @@ def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
         "the question certify is asked of a front; got a design; write it like front.ask(question)"
     )
     assert refusal(lambda: front.ask("whish", at={})).endswith("did you mean wish?")
-    assert refusal(lambda: doors.client.ask(doors.number, None, "press")).startswith("press is of one design; got none")
+    assert refusal(lambda: doors.client.ask(doors.number, None, "press")).startswith("press needs a design; got none")
     for subject, sentence in (
         ({"job": fronts.JOB}, "a front is of a run; got a job; name a run, without a job"),
-        ({"run": doors.folder.name, "crank": "40 mm"}, "a design of a run has its dimensions; got run and crank"),
+        (
+            {"run": doors.folder.name, "crank": "40 mm"},
+            "dimensions must not be given with a run, whose designs have their own; got run and crank",
+        ),
         ({"run": doors.folder.name, "design": 99}, "the run has designs 1 to "),
     ):
         inputs = {"topics": ["certify"], **subject}

@@ -60,15 +60,20 @@ def test_words_of_a_wish_and_of_classes(kept: Path, command: Command) -> None:
 @pytest.mark.parametrize(
     ("number", "wishes", "code", "words"),
     [
-        ([], ["time_ratio"], 2, '--at is an objective, =, and a value or a class; got "time_ratio"'),
+        ([], ["time_ratio"], 2, '--at must be OBJECTIVE=VALUE or OBJECTIVE=CLASS; got "time_ratio"'),
         ([], ["time_ratio=1.2", "time_ratio=1.3"], 2, "--at gives each name once; got time_ratio twice"),
         ([], ["transmission_angle=45"], 2, 'must be an angle with its unit; got "45"'),
         ([], ["time_ratio=nan"], 2, "must be a finite number"),
         ([], ["crank=40 mm"], 2, "one of the objectives time_ratio, transmission_angle; got 'crank'"),
         ([99], ["time_ratio=1.2"], 2, "the run has designs 1 to"),
-        ([], ["time_ratio=improve"], 2, "got no design"),
+        ([], ["time_ratio=improve"], 2, "got none; name one"),
         ([2], ["time_ratio=improve", "transmission_angle=keep"], 2, "design 2 is Pareto-optimal"),
-        ([], ["time_ratio=1.2", "transmission_angle=may worsen to 89 deg"], 3, "89 deg or better, where the front has"),
+        (
+            [],
+            ["time_ratio=1.2", "transmission_angle=may worsen to 89 deg"],
+            3,
+            "89 deg or better, but the best on the front is",
+        ),
     ],
 )
 def test_wishes_that_make_no_sense_are_told_in_a_sentence(
@@ -131,4 +136,4 @@ def test_a_run_without_a_store_answers_and_has_no_list(kept: Path, tmp_path: Pat
         file.unlink()
     (folder,) = (file.parent for file in place.glob("*/front.json"))
     assert command("wish", folder, *at(QUESTIONS), "--json").exit_code == 0
-    assert "no wish was made of it yet" in command("wish", folder, "--list").stdout
+    assert "no wishes yet; make one" in command("wish", folder, "--list").stdout

@@ -161,7 +161,9 @@ def test_a_job_with_records_of_another_release_begins_anew(
 
     def second(problem: Problem, *, resume: Any, **more: Any) -> ParetoFront:
         if resume:
-            raise ForeignRecords("a run goes on only with the versions it began with; run its job anew")
+            raise ForeignRecords(
+                "a run can only continue with its original versions; it has it began with; run its job anew"
+            )
         return search(problem, resume=resume, **more)
 
     searches(first)
@@ -174,7 +176,9 @@ def test_a_job_with_records_of_another_release_begins_anew(
     work(store, drain=True)
     assert store.job(job.id).state == "done"
     told = [event.data["text"] for event in store.events(job.id) if event.kind == "message"]
-    assert any(text.startswith("begins anew: a run goes on only with the versions") for text in told)
+    assert any(
+        text.startswith("begins anew: a run can only continue with its original versions; it has") for text in told
+    )
     assert rounds(store, job.id) == [1, 1, 2, 3]
 
 
@@ -190,7 +194,7 @@ def test_a_stopped_worker_hands_its_job_back(store: Store, searches: Any) -> Non
     assert work(store, stop=stop) == 1
     waiting = store.job(job.id)
     assert (waiting.state, waiting.reason, waiting.records, waiting.attempts) == (
-        *("queued", "its worker stopped; another one goes on", 2),
+        *("queued", "its worker stopped; another one continues", 2),
         0,
     )
     assert work(store, drain=True) == 1
@@ -322,7 +326,7 @@ def test_a_worker_waits_for_a_database_that_is_away_and_tells_it_once(
 
     monkeypatch.setattr(store, "claim", away)
     assert work(store, stop=lambda: len(asked) >= 3) == 0
-    assert caplog.messages == ["the server restarts; trying again until it is there"]
+    assert caplog.messages == ["the server restarts; trying again until it is available"]
     with pytest.raises(StoreError, match="the server restarts"):
         work(store, drain=True)
 

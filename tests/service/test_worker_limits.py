@@ -44,7 +44,7 @@ def test_a_search_ends_at_its_limit_of_time_with_what_it_found(store: Store, sea
     job = submit(store, TABLES, limits=Limits(seconds=0.05))
     assert work(store, drain=True) == 1
     ended = store.job(job.id)
-    assert (ended.state, ended.reason) == ("cancelled", "1 design; its search took longer than its limit of 0.05 s")
+    assert (ended.state, ended.reason) == ("cancelled", "1 design; its search reached its time limit of 0.05 s")
 
 
 def test_a_search_ends_at_its_limit_of_evaluations_with_what_it_found(store: Store, searches: Any) -> None:
@@ -86,7 +86,7 @@ def test_functions_of_jobs_run_only_where_the_operator_allows_them(store: Store,
     job = store.submit(own, name="own")
     assert work(store, drain=True) == 1
     assert store.job(job.id).state == "failed"
-    assert "only functions that the operator allows are run here" in store.job(job.id).reason
+    assert "only functions that the operator allows may run here" in store.job(job.id).reason
 
 
 def test_heavy_work_goes_where_the_worker_is_told(store: Store, searches: Any) -> None:

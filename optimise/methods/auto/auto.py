@@ -244,7 +244,7 @@ def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 AUTO = Method(
     name="auto",
     title="Default",
-    help="Exact elimination, sampling, zooming, polish by SQP, choice by hypervolume.",
+    help="Exact elimination, sampling, zooming, polishing by SQP, selection by hypervolume.",
     family="default",
     objectives="any",
     search=auto,

@@ -49,7 +49,8 @@ def so_far(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: b
 
 
 _SLOW = (
-    "cancelled; functions of its own took too long to tell of what was found, of which all is kept for when it goes on"
+    "cancelled; custom functions were too slow to report the designs found so far, which are kept for when the "
+    "run continues"
 )
 
 

@@ -1,4 +1,4 @@
-"""Tolerances of least cost within a limit of the position error: numbers, text and figure."""
+"""Least-cost tolerances within a limit of the position error: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH
 from ....optimise.sizing.words import Kind
@@ -14,7 +14,7 @@ QUESTION = Question(
             "limit",
             LENGTH,
             "Position error allowed",
-            "Position error that is allowed.",
+            "Allowable position error.",
             sign="positive",
             example="0.1 mm",
             required=True,
@@ -29,12 +29,12 @@ QUESTION = Question(
         ),
     ),
     command=Command(
-        help="""Find the tolerances of least manufacturing cost that keep the position error within a limit.
+        help="""Find the cheapest tolerances that keep the position error within a limit.
 
-    At every crank angle of the part of the stroke that [tolerances] counts. What has no cost in [costs] keeps its
-    tolerance, and takes its part of the limit; so do the clearances.""",
+    The limit applies at every crank angle in the part of the stroke selected in [tolerances]. Dimensions without a
+    cost in [costs] keep their tolerances, which use up part of the limit, as clearances do.""",
         endpoint="allocate_tolerances",
-        job="A job file with [costs].",
+        job="Job file with a table [costs].",
         sizes=True,
         figure=("allocation", "error and costs"),
     ),

@@ -1,4 +1,4 @@
-"""Tolerances of least cost as numbers and text, and the cost and error of those that a mechanism has."""
+"""Least-cost tolerances as numbers and text, and the cost and error of those that a mechanism has."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ActiveAngle(Record):
 
 
 class Tolerances(Record):
-    """Tolerances of least cost within a limit of the position error."""
+    """Least-cost tolerances within a limit of the position error."""
 
     kind: Kind
     """How errors add up."""
@@ -91,8 +91,8 @@ def prepare(
     """Return one allocation for numbers and figure, and the costs. Raises `InputError` without [costs]."""
     if problem is None or problem.costs is None:
         raise InputError(
-            "an allocation needs what the tolerances cost; got a job without [costs]; "
-            'add for example [costs] crank = { cost = 8.0, at = "0.05 mm" }'
+            "allocation needs the costs of the tolerances; this job has no [costs]; add for example [costs] crank = { "
+            'cost = 8.0, at = "0.05 mm" }'
         )
     found = allocate(linkage, problem.costs, limit, kind, mechanism=mechanism)
     return {"found": found, "costs": problem.costs}
@@ -148,7 +148,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Co
 
 def notes(numbers: Tolerances) -> list[str]:
     """Return what is not proven."""
-    residual = f"the optimality conditions are met to {numbers['residual']:.1e} only"
+    residual = f"the optimality conditions are only met to {numbers['residual']:.1e}"
     return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
 
 
@@ -163,25 +163,25 @@ def blocks(numbers: Tolerances) -> list[Block]:
     """Return the numbers for people."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
     rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
-    rows.append(("together", "", recorded(numbers, "cost", digits=5), "", _before(numbers)))
+    rows.append(("together", "", recorded(numbers, "cost", digits=5), "", _cost_in_job(numbers)))
     columns = column("tolerance of", left=True), column("±"), column("costs"), column("share"), column(left=True)
     limit = recorded(numbers, "limit_mm")
     exact: Text = ""
     if numbers["exact_worst_case_mm"] is not None:
         exact = words("; exact worst case {size}", size=recorded(numbers, "exact_worst_case_mm"))
-    holds = sentence("the limit holds nothing back: every tolerance is the greatest that is allowed")
+    holds = sentence("the limit is not active: every tolerance is at its upper bound")
     if numbers["active_angles"]:
         holds = sentence(
-            "the limit holds at {angles} {unit}; {step} more of it saves {saving}",
+            "the limit is reached at {angles} {unit}; raising it by {step} saves {saving}",
             angles=joined([recorded(at, "crank_angle_deg", digits=4, bare=True) for at in numbers["active_angles"]]),
             unit=Unit(ANGLE),
             step=Unit(_STEP),
-            saving=_saved(numbers["saving_per_um"]),
+            saving=_saving_per_step(numbers["saving_per_um"]),
         )
     return [
-        heading(f"Tolerances of least cost for {{limit}} of position error, {kind}", limit=limit),
+        heading(f"Least-cost tolerances for a position error of {{limit}}, {kind}", limit=limit),
         Table(columns, tuple(rows)),
-        sentence("greatest error {error}{exact}", error=recorded(numbers, "error_mm"), exact=exact),
+        sentence("largest error {error}{exact}", error=recorded(numbers, "error_mm"), exact=exact),
         holds,
     ]
 
@@ -192,8 +192,8 @@ def _row(tolerance: Tolerance) -> tuple[Text, ...]:
     if tolerance["bound"]:
         saved = Value(tolerance["bound_saving_per_mdeg"], digits=4)
         remark = words(
-            f"the {tolerance['bound']} that is possible; beyond it would save {{saving}} for each {{step}}",
-            saving=_saved(tolerance["bound_saving_per_um"]) if length else saved,
+            f"the {tolerance['bound']} bound; moving it further by {{step}} would save {{saving}}",
+            saving=_saving_per_step(tolerance["bound_saving_per_um"]) if length else saved,
             step=Unit(_STEP) if length else "0.001 deg",
         )
     size = recorded(tolerance, "tolerance_mm" if length else "tolerance_deg", digits=5)
@@ -202,14 +202,14 @@ def _row(tolerance: Tolerance) -> tuple[Text, ...]:
     return tolerance["name"].replace("_", " "), (size,), cost, share, remark
 
 
-def _saved(per_um: float | None) -> Value:
+def _saving_per_step(per_um: float | None) -> Value:
     """Return what a step of length saves."""
     per = replace(_STEP, metric=face("", 1e-6), inch=face("", 1.0 / _STEP.face("inch").factor))
     return Value(None if per_um is None else 1e6 * per_um, per, 4)
 
 
-def _before(numbers: Tolerances) -> Text:
+def _cost_in_job(numbers: Tolerances) -> Text:
     if numbers["cost_before"] is None:
         return ""
     cost, error = recorded(numbers, "cost_before", digits=5), recorded(numbers, "error_before_mm", digits=4)
-    return words("in the job: {cost}, for {error}", cost=cost, error=error)
+    return words("in the job: cost {cost}, error {error}", cost=cost, error=error)

@@ -51,7 +51,7 @@ def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before:
     """Return the figure's data. before: the mechanism with the tolerances that it had."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     now = first_order(found.mechanism, linkage, theta)
-    share, error = _summed(now, found.kind)
+    share, error = _cumulated_error(now, found.kind)
     there = now.contributions.max(axis=1) > 0.0
     was = costs_before(costs, linkage, before)
     spans = [(float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in counted_angles(before, linkage)]
@@ -59,7 +59,7 @@ def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before:
         np.degrees(theta),
         tuple(name for name, adds in zip(SOURCES, there, strict=True) if adds),
         (share * error)[there],
-        None if was is None else _summed(first_order(before, linkage, theta), found.kind)[1],
+        None if was is None else _cumulated_error(first_order(before, linkage, theta), found.kind)[1],
         found.limit,
         tuple(spans),
         np.degrees(found.angles),
@@ -70,7 +70,7 @@ def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before:
     )
 
 
-def _summed(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
+def _cumulated_error(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
     """Return shares of the sources (8, m) and the error (m,), m, as errors add up in an allocation."""
     if kind == "worst case":
         return linear.share_of_worst_case, linear.worst_case
@@ -86,7 +86,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     figure = style.new_figure(9.2, foot + 4.25)
     gaps = _gaps(data.counted)
     note = f"{data.kind} within {shown(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
-    style.heading(figure, "Tolerances of least cost", note)
+    style.heading(figure, "Least-cost tolerances", note)
     error = style.place(figure, 0.8, foot + 0.85, 5.9, 2.7)
     style.dress(error, up=6)
     style.over_turn(error)
@@ -97,7 +97,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     error.axhline(limit, color=style.VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
     error.plot(
         data.active, np.full(len(data.active), limit), linestyle="none", marker="o", markersize=6,
-        markerfacecolor="white", markeredgecolor=style.VERMILION, markeredgewidth=1.5, label="limit holds", zorder=5,
+        markerfacecolor="white", markeredgecolor=style.VERMILION, markeredgewidth=1.5, label="limit reached", zorder=5,
     )  # fmt: skip
     for start, end in gaps:
         error.axvspan(start, end, color=style.SHADE, alpha=0.8, linewidth=0, zorder=4)

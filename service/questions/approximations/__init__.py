@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 70, "how wrong lumped masses and series are")
+QUESTION = Question(__name__, 70, "errors of lumped-mass and series approximations")

@@ -59,7 +59,7 @@ _TOLD, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}
 
 
-def _over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
+def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
     """Return the errors at offsets from zero to the design's own, or to (rod - crank) / 2 if greater."""
     own = float(linkage.offset)
     far = max(abs(own), 0.5 * (float(linkage.rod) - float(linkage.crank)))
@@ -74,7 +74,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     """
     found = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
-    offsets = _over_offset(mechanism, linkage, _TOLD)
+    offsets = _errors_over_offset(mechanism, linkage, _TOLD)
 
     return {
         "rotating_mass_kg": rotating,
@@ -121,11 +121,11 @@ def blocks(numbers: Approximations) -> list[Block]:
     rows.append(("inertia torque, exact", *_exact(numbers, "exact_peak_torque_Nm", TORQUE)))
     rows += [_row(one, "peak_torque_Nm", TORQUE) for one in numbers["torques"]]
     return [
-        heading("Approximate models, inertia alone, at constant speed"),
+        heading("Approximate models: inertia only, constant speed"),
         Table(columns, tuple(rows), ruled=True),
         note(
-            "Errors: greatest over the cycle, share of the exact peak; "
-            "on the right with other offsets, in % of {most}.",
+            "Errors: greatest over the cycle, relative to the exact peak; on the right for other offsets, in % of "
+            "{most}.",
             most=recorded_all(numbers, "offset_mm", digits=4)[-1],
         ),
     ]
@@ -144,7 +144,7 @@ def _row(one: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return acceleration and inertia torque, exact and approximate, and the greatest errors over offset."""
     found = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
-    errors = _over_offset(mechanism, linkage, _DRAWN)
+    errors = _errors_over_offset(mechanism, linkage, _DRAWN)
     degrees, offsets = np.degrees(found.crank_angle), np.abs(errors.offset)
     torques = [(_SHORT.get(name, name), 1 + n, name) for n, name in enumerate(found.torques)]
     panels = [
@@ -161,7 +161,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
             kind=TORQUE,
         ),
         Panel(
-            "greatest error of acceleration, % of its peak",
+            "greatest error in acceleration, % of its peak",
             "offset",
             tuple(Line(name, offsets, 100.0 * curve, 1) for name, curve in errors.accelerations.items()),
             along=LENGTH,
@@ -169,7 +169,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     ]
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
-        panels.append(Panel("greatest error of torque, %", "offset", lines, along=LENGTH))
-    subtitle = joined([dimensions(linkage), f"{shown(mechanism.speed)} rad/s; inertia alone"])
-    title = "Approximate models against the exact one"
+        panels.append(Panel("greatest error in torque, %", "offset", lines, along=LENGTH))
+    subtitle = joined([dimensions(linkage), f"{shown(mechanism.speed)} rad/s; inertia only"])
+    title = "Approximate and exact models"
     return Sheet(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

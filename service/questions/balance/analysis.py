@@ -106,7 +106,7 @@ def blocks(numbers: Shaking) -> list[Block]:
             without = f"{which}_{name}_without_counterweight_{unit}"
             remarks = ("over time" if which == "rms" else "", compared(numbers, without, "without counterweight"))
             shown.append(named_number(numbers, f"{which}_{name}_{unit}", joined(remarks)))
-    title = "Balance (inertia forces on the frame; gravity and load left out; moment about the pivot)"
+    title = "Balance (inertia forces on the frame, without gravity and loads; moment about the crank pivot)"
     return number_list(title, shown)
 
 

@@ -46,7 +46,7 @@ def answer(front: ParetoFront, *, watch: Watch, epsilon: float = EPSILON, second
 
 def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
     proven = prove_infeasible(problem, seconds=seconds)
-    text = "no design of the ranges meets all requirements"
+    text = "no design within the ranges meets all requirements"
     message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
     record = {"name": problem.name, "infeasible": proven, "message": message}
     lines = [sentence("{name}: {message}", name=problem.name, message=message)]
@@ -93,14 +93,14 @@ def _blocks(found: Certificate, front: ParetoFront) -> list[Block]:
             words("{name} {low} to {high}", name=name, low=Value(low, LENGTH, bare=True), high=Value(high, LENGTH))
             for name, (low, high) in zip(DIMENSIONS, found.where.tolist(), strict=True)
         ]
-        blocks.append(sentence("Farthest from proven: {ranges}", ranges=joined(ranges)))
+        blocks.append(sentence("Largest gap in the proof: {ranges}", ranges=joined(ranges)))
     if found.hole is not None:
         sizes = [
             words("{name} {size}", name=name, size=Value(size, LENGTH))
             for name, size in zip(DIMENSIONS, found.hole.tolist(), strict=True)
         ]
-        blocks.append(sentence("Largest gap of the delivered front: {sizes}", sizes=joined(sizes)))
+        blocks.append(sentence("Largest gap in the front of the search: {sizes}", sizes=joined(sizes)))
     if math.isfinite(gap := found.hypervolume_gap):
-        volume = f"Hypervolume: {front.hypervolume:.6g}, the true front's exceeds it by at most {gap:.3g}"
+        volume = f"Hypervolume: {front.hypervolume:.6g}; that of the true front is larger by at most {gap:.3g}"
         blocks.append(sentence(volume))
     return [*blocks, *(sentence("Note: {note}", note=note) for note in found.notes[:_SHOWN_NOTES])]

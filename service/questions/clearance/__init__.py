@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 110, "impacts in the joint that [clearance] makes loose")
+QUESTION = Question(__name__, 110, "impacts in the joint with clearance, from [clearance]")

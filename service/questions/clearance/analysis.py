@@ -28,17 +28,17 @@ CYCLES, DISCARD = 12, 4
 # Field of the summary, key without unit, unit in the key, factor from SI, title, and unit where the key has none.
 ROWS = (
     ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", ""),
-    ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  over that of ideal joints", ""),
-    ("displacement_deviation",) * 2 + ("_percent", 100.0, "slider displacement off by", "% of stroke"),
-    ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity off by", ""),
+    ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  relative to ideal joints", ""),
+    ("displacement_deviation",) * 2 + ("_percent", 100.0, "slider displacement error", "% of stroke"),
+    ("velocity_deviation", "velocity_deviation", "_m_s", 1.0, "slider velocity error", ""),
     ("impacts", "impacts_per_turn", "", 1.0, "impacts per turn", ""),
     ("contact_share", "contact_share", "_percent", 100.0, "time in contact", "%"),
     ("peak_contact_force", "peak_contact_force", "_N", 1.0, "peak contact force", ""),
-    ("penetration", "penetration", "_mm", 1e3, "greatest penetration", ""),
+    ("penetration", "penetration", "_mm", 1e3, "maximum penetration", ""),
     ("input_work", "input_work", "_J", 1.0, "work of the drive per turn", ""),
     ("load_work", "load_work", "_J", 1.0, "work of the loads per turn", ""),
-    ("dissipated", "dissipated", "_J", 1.0, "lost in the joint per turn", ""),
-    ("stored", "stored", "_J", 1.0, "gain of stored energy per turn", ""),
+    ("dissipated", "dissipated", "_J", 1.0, "energy lost in the joint per turn", ""),
+    ("stored", "stored", "_J", 1.0, "gain in stored energy per turn", ""),
 )
 
 
@@ -84,7 +84,8 @@ def simulated(
     """
     if mechanism.clearance is None:
         raise InputError(
-            "a simulation of joint clearance needs a loose joint; got ideal joints only; add to the job for example "
+            "a simulation of joint clearance needs a joint with clearance; all joints of this job are ideal; add to "
+            "the job for example "
             '[clearance] with joint = "crank pin", radial_clearance = "0.2 mm" and journal_radius = "10 mm"'
         )
     with _turns_bar() as tell:
@@ -129,11 +130,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the statistics for people."""
     head = heading(
-        f"Radial clearance of {{size}} at the {numbers['joint']} (law: {numbers['law']})",
+        f"Radial clearance {{size}} at the {numbers['joint']} (contact law: {numbers['law']})",
         size=recorded(numbers, "radial_clearance_mm"),
     )
     if not numbers["turns"]:
-        return [head, sentence("cancelled before there was a turn to count")]
+        return [head, sentence("cancelled before a turn could be counted")]
     rows: list[tuple[Text, ...]] = []
     for _, key, unit, _, title, percent in ROWS:
         value = recorded(numbers, f"{key}{unit}", digits=4)
@@ -143,7 +144,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
         spread = "" if certain.number is None else words("± {certain}", certain=certain)
         rows.append((title, value, spread, percent or Unit(value.kind)))
     cancelled = "; cancelled before the end" if numbers["status"] == "cancelled" else ""
-    means = f"means over {numbers['turns']} turns after {numbers['turns_discarded']} of running in"
+    means = f"means over {numbers['turns']} turns, after {numbers['turns_discarded']} of running-in"
     return [
         head,
         Table((column(left=True), column(), column(left=True), column(left=True)), tuple(rows)),

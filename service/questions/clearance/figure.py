@@ -51,7 +51,7 @@ class LooseCurves:
 def loose_curves(run: ClearanceRun) -> LooseCurves:
     """Return the curves of the last turn of a run. Raises `InputError` if it has no complete turn."""
     if run.cycles < 1:
-        raise InputError("a figure needs a complete turn of the crank; got none; let the simulation run longer")
+        raise InputError("a figure needs a complete turn of the crank; got none; simulate longer")
     start = (run.cycles - 1) * run.period
     last = (run.times >= start * (1.0 - 1e-12)) & (run.times <= (start + run.period) * (1.0 + 1e-12))
     loose = (run.slider_position, run.slider_velocity, run.slider_acceleration)
@@ -74,11 +74,11 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     title = words("{clearance}, {speed}", clearance=_clearance(run), speed=_speed(run))
     subtitle = f"turn {run.cycles} of the crank; solid: loose joint, dashed: ideal joints"
     heading(figure, format_text(title, system, printed=True), subtitle)
-    position, velocity, acceleration = (_panel(curves, kind) for kind in _TITLES)
+    position, velocity, acceleration = (_motion_panel(curves, kind) for kind in _TITLES)
     loose, ideal = position.lines
     off = float(np.abs(loose.y - ideal.y).max())
     share = f"{shown(100.0 * off / float(run.linkage.stroke), 2)} % of the stroke"
-    note = words(f"off by {{off}} at most, {share}", off=Value(off, LENGTH, 3))
+    note = words(f"largest deviation {{off}}, {share}", off=Value(off, LENGTH, 3))
     greatest = words("greatest {force}", force=Value(float(curves.force.max()), FORCE, 4))
     across, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, THIN)
     contact = Panel("contact force", across, (force,), FORCE, turns=True, note=greatest)
@@ -86,7 +86,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
         draw_panel(place(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, across=row == 0)
     draw_panel(place(figure, 8.3, 2.65, 3.75, 3.75), _journal(curves, run.clearance.radius), system)
     if run.cycles > run.discard:
-        for row, line in enumerate(_notes(summarise(run))):
+        for row, line in enumerate(_statistics_lines(summarise(run))):
             write(figure, 7.95, 1.8 - 0.2 * row, format_text(line, system, printed=True))
     return figure
 
@@ -96,7 +96,7 @@ def speeds_figure(runs: Sequence[ClearanceRun]) -> Sheet:
     columns = []
     for run in runs:
         curves = loose_curves(run)
-        first, *others = (_panel(curves, kind) for kind in _TITLES)
+        first, *others = (_motion_panel(curves, kind) for kind in _TITLES)
         columns.append([replace(first, note=(_speed(run),)), *others])
     panels = tuple(panel for row in zip(*columns, strict=True) for panel in row)
     subtitle = "solid: loose joint, dashed: ideal joints"
@@ -106,7 +106,7 @@ def speeds_figure(runs: Sequence[ClearanceRun]) -> Sheet:
 def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CASE_RPM) -> list[ClearanceRun]:
     """Return a run of three turns at each speed, in the direction in which the mechanism turns."""
     if mechanism.clearance is None:
-        raise InputError("a comparison of speeds needs a loose joint; got ideal joints only; give a clearance")
+        raise InputError("a comparison of speeds needs a joint with clearance; all joints are ideal; give a clearance")
     way = math.copysign(_RPM, mechanism.speed)
     return [
         simulate(replace(mechanism, speed=way * speed), linkage, mechanism.clearance, cycles=3, discard=1)
@@ -116,7 +116,7 @@ def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CA
 
 def _clearance(run: ClearanceRun) -> Text:
     clearance = run.clearance
-    at = f"{{radius}} of radial clearance at the {clearance.joint}"
+    at = f"radial clearance {{radius}} at the {clearance.joint}"
     return words(at, radius=Value(float(clearance.radius), LENGTH, 4))
 
 
@@ -124,7 +124,7 @@ def _speed(run: ClearanceRun) -> Value:
     return Value(float(run.mechanism.speed), ANGULAR_SPEED, 4)
 
 
-def _panel(curves: LooseCurves, kind: Kind) -> Panel:
+def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
     loose, ideal = curves.curves[kind], curves.ideal[kind]
     note: Text = ""
     if kind is ACCELERATION:
@@ -142,11 +142,14 @@ def _journal(curves: LooseCurves, radius: float) -> Panel:
         Line("", curves.journal_x, curves.journal_y, THIN),
         Line("", curves.journal_x[touching], curves.journal_y[touching], DOTS),
     )
-    title, across = "path of the journal's centre (dots: in contact)", "along the slider line (upward: across it)"
+    title, across = (
+        "path of the journal's centre (dots: in contact)",
+        "horizontal: along the slider line; vertical: across it",
+    )
     return Panel(title, across, lines, LENGTH, LENGTH, equal=True)
 
 
-def _notes(summary: ClearanceSummary) -> list[Text]:
+def _statistics_lines(summary: ClearanceSummary) -> list[Text]:
     """Return the summary in lines."""
     lines: list[Text] = [f"means over {summary.turns} turns, ± 99 % confidence:"]
     for title, estimate, kind in (
@@ -154,7 +157,7 @@ def _notes(summary: ClearanceSummary) -> list[Text]:
         ("impacts per turn", summary.impacts, RATIO),
         ("time in contact", summary.contact_share, PERCENT),
         ("peak contact force", summary.peak_contact_force, FORCE),
-        ("lost in the joint per turn", summary.dissipated, ENERGY),
+        ("energy lost in the joint per turn", summary.dissipated, ENERGY),
     ):
         spread = estimate.uncertainty
         certain = "" if spread is None else words(" ± {spread}", spread=Value(spread, kind, 2, bare=True))

@@ -13,7 +13,7 @@ QUESTION = Question(
         Input(
             "measure",
             title="To be least",
-            help='What is to be least over the cycle: "peak" or "rms".',
+            help='Measure of shaking to minimise over the cycle: "peak" or "rms".',
             usual="peak",
             words=Measure,
             loose=True,
@@ -22,11 +22,16 @@ QUESTION = Question(
             "radius",
             LENGTH,
             "Radius of the counterweight",
-            "Place of the counterweight's centre.  [default: as in JOB, or the crank]",
+            "Distance of the counterweight's mass centre from the crank pivot. [default: as in JOB, else the crank "
+            "length]",
             sign="positive",
         ),
         Input(
-            "mass", MASS, "Counterweight, at most", "Greatest mass of the counterweight, such as 2 kg.", sign="positive"
+            "mass",
+            MASS,
+            "Counterweight, at most",
+            'Maximum mass of the counterweight, such as "2 kg".',
+            sign="positive",
         ),
         Input(
             "rod_radius",
@@ -35,21 +40,28 @@ QUESTION = Question(
             "Space around the crank pin for a balance mass on the rod.",
             sign="positive",
         ),
-        Input("rod_mass", MASS, "Mass on the rod, at most", "Greatest mass of it.", sign="positive"),
+        Input(
+            "rod_mass",
+            MASS,
+            "Mass on the rod, at most",
+            "Maximum mass of the balance mass on the rod.",
+            sign="positive",
+        ),
         Input(
             "arm",
             LENGTH,
             "Moment counts, divided by",
-            "Count the shaking moment too, as moment / arm; needs a rod balance.",
+            "Also minimise the shaking moment, as moment / arm; needs a balance mass on the rod.",
             sign="positive",
         ),
     ),
     command=Command(
-        help="""Find the counterweight, instead of that of JOB, of least shaking force, and a balance mass on the rod.
+        help="""Find the counterweight, and a balance mass on the rod, that minimise the shaking force.
 
-    Inertia forces at constant crank speed, over all crank angles; gravity and load are left out.""",
+    The counterweight replaces the one in JOB. Counts inertia forces at constant crank speed over all crank angles,
+    without gravity and loads.""",
         endpoint="balance_by_counterweight",
-        job="A job file: speed and masses come from it.",
+        job="Job file that supplies speed and masses.",
         sizes=True,
         called="balance",
         figure=("balance", "the hodograph before and after"),

@@ -117,7 +117,7 @@ def _rod_space(inputs: Mapping[str, Any], said: Mapping[str, str]) -> RodSpace |
         return None
     if radius is None or mass is None:
         have, need = (second, first) if radius is None else (first, second)
-        raise InputError(f"a rod balance needs {first} and {second}; got {have} alone; add {need}")
+        raise InputError(f"a balance mass on the rod needs {first} and {second}; got only {have}; add {need}")
     return RodSpace(radius=radius, mass=mass)
 
 
@@ -153,7 +153,7 @@ def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "pe
 
 def notes(numbers: BalanceNumbers) -> list[str]:
     """Return what is not proven."""
-    proven = f"{numbers['objective_N']:.6g} N, and no less than {numbers['least_possible_N']:.6g} N is possible"
+    proven = f"{numbers['objective_N']:.6g} N, and at least {numbers['least_possible_N']:.6g} N is unavoidable"
     return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
 
 
@@ -177,11 +177,11 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
     if saving:
         inch = FORCE.face("inch").factor / MASS.face("inch").factor
         per_mass = replace(FORCE, metric=face("N"), inch=face("lbf", inch))
-        text = "the heaviest that is allowed; each {unit} more would save {saving}"
+        text = "at its maximum; each further {unit} would save {saving}"
         remark = words(text, unit=Unit(MASS), saving=Value(saving, per_mass, 4))
     shown: list[NamedNumber] = [
         ("counterweight: mass times radius", moment, remark),
-        ("its angle from the crank", angle, "180 deg is opposite to the crank pin"),
+        ("its angle from the crank", angle, "180 deg is opposite the crank pin"),
         ("its mass", mass, words("at {radius} from the crank pivot", radius=radius)),
     ]
     rod = numbers["rod_balance"]
@@ -197,7 +197,7 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
             shown.append((title, recorded(numbers["after"], key), compared(numbers["before"], key, "before")))
     line = '  in the job: counterweight = {{ mass = "{mass}", radius = "{radius}", angle = "{angle}" }}'
     return [
-        *number_list(f"Balance of least {numbers['measure']} shaking (moment about the crank pivot)", shown),
+        *number_list(f"Balance with least {numbers['measure']} shaking (moment about the crank pivot)", shown),
         note(line, mass=mass, radius=radius, angle=angle),
     ]
 
@@ -207,7 +207,7 @@ def _centre(rod: RodBalance) -> Text:
     if along is None or across is None:
         return ""
     places = {"along": Value(1e-3 * round(along, 3), LENGTH), "across": Value(1e-3 * round(across, 3), LENGTH)}
-    return words("centre {along} along, {across} across the rod", **places)
+    return words("mass centre {along} along and {across} across the rod", **places)
 
 
 def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> Sheet:
@@ -217,7 +217,7 @@ def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **opt
     curves = list(enumerate(zip(("before", "after"), found.hodograph(theta), strict=True)))
     hodographs = tuple(Line(name, each.force_x, each.force_y, n) for n, (name, each) in curves)
     sizes = (Line(name, degrees, np.hypot(each.force_x, each.force_y), n) for n, (name, each) in curves)
-    across = words("along the slider line, {unit}; upward: across it", unit=Unit(FORCE))
+    across = words("horizontal: along the slider line, {unit}; vertical: across it", unit=Unit(FORCE))
     panels = [
         Panel("hodograph of the shaking force", across, hodographs, kind=FORCE, along=FORCE, equal=True),
         over_turn("size of the shaking force", *sizes, kind=FORCE),

@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 42, "several cylinders on one crankshaft: torque and shaking of the whole")
+QUESTION = Question(__name__, 42, "several cylinders on one crankshaft: total torque and shaking")

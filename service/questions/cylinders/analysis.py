@@ -112,17 +112,17 @@ def _degrees(extreme: Extreme) -> float | None:
 def blocks(numbers: Cylinders) -> list[Block]:
     """Return the numbers for people."""
     remarks: dict[str, Text] = {
-        "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first alone"),
+        "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first cylinder"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
         "mean_torque_Nm": "over the crank angle",
-        "rms_torque_Nm": "over time, heats the motor",
+        "rms_torque_Nm": "over time; it heats the motor",
         "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
-        "energy_change_J": "range of the integral of torque minus mean, for a flywheel",
-        "peak_shaking_force_N": compared(numbers, "peak_shaking_force_of_one_N", "of one alone"),
+        "energy_change_J": "range of the integral of torque minus mean; it sizes a flywheel",
+        "peak_shaking_force_N": compared(numbers, "peak_shaking_force_of_one_N", "of one cylinder"),
         "rms_shaking_force_N": "over time",
-        "peak_shaking_moment_Nm": compared(numbers, "peak_shaking_moment_of_one_Nm", "of one alone"),
+        "peak_shaking_moment_Nm": compared(numbers, "peak_shaking_moment_of_one_Nm", "of one cylinder"),
         "rms_shaking_moment_Nm": "over time",
-        "peak_rocking_couple_Nm": "about the shaft's zero, from the places of the cylinders",
+        "peak_rocking_couple_Nm": "about the origin of the shaft, from the axial positions of the cylinders",
     }
     together = [named_number(numbers, key, remark) for key, remark in remarks.items()]
     columns = (
@@ -132,7 +132,7 @@ def blocks(numbers: Cylinders) -> list[Block]:
         *(column(title, FORCE) for title in ("crank pin", "slider pin", "guide")),
     )
     rows = tuple(tuple(recorded(own, key) for key in own) for own in numbers["cylinders"])
-    title = f"{len(rows)} cylinders on one crankshaft, together"
+    title = f"{len(rows)} cylinders on one crankshaft, in total"
     return [*number_list(title, together), Table(columns, rows)]
 
 

@@ -3,5 +3,5 @@
 from ..question import Question
 
 QUESTION = Question(
-    __name__, 85, "least and greatest value of every curve, where they are, both strokes", needs_job=False
+    __name__, 85, "minimum and maximum of every curve, with their crank angles, and both strokes", needs_job=False
 )

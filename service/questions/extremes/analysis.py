@@ -147,7 +147,10 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 
 def blocks(numbers: Extremes) -> list[Block]:
     """Return a line for each curve, and the strokes."""
-    found: list[Block] = [heading("Extremes over the turn, crank angles continuous"), extremes_table(numbers["curves"])]
+    found: list[Block] = [
+        heading("Extreme values over the turn, with continuous crank angles"),
+        extremes_table(numbers["curves"]),
+    ]
     if "undefined_because" in numbers:
         found.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
     strokes, shown = numbers["strokes"], list[NamedNumber]()
@@ -184,7 +187,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
-    return Sheet("Extremes over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2)
+    return Sheet("Extreme values over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2)
 
 
 def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
@@ -194,7 +197,7 @@ def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
 def _panel(found: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
     lines = [Line("", degrees, values)]
     ends = [end for end in _ends(found) if math.isfinite(end.crank_angle)]
-    note: Text = "constant" if math.isfinite(found.least.value) else "undetermined where friction locks"
+    note: Text = "constant" if math.isfinite(found.least.value) else "undefined where friction locks"
     if ends:
         angles, sizes = np.degrees([end.crank_angle for end in ends]), [end.value for end in ends]
         lines.append(Line("", angles, np.array(sizes), points=True))

@@ -7,10 +7,10 @@ from ..question import Question
 FLUCTUATION = Input(
     "fluctuation",
     RATIO,
-    "Speed fluctuation, at most",
-    "Speed fluctuation that the flywheel is for.",
+    "Maximum speed fluctuation",
+    "Speed fluctuation that the flywheel must not exceed.",
     "0.02",  # pumps and machine tools: 1/30 to 1/50 in textbooks
     sign="positive",
     below=1.0,
 )
-QUESTION = Question(__name__, 100, "flywheel for a speed --fluctuation", inputs=(FLUCTUATION,))
+QUESTION = Question(__name__, 100, "flywheel that limits the speed --fluctuation", inputs=(FLUCTUATION,))

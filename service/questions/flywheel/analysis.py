@@ -50,7 +50,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
     found = design_flywheel(mechanism, linkage, fluctuation)
     tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
-    bare, reason = _without(mechanism, linkage)
+    bare, reason = _fluctuation_without_flywheel(mechanism, linkage)
     return {
         "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
         "wanted_fluctuation": fluctuation,
@@ -66,7 +66,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     }
 
 
-def _without(mechanism: Mechanism, linkage: Linkage) -> tuple[tuple[float, float] | None, str | None]:
+def _fluctuation_without_flywheel(
+    mechanism: Mechanism, linkage: Linkage
+) -> tuple[tuple[float, float] | None, str | None]:
     """Return fluctuation and least speed, rad/s, without a flywheel, or the reason why there are none."""
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
@@ -96,8 +98,8 @@ def blocks(numbers: Flywheel) -> list[Block]:
         needed,
         sentence("Fluctuation: (greatest - least speed) / mean speed; mean speed: a turn over its time."),
         sentence(
-            "{so}: mean speed {speed}, motor torque up to {torque} on the crank, mean power {power}.",
-            so="With it" if inertia else "So",
+            "{so}: mean speed {speed}, motor torque up to {torque} at the crank, mean power {power}.",
+            so="With the flywheel" if inertia else "So",
             speed=recorded(steady, "mean_speed_rpm", digits=5),
             torque=recorded(steady, "peak_motor_torque_Nm", digits=4),
             power=recorded(steady, "mean_power_W", digits=4),
@@ -121,11 +123,11 @@ def _without_one(numbers: Flywheel) -> Text:
     """Return how the machine runs without a flywheel."""
     bare = numbers["fluctuation_without_flywheel"]
     if bare is None:
-        return f"no steady running was found: {numbers['reason_without_flywheel']}"
+        return f"steady running was not reached: {numbers['reason_without_flywheel']}"
     slowest = recorded(numbers, "least_speed_without_flywheel_rpm", digits=4)
     if slowest.number:
         return words(f"it is {bare:.4g} (least speed {{slowest}})", slowest=slowest)
-    return f"it is {bare:.4g}: the crank all but stops, below a millionth of its greatest speed"
+    return f"it is {bare:.4g}: the crank nearly stops, below a millionth of its maximum speed"
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Sheet:
@@ -154,7 +156,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
     turns = [("with flywheel" if found.needed else "without flywheel", found.running, 0)]
     small = run(0.5 * found.inertia) if found.needed else None
     if small is not None:
-        turns.append(("with half of it", small, FAINT))
+        turns.append(("with half the inertia", small, FAINT))
     speeds = []
     for name, running, style in turns:
         angle, (speed,) = in_order(running, running.speed)

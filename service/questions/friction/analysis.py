@@ -60,10 +60,10 @@ class FrictionNumbers(Record):
 
 
 _WORDS = {
-    "drives": "drives at every crank angle, whatever the load",
+    "drives": "drives at every crank angle, for any load",
     "locks": "LOCKS: no crank torque drives the slider",
     "locks or may jam": "LOCKS at some crank angles, may jam at others",
-    "may jam": "MAY JAM: the forces are not determined",
+    "may jam": "MAY JAM: the forces are undefined",
 }
 _OVER = "over the crank angle"
 
@@ -84,7 +84,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     work = None if found.locks else energies(mechanism, linkage)
     return {
         "one_cylinder_at_constant_speed": whole,
-        "verdict": "drives" if found.holds is None and not found.locks else _word(found.holds),
+        "verdict": "drives" if found.holds is None and not found.locks else _locking_in_words(found.holds),
         "self_locking_margin_deg": plain(math.degrees(found.margin)),
         "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
         "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
@@ -107,7 +107,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     }
 
 
-def _word(holds: float | None) -> Verdict:
+def _locking_in_words(holds: float | None) -> Verdict:
     if holds is None:  # a single angle, at a margin of exactly zero
         return "may jam"
     return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
@@ -125,13 +125,13 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
     heat, drives = numbers["friction_heat_J"], (numbers["useful_work_J"] or 0.0) < 0.0
     shares = ", ".join(f"{name} {100.0 * part / heat:.3g} %" for name, part in heats.items() if heat and part)
     least = words(
-        "least transmission angle {angle} less angles of friction",
+        "least transmission angle {angle} minus the friction angles",
         angle=recorded(numbers, "least_transmission_angle_deg", digits=4),
     )
     shown: list[NamedNumber] = [
         ("self-locking margin", recorded(numbers, "self_locking_margin_deg"), least),
-        ("angle of friction, guide", recorded(numbers, "guide_friction_angle_deg"), ""),
-        ("angle of friction, pins", recorded(numbers, "pin_friction_angle_deg"), ""),
+        ("friction angle, guide", recorded(numbers, "guide_friction_angle_deg"), ""),
+        ("friction angle, pins", recorded(numbers, "pin_friction_angle_deg"), ""),
     ]
     for key, smooth, over in (
         ("peak_torque_Nm", "peak_torque_without_friction_Nm", ""),
@@ -139,7 +139,7 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
         ("peak_guide_force_N", "peak_guide_force_without_friction_N", ""),
     ):
         shown.append(named_number(numbers, key, joined([over, compared(numbers, smooth, "without friction")])))
-    why = "the load does no net work" if heat is not None else "nothing is determined"
+    why = "the load does no net work" if heat is not None else "all values are undefined"
     delivered = "of the load's work is delivered at the crank" if drives else ""
     efficiency = numbers["efficiency"]
     side = "negative: the load drives the machine" if drives else "against the load"
@@ -177,7 +177,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     angle = Line("transmission angle", degrees, with_it.transmission_angle)
     panels = (
         both("drive torque", TORQUE, "torque"),
-        both("force of the guide on the slider", FORCE, "guide"),
+        both("guide force on the slider", FORCE, "guide"),
         over_turn("transmission angle", angle, kind=ANGLE, level=level),
     )
     locked = tuple((float(np.degrees(a)), float(np.degrees(b))) for a, b in found.locked)

@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 45, "pressure over volume and crank angle in the cylinders, valve events")
+QUESTION = Question(__name__, 45, "cylinder pressure over volume and crank angle, valve events")

@@ -45,11 +45,11 @@ class Indicator(Record):
     cylinders: list[CylinderPressures]
 
 
-def _of(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
+def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
     found = cylinders(mechanism)
     if not found:
         raise InputError(
-            "an indicator diagram is of a cylinder; got none; add to the job for example "
+            "an indicator diagram needs a cylinder; this job has none; add to the job for example "
             '[[load]] with bore = "70 mm", suction = "1 bar", discharge = "8 bar" and clearance = 0.05'
         )
     return found
@@ -62,7 +62,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     without a cylinder.
     """
     found: list[CylinderPressures] = []
-    for place, load in _of(mechanism):
+    for place, load in _require_cylinders(mechanism):
         curve = indicator(mechanism, linkage, load, turn(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
         expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
@@ -104,7 +104,7 @@ def blocks(numbers: Indicator) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return pressure over volume and over the crank angle, a line for each cylinder."""
     over_volume, over_angle = [], []
-    for style, (place, load) in enumerate(_of(mechanism)):
+    for style, (place, load) in enumerate(_require_cylinders(mechanism)):
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
         theta = turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))

@@ -18,26 +18,26 @@ QUESTION = Question(
         Input(
             "slider_velocity",
             SPEED,
-            help="Slider velocity along the slider line: gives the crank speed.",
+            help="Slider velocity along the slider line; gives the crank speed.",
             example="-1 m/s",
         ),
         Input(
             "slider_acceleration",
             ACCELERATION,
-            help="Slider acceleration: gives the crank acceleration. Needs the velocity.",
+            help="Slider acceleration; gives the crank acceleration. Needs the velocity.",
             example="3 m/s^2",
         ),
     ),
     command=Command(
         help="""Find every crank angle that puts the slider at a position.
 
-    Most positions have two, one on each stroke, named as for a crank that turns counter-clockwise. With the
-    slider's velocity and acceleration, each has the crank speed and the crank acceleration that give them. Crank
-    angle, speed and acceleration are positive counter-clockwise. Linkages that do not turn fully are accepted;
-    of a job whose crank swings, the crank angles are those of its swing.""",
+    Most positions have two, one on each stroke; strokes are named for counter-clockwise rotation. Given the slider's
+    velocity and acceleration, each angle comes with the crank speed and crank acceleration that produce them. Crank
+    angle, speed and acceleration are positive counter-clockwise. The linkage need not rotate fully. For a job with a
+    swinging crank, the crank angles are those within the swing.""",
         endpoint="find_crank_angles",
-        job="A job file: what the branch and fixed dimensions come from. A run with --design.",
-        alone="Without JOB the branch is the open one. Dimensions that JOB fixes need not be repeated. With --design, "
-        "a run stands in place of JOB, and the design has its dimensions.",
+        job="Job file that supplies the branch and fixed dimensions; with --design, a run.",
+        alone="Without JOB the branch is open. Dimensions that JOB fixes need not be repeated. With --design, give a "
+        "run instead of JOB; the dimensions are those of the design.",
     ),
 )

@@ -21,7 +21,7 @@ from ...render.blocks import Block, Table, column, joined, recorded, sentence, w
 from ..answers import Note, Record
 
 _NEAR = 1e-9  # rad, beyond an end of a swing: rounding
-UNDEFINED = "at a dead centre a slider at rest goes with any crank speed: crank speed and acceleration are undefined"
+UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank speed and acceleration are undefined"
 """Reason why there is no crank speed where a slider velocity is given."""
 
 
@@ -77,17 +77,17 @@ def numbers(
     if swing is not None:
         own = require_swing(mechanism, linkage, swing)
         swing = placed(mechanism, own, swing)
-        found = _within(every, swing)
+        found = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
         if not found:
             places = sorted(1e3 * float(own.at(angle).slider_position) for angle in _turning_angles(own, swing))
             raise AssemblyError(
-                f"the slider stays between {places[0]:.9g} and {places[-1]:.9g} mm while the crank swings {ends}; got "
-                f"{1e3 * slider_position:.9g} mm; take a position between"
+                f"the position must be between {places[0]:.9g} and {places[-1]:.9g} mm, the slider's travel while the "
+                f"crank swings {ends}; got {1e3 * slider_position:.9g} mm; choose one in this range"
             )
         if len(found) < len(every):
-            other = "one other crank angle that gives it lies" if len(every) - len(found) == 1 else "others lie"
-            said.append(f"{other} outside of the swing {ends}")
+            other = "one other crank angle for this position lies" if len(every) - len(found) == 1 else "others lie"
+            said.append(f"{other} outside the swing {ends}")
     if slider_velocity is not None and any(each.speed is None for each in found):
         said.append(UNDEFINED)
     return {
@@ -98,12 +98,12 @@ def numbers(
         "slider_position_mm": 1e3 * slider_position,
         "slider_velocity_m_s": slider_velocity,
         "slider_acceleration_m_s2": slider_acceleration,
-        "solutions": [_solution(each) for each in found],
+        "solutions": [_solution_record(each) for each in found],
         "note": "; ".join(said),
     }
 
 
-def _within(found: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
+def _solutions_in_swing(found: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
     """Return the solutions of a swing between crank angles, their angles as it has them."""
     kept = []
     for each in found:
@@ -141,14 +141,14 @@ def blocks(record: CrankAngles) -> list[Block]:
     for solution in record["solutions"]:
         rates = (recorded(solution, key) for key, _ in asked)
         rows.append((recorded(solution, "crank_angle_deg"), solution["stroke"] or "dead centre", *rates))
-    heads = (column("crank angle", ANGLE), column("stroke, counter-clockwise", left=True))
+    heads = (column("crank angle", ANGLE), column("stroke (counter-clockwise)", left=True))
     return [
         sentence("slider: {given}", given=joined(given)),
         Table((*heads, *(head for _, head in asked)), tuple(rows), ruled=True),
     ]
 
 
-def _solution(found: CrankSolution) -> Solution:
+def _solution_record(found: CrankSolution) -> Solution:
     return {
         "crank_angle_deg": ANGLE.metric.factor * found.crank_angle,
         "stroke": found.stroke,

@@ -11,16 +11,16 @@ QUESTION = WiderQuestion(
     path="jobs/{number}/designs/{design}/like",
     posted=True,
     key="like",
-    help="""Find the design most like one of a run that also meets further conditions.
+    help="""Find the design closest to a given one that also meets further conditions.
 
-    It is Pareto-optimal for the run's job with the conditions added, and of those designs the nearest, objectives by
-    their range over the run's front. Nothing is saved.""",
+    It is the nearest of the designs that are Pareto-optimal for the run's job with the conditions added. Distance is
+    measured in the objectives, each relative to its range over the run's front. Nothing is saved.""",
     inputs=(
         Plain(
             "where",
             type=list[str],
-            help="What it must also meet: a quantity, a dimension or a formula, >= <= or =, a value, such as "
-            '"crank = 40 mm". May be repeated.',
+            help="Condition to meet as well: a quantity, a dimension or a formula, then >=, <= or =, then a value, "
+            'such as "crank = 40 mm". May be repeated.',
             example='"transmission_angle >= 45 deg"',
             metavar="CONDITION",
             required=True,

@@ -33,7 +33,7 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
     """Return the nearest design that meets the conditions. Raises as `optimise.decisions.like.nearest` does."""
     front.part(row)  # refuses what is no row
     before = rows_of(front.columns)[row]
-    constraints, ranges = _added(where, before, front.problem)
+    constraints, ranges = _added_constraints(where, before, front.problem)
     given, span = front.values[row], scaling(front.values)[1]
     found = nearest(front.problem, before, given, span, constraints, ranges)
     record: dict[str, Any] = {"status": found.status, "message": found.message}
@@ -41,7 +41,7 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
         return Answer(record=lambda _: record, blocks=[Sentence(found.message)], met=False, message=found.message)
     after = rows_of(found.columns)[0]
     record |= {"distance": float(distance(found.values, given, span)[0]), "design": after, "before": before}
-    record["moved"] = {key: value for key in after if (value := _moved(before, after, key)) is not None}
+    record["moved"] = {key: value for key in after if (value := _change(before, after, key)) is not None}
     title = heading(
         f"{{name}}: like design {row % len(front) + 1}, with {{where}}",
         name=front.problem.name,
@@ -54,7 +54,7 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
     )
 
 
-def _added(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
+def _added_constraints(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
     names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
     found: dict[str, Ends] = {}
@@ -64,13 +64,15 @@ def _added(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Const
         name = names.get(condition.column.key) if formula is None else formula.text
         if name is None or isinstance(condition.value, str):
             raise InputError(
-                "a design can be asked for by quantities, dimensions and formulas of these; "
-                f"got {text!r}; write it like {_EXAMPLE}"
+                f"a condition must begin with a quantity, a dimension or a formula of these; got {text!r}; write it "
+                f"like {_EXAMPLE}"
             )
         factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
         ends = common(found.get(name, (None, None)), _ends(condition, factor, text))
         if ends is None:
-            raise InputError(f"the conditions on {name} contradict each other; got {text!r} last; leave out one")
+            raise InputError(
+                f"the conditions on {name} must not contradict each other; got {text!r} last; leave one out"
+            )
         found[name] = ends
     ranges = {name: ends for name, ends in found.items() if name in DIMENSIONS}
     constraints = [
@@ -87,11 +89,11 @@ def _ends(condition: Condition, factor: float, text: str) -> Ends:
     value = condition.value / factor
     ends = {">=": (value, None), "<=": (None, value), "==": (value, value)}.get(condition.comparison)
     if ends is None:
-        raise InputError(f"a design is asked for with >=, <= or =; got {text!r}; write it like {_EXAMPLE}")
+        raise InputError(f"a condition must use >=, <= or =; got {text!r}; write it like {_EXAMPLE}")
     return ends
 
 
-def _moved(before: Row, after: Row, key: str) -> float | None:
+def _change(before: Row, after: Row, key: str) -> float | None:
     """Return by how much a number changed; None for what is no quantity or has no finite change."""
     old, new = before.get(key), after[key]
     if key == "residual" or not isinstance(old, float) or not isinstance(new, float):

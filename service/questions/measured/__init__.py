@@ -2,5 +2,5 @@
 
 from ..question import Question
 
-MEASURED = Question(__name__, 88, "measured curves beside the computed ones", needs_job=False)
+MEASURED = Question(__name__, 88, "comparison of measured and computed curves", needs_job=False)
 """Shown where there are samples, and so none of the topics that are asked for by name."""

@@ -51,7 +51,7 @@ class Deviations(Record):
 
 _DRAWN = 3000  # samples of a panel, spread over the measured ones
 _NAMED = 12  # of the columns that were left out
-_UNDETERMINED = "undetermined where friction locks"
+_UNDETERMINED = "undefined where friction locks"
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Deviations:
@@ -95,7 +95,7 @@ def _entry(found: Deviation) -> dict[str, Any]:
 
 def blocks(numbers: Deviations) -> list[Block]:
     """Return the deviation of each curve, then the shifts that fit best, and what was left out."""
-    source = ", crank angles from the time at constant speed" if numbers["crank_angle_from_time"] else ""
+    source = ", crank angles derived from time at constant speed" if numbers["crank_angle_from_time"] else ""
     deviations: list[tuple[Text, ...]] = []
     fits: list[tuple[Text, ...]] = []
     for entry in numbers["curves"].values():
@@ -112,9 +112,9 @@ def blocks(numbers: Deviations) -> list[Block]:
     return [
         heading(f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"),
         Table((curve, *sizes, column("at", ANGLE), unit_column), tuple(deviations), ruled=True),
-        heading("Shifts that, added to what was measured, fit best; not applied above"),
+        heading("Shifts that, added to the measured curves, give the best fit; not applied above"),
         Table(
-            (curve, column("crank angle", ANGLE), column("value"), column("RMS left"), unit_column),
+            (curve, column("crank angle", ANGLE), column("value"), column("remaining RMS"), unit_column),
             tuple(fits),
             ruled=True,
         ),
@@ -130,13 +130,13 @@ def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
 def file_notes(numbers: Mapping[str, Any]) -> list[str]:
     """Return sentences on what was read of a file, and on the rows and columns that were left out."""
     rows, names = numbers["rows_without_crank_angle"], numbers["left_out"]
-    lines = [f"Read from the file: {numbers['understood']}"] if numbers["understood"] else []
+    lines = [f"Interpretation of the file: {numbers['understood']}"] if numbers["understood"] else []
     if rows:
-        lines.append(f"Rows without a crank angle, left out: {rows}")
+        lines.append(f"Rows without a crank angle, omitted: {rows}")
     if names:
         some = [name if name.isprintable() else ascii(name) for name in names[:_NAMED]]
         more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-        lines.append(f"Columns that are no curve or empty, left out: {', '.join(some)}{more}")
+        lines.append(f"Columns that are empty or not a curve, omitted: {', '.join(some)}{more}")
     return lines
 
 

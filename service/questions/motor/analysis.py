@@ -35,7 +35,7 @@ Moving = Annotated[float | None, Note("null where friction locks or may jam the 
 
 
 class Motor(Record):
-    """Torque, power and inertia that a motor moves; of several cylinders together."""
+    """Torque, power and inertia that a motor moves; with several cylinders."""
 
     peak_torque_Nm: Locked
     peak_torque_angle_deg: AngleOfPeak
@@ -113,7 +113,7 @@ def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
 def blocks(numbers: Motor) -> list[Block]:
     """Return the numbers for people."""
     remarks = {
-        "rms_torque_Nm": "over time, heats the motor",
+        "rms_torque_Nm": "over time; it heats the motor",
         "mean_torque_Nm": "over the crank angle",
         "mean_power_W": "over time",
         "mean_reflected_inertia_kg_m2": "over the crank angle",
@@ -121,7 +121,7 @@ def blocks(numbers: Motor) -> list[Block]:
     if numbers["peak_power_W"] is None and numbers["peak_torque_Nm"] is not None:
         remarks |= dict.fromkeys(("peak_power_W", "mean_power_W"), SPEED.rule)
     known = numbers["peak_torque_Nm"] is not None
-    title = "Motor" if known else "Motor: friction locks or jams the linkage, no torque is determined"
+    title = "Motor" if known else "Motor: friction locks or jams the linkage, so the torque is undefined"
     keys = [key for key in numbers if not key.endswith("_angle_deg")]
     return number_list(title, [named_number(numbers, key, remarks.get(key, "")) for key in keys])
 
@@ -146,4 +146,4 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         over_turn("power", power, kind=POWER, level=levels[1]),
         over_turn("reflected inertia", inertia, kind=INERTIA, level=("mean", usual)),
     )
-    return Sheet("Motor over the cycle", "", panels, width=6.4, height=2.25, stacked=True)
+    return Sheet("Motor torque and power over the cycle", "", panels, width=6.4, height=2.25, stacked=True)

@@ -7,15 +7,15 @@ from ..question import Question
 TOUCH = Input(
     "touch_distance",
     LENGTH,
-    "Touches its work, before the dead centre",
-    "Distance before the dead centre at which a press touches its work.  [default: of the job's slider]",
+    "Touch distance before the dead centre",
+    "Distance before the dead centre at which the press touches the workpiece. [default: from the job's slider]",
     sign="positive",
 )
 DWELL = Input(
     "dwell_distance",
     LENGTH,
-    "Dwells within",
-    "Distance from the dead centre within which a press dwells.  [default: of the job's slider]",
+    "Dwell distance",
+    "Distance from the dead centre within which the press dwells. [default: from the job's slider]",
     sign="positive",
     drawn=False,
 )
@@ -23,13 +23,13 @@ RATED = Input(
     "rated_torque",
     TORQUE,
     "Rated torque",
-    "Torque that clutch or motor may give at the crank.  [default: peak torque of the design]",
+    "Torque that the clutch or motor can deliver at the crank. [default: peak torque of the design]",
     sign="positive",
 )
 QUESTION = Question(
     __name__,
     46,
-    "force, speed and work of a press before a dead centre, dwell",
+    "force, speed and work of a press before a dead centre; dwell",
     needs_job=False,  # with a touch distance and a rated torque
     inputs=(TOUCH, DWELL, RATED),
 )

@@ -70,7 +70,7 @@ def numbers(
     """
     touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
-    angles, travels = _before(mechanism, linkage, distances)
+    angles, travels = _angles_before_dead_centre(mechanism, linkage, distances)
     speed = _speed(mechanism)
     speeds = speed * travels if speed else None
     dwell = mechanism.slider.dwell if dwell_distance is None else dwell_distance
@@ -103,8 +103,8 @@ def _touch(mechanism: Mechanism, given: float | None) -> float:
     touch = mechanism.slider.touch if given is None else given
     if touch is None:
         raise InputError(
-            "a press touches its work at a distance before the dead centre; got none; give a touch distance, or in the "
-            'job [mechanism] slider = { mass = "80 kg", touch_distance = "12 mm" }'
+            'a touch distance is missing; give it as an input, or in the job [mechanism] slider = { mass = "80 kg", '
+            'touch_distance = "12 mm" }'
         )
     return touch
 
@@ -113,12 +113,13 @@ def _torque(mechanism: Mechanism, linkage: Linkage, given: float | None) -> floa
     torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if given is None else given
     if not torque > 0.0:
         raise InputError(
-            "the force of a press comes from a torque; this design needs none; give a rated torque, such as 50 N m"
+            "the press force needs a torque, but the peak torque of this design is zero; give a rated torque, such as "
+            "50 N m"
         )
     return torque
 
 
-def _before(
+def _angles_before_dead_centre(
     mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it."""
@@ -136,7 +137,7 @@ def _require_stroke(distance: float, stroke: float) -> None:
     if not distance < stroke:
         raise InputError(
             f"distances before a dead centre must be less than the stroke, {1e3 * stroke:.6g} mm; got "
-            f"{1e3 * distance:.6g} mm; give less"
+            f"{1e3 * distance:.6g} mm; reduce the distance"
         )
 
 
@@ -146,8 +147,8 @@ def blocks(numbers: Press) -> list[Block]:
     shown: list[NamedNumber] = [
         named_number(numbers, "rated_torque_Nm", origin),
         named_number(numbers, "touch_distance_mm", f"before the {numbers['dead_centre']} dead centre"),
-        named_number(numbers, "touch_force_N", "that the rated torque gives where it touches"),
-        named_number(numbers, "work_J", "that the rated torque does from there to the dead centre"),
+        named_number(numbers, "touch_force_N", "available from the rated torque at the touch distance"),
+        named_number(numbers, "work_J", "available from the rated torque between touch and dead centre"),
     ]
     if numbers["touch_speed_m_s"] is not None:
         shown.append(named_number(numbers, "touch_speed_m_s", ""))
@@ -170,7 +171,7 @@ def blocks(numbers: Press) -> list[Block]:
     return [
         *number_list("Press", shown),
         Table(tuple(there.values()), rows, ruled=True),
-        note("Forces are static, without friction and without what moves the machine itself."),
+        note("Static forces, without friction and inertia."),
     ]
 
 
@@ -180,7 +181,7 @@ def figure(
     """Return available force and slider speed over the distance before the dead centre."""
     touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _SAMPLES + 1) / _SAMPLES
-    _, travels = _before(mechanism, linkage, distances)
+    _, travels = _angles_before_dead_centre(mechanism, linkage, distances)
     shown = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
     forces = Line("", distances[shown], (torque / travels)[shown])
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]

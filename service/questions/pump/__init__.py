@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 44, "delivered flow of pumps and compressors, its ripple, torque of the pressures")
+QUESTION = Question(__name__, 44, "delivered flow of pumps and compressors, its ripple, pressure torque")

@@ -1,4 +1,4 @@
-"""What pumps and compressors deliver: mean flow, its ripple over the cycle, and the torque of the pressures alone."""
+"""What pumps and compressors deliver: mean flow, its ripple over the cycle, and the torque from the pressures only."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ..static_forces.analysis import massless
 
 
 class Delivery(Record):
-    """What all cylinders deliver together, and the torque of the pressures alone."""
+    """What all cylinders deliver together, and the torque from the pressures only."""
 
     flow_L_min: float
     """Mean over a turn; gas counts at suction pressure."""
@@ -38,7 +38,7 @@ class Delivery(Record):
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
-    """Return flow, ripple and torque of the pressures of all cylinders together, ready for JSON.
+    """Return flow, ripple and pressure torque of all cylinders together, ready for JSON.
 
     flow_ripple: None for gas and along a speed profile. Raises `InputError` without a pump, a compressor or a speed.
     """
@@ -81,10 +81,10 @@ def _flows(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -
 def blocks(numbers: Delivery) -> list[Block]:
     """Return the numbers for people."""
     remarks = {
-        "flow_L_min": "mean over a turn; gas counts at suction pressure",
-        "flow_ripple": "greatest less least flow of the liquid over its mean",
-        "mean_torque_Nm": "of the pressures alone",
-        "peak_torque_Nm": "of the pressures alone",
+        "flow_L_min": "mean over a turn; gas volume at suction pressure",
+        "flow_ripple": "maximum minus minimum liquid flow, relative to its mean",
+        "mean_torque_Nm": "from the pressures only",
+        "peak_torque_Nm": "from the pressures only",
     }
     known = [key for key, value in numbers.items() if value is not None]
     shown = [named_number(numbers, key, remark) for key, remark in remarks.items() if key in known]
@@ -92,7 +92,7 @@ def blocks(numbers: Delivery) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
-    """Return the flow of each cylinder and of all together, of a liquid, and the torque of the pressures."""
+    """Return the flow of each cylinder and of all together, of a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
     alone = _pressures(shaft)
     theta = turn(whole_breakpoints(alone, linkage))
@@ -101,7 +101,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         each = _flows(shaft, linkage, theta)
         single = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(each) if len(each) > 1]
         together = Line("together", degrees, np.sum(each, axis=0))
-        panels.append(over_turn("flow of the liquid", *single, together, kind=VOLUME_FLOW))
+        panels.append(over_turn("liquid flow", *single, together, kind=VOLUME_FLOW))
     torque = whole_curves(alone, linkage, theta).torque
-    panels.append(over_turn("torque of the pressures", Line("", degrees, torque), kind=TORQUE))
+    panels.append(over_turn("pressure torque", Line("", degrees, torque), kind=TORQUE))
     return Sheet("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)

@@ -11,19 +11,19 @@ QUESTION = WiderQuestion(
     path="jobs/{number}/designs/{design}/rounded",
     posted=True,
     key="rounded",
-    help="""Find the best designs of round numbers near one of a run, and what each costs.
+    help="""Find the best round-number designs near a given one, with the loss of each.
 
-    All combinations of multiples of the steps around the design are judged exactly. Listed are those that meet every
-    requirement, or miss it by no more than --allow says, and that no other one beats in every objective, least loss
-    first: the greatest over the objectives, each by its range over the front. If the best loses much, those that miss
-    little and lose clearly less follow. Where none meets all, the nearest are listed, each with what it misses and by
-    how much.""",
+    Evaluates every combination of multiples of the steps around the design exactly. Lists the non-dominated designs
+    that meet every requirement, or miss it by no more than --allow, smallest loss first. The loss is the greatest over
+    the objectives, each relative to its range over the front. If the best design loses much, designs follow that miss
+    a little and lose clearly less. If no design meets every requirement, lists the nearest ones with what each misses
+    and by how much.""",
     inputs=(
         Plain(
             "to",
             type=list[str],
-            help='Step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one number that varies: '
-            '"rod=1 mm". May be repeated.',
+            help='Step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one variable: "rod=1 mm". May '
+            "be repeated.",
             example='"0.5 mm" or "rod=1 mm"',
             metavar="STEP",
             required=True,
@@ -33,9 +33,10 @@ QUESTION = WiderQuestion(
         Plain(
             "allow",
             type=list[str],
-            help='A requirement, =, and by how much designs may miss it, such as "stroke=0.1 mm". May be repeated.',
+            help='REQUIREMENT=AMOUNT by which designs may miss the requirement, such as "stroke=0.1 mm". May be '
+            "repeated.",
             example='"stroke=0.1 mm"',
-            form="a requirement, =, and by how much it may be missed",
+            form="REQUIREMENT=AMOUNT",
             metavar="MISS",
             limits={"max_length": 50},
             sent=["stroke=0.1 mm"],
@@ -43,7 +44,7 @@ QUESTION = WiderQuestion(
         Plain(
             "count",
             type=int,
-            help="Designs to list at most.",
+            help="Maximum number of designs to list.",
             usual="5",
             metavar="N",
             least=1,

@@ -90,14 +90,14 @@ def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
         name = metric_key(name)
         if not value:
-            raise InputError(
-                f"{key} is a step, or a name, = and a step; got {shown(text)}; write it like {_TO.example}"
-            )
+            raise InputError(f"{key} must be STEP or NAME=STEP; got {shown(text)}; write it like {_TO.example}")
         if equals and name not in names:
             raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
         one = names[name] if equals else ""
         if one in found:
-            raise InputError(f"{key} gives each step once; got {one or 'that of all lengths'} twice; leave out one")
+            raise InputError(
+                f"{key} may give each step only once; got {one or 'that of all lengths'} twice; leave out one"
+            )
         found[one] = _step(value, kinds[one] if one else LENGTH, key)
     every = found.pop("", None)
     return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
@@ -175,9 +175,9 @@ def _blocks(found: Rounded, record: dict[str, Any], row: int) -> list[Block]:
             stem = objectives[key].stem
             changes = (recorded(design, f"change_{key}", digits=3, sign=True) for design in designs)
             rows.append(("  change", unit, "", *changes))
-            rows.append(("", "%", "", *(_percent(design[f"change_{stem}_percent"]) for design in designs)))
+            rows.append(("", "%", "", *(_format_loss(design[f"change_{stem}_percent"]) for design in designs)))
     range_ = "% of range" if len(objectives) > 1 else "% of value"
-    rows.append(("greatest loss", range_, "", *(_percent(design["loss_percent"]) for design in designs)))
+    rows.append(("greatest loss", range_, "", *(_format_loss(design["loss_percent"]) for design in designs)))
     heads = (column("quantity", left=True), column("unit", left=True), column("given"))
     numbers = tuple(column(str(number)) for number in range(1, len(designs) + 1))
     name = found.problem.name
@@ -192,17 +192,17 @@ def _blocks(found: Rounded, record: dict[str, Any], row: int) -> list[Block]:
     ]
 
 
-def _percent(value: float) -> Value:
+def _format_loss(value: float) -> Value:
     return Value(value if math.isfinite(value) else None, digits=2, sign=True, missing="-")
 
 
 def _requirements(design: Mapping[str, Any], found: Rounded) -> Text:
     """Return in words what a design misses, or which requirement is tightest."""
     if design["misses"]:
-        missed = joined([_missed(miss, found.problem) for miss in design["misses"]], " and ")
+        missed = joined([_format_miss(miss, found.problem) for miss in design["misses"]], " and ")
         return words("misses {missed}", missed=missed)
     if design["tightest"] is None:
-        return "keeps every requirement"
+        return "meets every requirement"
     of = found.problem.quantity(design["tightest"])
     if any(item.equality for item in found.constraints if item.quantity == design["tightest"]):
         return f"tightest is {of.title}, which is required exactly"
@@ -210,7 +210,7 @@ def _requirements(design: Mapping[str, Any], found: Rounded) -> Text:
     return words("tightest is {title}, slack {slack}", title=of.title, slack=slack)
 
 
-def _missed(miss: Mapping[str, Any], problem: Problem) -> Text:
+def _format_miss(miss: Mapping[str, Any], problem: Problem) -> Text:
     of = problem.quantity(miss["quantity"])
     amount, most = (Value(miss[name] / of.unit.factor, of.kind, 4) for name in ("amount", "allowed"))
     allowed = words("; {most} is allowed", most=most) if miss["allowed"] else ""

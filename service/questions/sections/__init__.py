@@ -7,13 +7,13 @@ QUESTION = Question(
     3,
     shows="crank and rod as bars of least mass within the limits of stress",
     command=Command(
-        help="""Size crank and rod of one design as rectangular bars of least mass.
+        help="""Size crank and rod of one design as rectangular bars with least mass.
 
-    They keep the stress, fatigue, buckling and bearing limits of the job's [sections] under the forces that the machine
-    puts on them, their own mass included. What JOB says of the links' masses is not used. Dimensions that JOB fixes
-    need not be repeated.""",
+    The bars satisfy the stress, fatigue, buckling and bearing limits in the job's [sections] under all forces of the
+    machine, including those from their own mass. Link masses in JOB are ignored. Dimensions that JOB fixes need not be
+    repeated.""",
         endpoint="size_sections",
-        job="A job file with a table [sections].",
+        job="Job file with a table [sections].",
         sizes=True,
     ),
 )

@@ -34,7 +34,7 @@ class Sections(Record):
     utilisation: dict[str, float]
     """By limit, how much of it is used: 1 where it is reached."""
     mass_percent_per_percent: dict[str, float]
-    """By limit, how much mass 1 % more of it saves."""
+    """By limit, how much mass raising it by 1 % saves."""
 
 
 _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
@@ -46,7 +46,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
     Raises `InputError` without limits, and as `size_sections` does.
     """
     if problem is None or problem.sections is None or mechanism.strength is None:
-        raise InputError("sizing sections needs the table [sections]; got none; add it with a material and pins")
+        raise InputError(
+            "sizing sections needs the table [sections]; this job has none; add it with a material and pins"
+        )
     pins = {pin: getattr(mechanism.strength, pin) for pin in ("crank_pivot", "crank_pin", "slider_pin")}
     found = size_sections(mechanism, linkage, mechanism.strength.material, replace(problem.sections, **pins))
     crank, rod = float(linkage.crank), float(linkage.rod)
@@ -75,13 +77,13 @@ def blocks(numbers: Sections) -> list[Block]:
         sides = {side: recorded(numbers, f"{of}_{side}_mm", digits=4) for side in ("width", "depth")}
         return sentence(f"{of}: width {{width}}, depth {{depth}}", **sides)
 
-    settled = "" if numbers["settled"] else "; sections and dynamics have not settled"
+    settled = "" if numbers["settled"] else "; not converged"
     together = f"mass of both: {{mass}}, after {numbers['iterations']} iterations{settled}"
     rows = []
     for name, used in numbers["utilisation"].items():
         rate = Value(numbers["mass_percent_per_percent"][name], digits=3)
         saved = words("{rate} % of mass", rate=rate) if (rate.number or 0.0) > _ACTIVE else ""
         rows.append((name, Value(100.0 * used, digits=4), saved))
-    columns = column("limit", left=True), column("used, %"), column("1 % more of it saves")
+    columns = column("limit", left=True), column("utilisation, %"), column("raising it by 1 % saves")
     mass = recorded(numbers, "mass_kg", digits=5)
     return [size("crank"), size("rod"), sentence(together, mass=mass), Table(columns, tuple(rows))]

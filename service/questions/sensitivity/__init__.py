@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 60, "change of every quantity with every dimension")
+QUESTION = Question(__name__, 60, "sensitivity of every quantity to every dimension")

@@ -99,7 +99,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
             within.append((row["title"], *changes, Unit(kind)))
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
-    title = "Change of each quantity for 1 {unit} more of a dimension (and in % for 1 % more)"
+    title = "Change of each quantity if a dimension grows by 1 {unit} (and in % if it grows by 1 %)"
     found: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
     if within:
         columns = column("quantity", left=True), *map(column, DIMENSIONS), column("unit", left=True)

@@ -52,8 +52,8 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
     count = max(1, len(rows))
     height = 1.55 + 0.24 * count
     figure = new_figure(width, height)
-    note = "change in % for 1 % more of each dimension (of the offset: of its size); "
-    note += f"{left_out} others change less" if left_out > 0 else "at a kink the derivatives below and above"
+    note = "change in % if each dimension grows by 1 % (the offset: its size); "
+    note += f"{left_out} others change less" if left_out > 0 else "at a kink: derivatives below and above"
     heading(figure, "Sensitivity", note)
     each = (width - 2.56) / len(DIMENSIONS)
     columns = [f"{name}_percent" for name in DIMENSIONS]

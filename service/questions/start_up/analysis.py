@@ -131,17 +131,17 @@ def blocks(numbers: Start) -> list[Block]:
     """Return the numbers for people."""
     titles = {
         "final_speed_rpm": "speed reached",
-        "peak_motor_torque_Nm": "peak motor torque, on the crank",
+        "peak_motor_torque_Nm": "peak motor torque at the crank",
         "peak_torque_Nm": "peak torque into the mechanism",
         "peak_power_W": "peak motor power",
         "motor_work_J": "work of the motor",
-        "load_work_J": "work on the loads",
-        "friction_work_J": "heat of friction",
+        "load_work_J": "work done on the loads",
+        "friction_work_J": "friction heat",
         "kinetic_energy_gained_J": "kinetic energy gained",
-        "energy_imbalance": "error of the energy balance",
+        "energy_imbalance": "energy balance error",
     }
     steady_titles = {
-        "mean_speed_rpm": "steady running: mean speed over time",
+        "mean_speed_rpm": "steady running: time-averaged speed",
         "fluctuation": "coefficient of speed fluctuation",
         "peak_motor_torque_Nm": "peak motor torque",
         "mean_power_W": "mean motor power over time",

@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 10, "forces of the loads alone, mechanical advantage")
+QUESTION = Question(__name__, 10, "static forces from the loads only; mechanical advantage")

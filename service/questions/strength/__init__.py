@@ -3,5 +3,5 @@
 from ..question import Question
 
 QUESTION = Question(
-    __name__, 48, "stresses, safeties, pins and wear of crank and rod, and where the stress is greatest"
+    __name__, 48, "stresses, safety factors, pins and wear of crank and rod, and the place of greatest stress"
 )

@@ -88,7 +88,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
 
 def _require(mechanism: Mechanism) -> None:
     if reason := STATIC_SAFETY.lacks(mechanism, "undefined"):
-        raise InputError(f"the strength of a design is that of its crank and rod: {reason}")
+        raise InputError(f"strength needs material and pins for crank and rod: {reason}")
 
 
 def _bars(mechanism: Mechanism) -> list[str]:
@@ -152,7 +152,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     for name in _bars(mechanism):
         stress = bar_stress(mechanism, LINKS[name].part, row_of(linkage))
         if not len(stress.theta):
-            raise InputError("friction locks the design, so that its stresses are not determined; change its friction")
+            raise InputError("friction locks the design, so its stresses are undefined; reduce its friction")
         length, worst = float(getattr(linkage, name)), stress.worst
         degrees = np.degrees(stress.theta)
         faces = [Line(label, degrees, stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))]

@@ -11,13 +11,12 @@ QUESTION = WiderQuestion(
     place=1005,
     help="""Sweep quantities over one or two of crank, rod, offset and speed.
 
-    Where the linkage does not turn there is no value, nor of torques and forces where friction locks it; the reason
-    is given instead.""",
+    Where the linkage cannot rotate fully, or friction locks it, there is no value; the reason is shown instead.""",
     inputs=(
         Plain(
             "over",
             type=list[str],
-            help='What to sweep: "offset=0 mm..20 mm:5" (5 values). Twice for a grid.',
+            help='Parameter to sweep: "offset=0 mm..20 mm:5" (5 values). Give it twice for a grid.',
             example='"offset=0 mm..20 mm:5"',
             metavar="RANGE",
             required=True,
@@ -25,7 +24,7 @@ QUESTION = WiderQuestion(
         Plain(
             "of",
             type=list[str],
-            help='Quantity or formula to compute, such as peak_torque or "crank + rod". Repeatable.',
+            help='Quantity or formula to compute, such as peak_torque or "crank + rod". May be repeated.',
             example='"crank + rod"',
             metavar="QUANTITY",
             required=True,

@@ -42,11 +42,11 @@ def answer(
     require_turning(problem.motion, "sweep")
     axes = [parse_axis(text, words["over"]) for text in over]
     if len(axes) > 2:
-        raise InputError(f"a sweep is over one or two parameters; got {len(axes)} {words['over']}; leave out some")
+        raise InputError(f"a sweep must have one or two parameters; got {len(axes)} {words['over']}; leave out some")
     swept = {axis.parameter for axis in axes}
     for name in DIMENSIONS:
         if name in swept and given.get(name) is not None:
-            raise InputError(f"{name} is swept by {words['over']} and given by {words[name]}; leave out one of the two")
+            raise InputError(f"{name} may be set by {words['over']} or by {words[name]}; got both; leave out one")
     usual = dict.fromkeys(swept, 1.0) | given
     lengths = [
         usual[name] if name in usual else length_option(name, None, problem, words.__getitem__) for name in DIMENSIONS
@@ -59,7 +59,7 @@ def answer(
     return Answer(
         record=lambda units: {"rows": rows_in(rows, units)},
         blocks=[_table(rows, axes, quantities)],
-        notes=[f"{len(stuck)} of {len(rows)} without a value; the first: {stuck[0]}"] if stuck else [],
+        notes=[f"{len(stuck)} of {len(rows)} have no value; the first: {stuck[0]}"] if stuck else [],
         found=(table, axes, quantities),
     )
 
@@ -102,13 +102,13 @@ def parse_axis(text: str, word: str = "over") -> Axis:
         near = closest(asked, known)
         meant = f"; did you mean {near}?" if near else ""
         raise InputError(
-            f"a sweep is over {', '.join(known)}; got {asked!r}{meant}; another number of a job is set by analyse "
-            "--set, or varies in [variables]"
+            f"a sweep must be over one of {', '.join(known)}; got {asked!r}{meant}; set other numbers of a job with "
+            "analyse --set, or let them vary in [variables]"
         )
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
     if match is None and (several is None or not several[2].strip()):
         raise InputError(
-            f"a sweep is a name, its ends with units and the number of values; got {text!r}; write it like {example}"
+            f"a sweep needs a name, two ends with units and the number of values; got {text!r}; write it like {example}"
         )
     name = (match or several)[1]  # type: ignore[index]
     kind = ANGULAR_SPEED if name == "speed" else LENGTH
@@ -122,6 +122,7 @@ def parse_axis(text: str, word: str = "over") -> Axis:
     count = int(match[4])
     if not 2 <= count <= MOST_VALUES or first == last:
         raise InputError(
-            f"a range has two different ends and 2 to {MOST_VALUES:,} values; got {text!r}; write it like {example}"
+            f"a range must have two different ends and 2 to {MOST_VALUES:,} values; got {text!r}; write it like "
+            f"{example}"
         )
     return Axis(name, tuple(float(value) for value in np.linspace(first, last, count)))  # type: ignore[arg-type]

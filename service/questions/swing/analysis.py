@@ -37,26 +37,24 @@ if TYPE_CHECKING:
     from ....objectives.kinds import System
 
 WITHOUT_LOADS = (
-    "the drive is zero: no load acts and no mass weighs or is moved; "
-    "give a JOB with a load, or with masses and gravity or a law of motion"
+    "the drive is zero: there is no load, weight or inertia; give a JOB with a load, or with masses and "
+    "either gravity or a motion law"
 )
-LOCKED = (
-    "friction may lock the linkage {way}, first at a crank angle of {angle:.5g} deg: what drives it is not determined"
-)
-WINDOW = "the position error is that of the whole swing: during and part_of_stroke of [tolerances] do not limit it"
-COASTS = "forces at the ends, where the speed jumps, are left out: the driver's acceleration is not stated there"
+LOCKED = "friction may lock the linkage {way}, first at a crank angle of {angle:.5g} deg: the drive is undefined"
+WINDOW = "the position error is that of the whole swing: during and part_of_stroke in [tolerances] are ignored"
+COASTS = "forces at the ends are omitted: the speed jumps there, and the driver's acceleration is undefined"
 _TITLES = {
     "start_crank_angle": "crank angle at the start",
     "end_crank_angle": "crank angle at the end",
     "start_slider_position": "slider position at the start",
     "end_slider_position": "slider position at the end",
-    "drive_at_start_forth": "drive at the start, moving forth",
-    "drive_at_start_back": "drive at the start, moving back",
-    "drive_at_end_forth": "drive at the end, moving forth",
-    "drive_at_end_back": "drive at the end, moving back",
-    "energy_forth": "energy of the drive, forth",
-    "energy_back": "energy of the drive, back",
-    "stored_energy": "stored forth, without friction",
+    "drive_at_start_forth": "drive at the start, forward stroke",
+    "drive_at_start_back": "drive at the start, return stroke",
+    "drive_at_end_forth": "drive at the end, forward stroke",
+    "drive_at_end_back": "drive at the end, return stroke",
+    "energy_forth": "drive energy, forward stroke",
+    "energy_back": "drive energy, return stroke",
+    "stored_energy": "stored in the forward stroke, without friction",
 }
 
 
@@ -128,11 +126,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> SwingNumb
 
     Raises `AssemblyError` where the linkage does not close, and as `asked_swing` does.
     """
-    machine, swing = _asked(mechanism, **options)
+    machine, swing = _swing_from_inputs(mechanism, **options)
     return swing_record(machine, summarise(machine, linkage, swing))
 
 
-def _asked(
+def _swing_from_inputs(
     mechanism: Mechanism,
     *,
     swing: Swing | None,
@@ -144,16 +142,16 @@ def _asked(
 
 
 def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
-    """Return rows of the curves of both ways."""
-    machine, swing = _asked(mechanism, **options)
+    """Return rows of the curves of both strokes."""
+    machine, swing = _swing_from_inputs(mechanism, **options)
     return rows_in(swing_rows(machine, linkage, swing), units)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> Figure:
-    """Return the curves of both ways below the machine."""
+    """Return the curves of both strokes below the machine."""
     from ...figures.swing import swing_figure
 
-    machine, swing = _asked(mechanism, **options)
+    machine, swing = _swing_from_inputs(mechanism, **options)
     return swing_figure(machine, linkage, swing, units)
 
 
@@ -173,8 +171,8 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> SwingNumbers:
         "start_slider_position_mm": 1e3 * found.slider_positions[0],
         "end_slider_position_mm": 1e3 * found.slider_positions[1],
         "travel_mm": 1e3 * found.travel,
-        **_at("least_transmission_angle_deg", found.least_transmission, ANGLE.metric.factor),
-        **_at(f"peak_drive{drive.suffix}", found.peak_drive, drive.factor, way=True),
+        **_value_and_place("least_transmission_angle_deg", found.least_transmission, ANGLE.metric.factor),
+        **_value_and_place(f"peak_drive{drive.suffix}", found.peak_drive, drive.factor, way=True),
     }
     for end, pair in (("start", found.drive_start), ("end", found.drive_end)):
         for way, value in zip(("forth", "back"), pair, strict=True):
@@ -187,9 +185,9 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> SwingNumbers:
         "efficiency": found.efficiency,
     }
     if found.peak_power is not None:
-        record |= _at("peak_power_W", found.peak_power, 1.0, way=True)
+        record |= _value_and_place("peak_power_W", found.peak_power, 1.0, way=True)
     if found.position_error is not None:
-        record |= _at(f"{driven(swing)}_position_error{error.suffix}", found.position_error, error.factor)
+        record |= _value_and_place(f"{driven(swing)}_position_error{error.suffix}", found.position_error, error.factor)
     return record | {"extremes": _extremes(mechanism, found), "notes": _notes(mechanism, found)}
 
 
@@ -207,7 +205,9 @@ def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
             continue
         entry: dict[str, Any] = {"title": curve.title}
         for word, at in (("least", least), ("greatest", most)):
-            told = _at(f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word)
+            told = _value_and_place(
+                f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word
+            )
             # Next to a place where friction locks forces grow beyond all bounds.
             known = found.locked is None or curve.kind not in (FORCE, TORQUE, POWER)
             entry |= told if known and math.isfinite(at.value) else dict.fromkeys(told)
@@ -215,7 +215,7 @@ def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
     return entries
 
 
-def _at(key: str, at: At, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
+def _value_and_place(key: str, at: At, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
     """Return a value and its places. stem: how the keys of these begin; the key without its unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {
@@ -229,7 +229,7 @@ def _at(key: str, at: At, factor: float, *, way: bool = False, stem: str = "") -
 def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
     notes = []
     if found.locked is not None:
-        way = "on the way back" if found.locked.back else "on the way forth"
+        way = "on the return stroke" if found.locked.back else "on the forward stroke"
         notes.append(LOCKED.format(way=way, angle=math.degrees(found.locked.crank_angle)))
     elif found.peak_drive.value == 0.0:
         notes.append(WITHOUT_LOADS)
@@ -242,7 +242,7 @@ def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
 
 def swing_title(record: Mapping[str, Any]) -> str:
     """Return drive and law of the swing of a record."""
-    how = "slowly" if record["law"] == "slow" else f"{record['law']} law, {record['duration_s']:g} s each way"
+    how = "slowly" if record["law"] == "slow" else f"{record['law']} law, {record['duration_s']:g} s per stroke"
     return f"Swing driven at the {record['driver']}, {how}"
 
 
@@ -254,12 +254,12 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
         other = isinstance(value, str | list | dict | bool) or key == "duration_s"
         if not other and "_at_crank_angle" not in name and "_at_slider_position" not in name:
             shown.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place(record, name)))
-    return [*shown, ("held by friction alone, all over", "yes" if record["holds_by_friction"] else "no", "")]
+    return [*shown, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:
     """Return the numbers of a metric record, and the extremes of its curves."""
-    title = heading("Extremes over both ways, crank angles continuous")
+    title = heading("Extreme values over both strokes, with continuous crank angles")
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 
 

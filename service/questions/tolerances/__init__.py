@@ -7,14 +7,14 @@ from ..question import Question
 LIMIT = Input(
     "limit",
     LENGTH,
-    "Position error, at most",
-    "Position error that a machine may have: gives the yield.",
+    "Maximum position error",
+    "Allowable position error of a machine; gives the yield.",
     sign="positive",
     drawn=False,
 )
 QUESTION = Question(
     __name__,
     50,
-    "position error: exact worst case, simulated machines, yield, what it comes from",
+    "position error: exact worst case, simulated machines, yield, contributions",
     inputs=(LIMIT,),
 )

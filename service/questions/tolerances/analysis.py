@@ -105,7 +105,7 @@ def numbers(
     reach = limits(mechanism, linkage)
     if not np.any(reach):
         raise InputError(
-            'a position error comes from tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+            'a position error needs tolerances; this job has none; add for example [tolerances] crank = "0.05 mm"'
         )
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
     (worst_case, at), (rss, at_square) = (
@@ -182,7 +182,7 @@ def blocks(numbers: PositionError) -> list[Block]:
     def at(name: str) -> Text:
         size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
         if size.number is None:
-            return "not defined: a linkage within the tolerances does not turn fully"
+            return "undefined: a linkage within the tolerances does not rotate fully"
         return words("{size} at {angle}", size=size, angle=angle)
 
     simulation = numbers["monte_carlo"]
@@ -197,21 +197,21 @@ def blocks(numbers: PositionError) -> list[Block]:
         (f"{simulation['samples']:,} random machines", joined(spread) or "-"),
     ]
     if simulation["stuck"]:
-        rows.append(("", f"{simulation['stuck']:,} of them do not turn fully"))
+        rows.append(("", f"{simulation['stuck']:,} of them do not rotate fully"))
     for found in numbers["yields"]:
         low, high = found["yield_low_percent"], found["yield_high_percent"]
         share = f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} %"
         limit = words("yield at {size} ({name})", size=recorded(found, "limit_mm", digits=4), name=found["limit"])
         rows.append((limit, f"{share} at {found['confidence_percent']:g} % confidence"))
     shown: list[Block] = [
-        heading("Position error from tolerances, greatest over the counted part of the cycle"),
+        heading("Position error from tolerances: greatest over the counted part of the cycle"),
         Table((column(left=True), column(left=True)), tuple(rows)),
     ]
     if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
         shown.append(
             note(
-                "The root-sum-square takes a clearance for three standard deviations; pins pressed to either side "
-                "scatter wider, as the random machines show."
+                "Root-sum-square treats a clearance as three standard deviations; pins pressed to either side scatter "
+                "more widely, as the random machines show."
             )
         )
     return [*shown, _sources(numbers["contributions"])]
@@ -225,7 +225,7 @@ def _sources(contributions: list[Contribution]) -> Table:
         adds = recorded(row, "contribution_mm", digits=4)
         rows.append((row["source"], (limit,), adds, f"{of_worst:.1f} %", f"{of_variance:.1f} %"))
     heads = column("limit"), column("adds", LENGTH), column("of worst case"), column("of variance")
-    return Table((column("where it comes from", left=True), *heads), tuple(rows))
+    return Table((column("contributions", left=True), *heads), tuple(rows))
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Callable[[System], Figure]:

@@ -74,7 +74,7 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     unit = LENGTH.face(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
-    style.heading(figure, "Position error of the slider from tolerances", note)
+    style.heading(figure, "Slider position error from tolerances", note)
     upper, lower = style.place(figure, 0.8, 3.35, 5.9, 3.25), style.place(figure, 0.8, 0.65, 5.9, 2.2)
     for panel in (upper, lower):
         style.dress(panel, up=6)

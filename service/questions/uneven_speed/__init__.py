@@ -2,4 +2,4 @@
 
 from ..question import Question
 
-QUESTION = Question(__name__, 92, "torque, forces and shaking at the speed profile of the job")
+QUESTION = Question(__name__, 92, "torque, forces and shaking with the job's speed profile")

@@ -64,7 +64,7 @@ UnevenSpeed = Annotated[
 def _require(mechanism: Mechanism) -> None:
     if mechanism.speed_profile is None:
         raise InputError(
-            "an uneven speed needs a profile; got a constant speed; add to the job for example "
+            "an uneven speed needs a speed profile; the speed of this job is constant; add to the job for example "
             "[mechanism] speed_profile = { cosines = [0.0, 0.05] }"
         )
 
@@ -112,7 +112,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
         suffix = kind.metric.suffix
         remark = compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
         shown.append(named_number(numbers, f"peak_{name}{suffix}", remark))
-    return number_list("At the speed profile (constant speed: the mean over the crank angle)", shown)
+    return number_list("With the speed profile (constant speed: the mean over the crank angle)", shown)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:

@@ -11,18 +11,18 @@ QUESTION = WiderQuestion(
     place=1004,
     path="jobs/{number}/wish",
     posted=True,
-    help="""Find the optimal design that comes nearest to wished values of the objectives, solved anew.
+    help="""Find the optimal design nearest to desired values of the objectives, by a new search.
 
-    Where all of it can be had, the design is better in all of it; otherwise what binds gives way by the same share of
-    its range over the front. Objectives that are not named are free.""",
+    If every target can be met, they are exceeded together; otherwise the conflicting ones are relaxed in equal
+    proportion to their ranges over the front. Objectives that are not named are free.""",
     inputs=(
         Plain(
             "at",
             type=dict[str, str | float],
-            help='An objective, =, and a value, which is no bound, such as "peak_torque=110 N m"; or one of improve, '
-            'keep, "may worsen to 120 N m" and free. May be repeated.',
+            help='OBJECTIVE=VALUE, a desired value rather than a bound, such as "peak_torque=110 N m"; or improve, '
+            'keep, "may worsen to 120 N m" or free instead of the value. May be repeated.',
             example='"peak_torque=110 N m"',
-            form="an objective, =, and a value or a class",
+            form="OBJECTIVE=VALUE or OBJECTIVE=CLASS",
             metavar="WISH",
             limits={"max_length": 100},
             sent=_EXAMPLE,

@@ -220,7 +220,7 @@ def test_sums_of_cylinders_and_an_uneven_speed_are_refused_and_rule_nothing_out(
     """One cylinder's torque is far above what two at a right angle leave: it may prove nothing about them."""
     two, uneven = replace(MACHINE, arrangement=Arrangement(phases=(0.0, 1.5))), replace(MACHINE, speed_profile=UNEVEN)
     for wishes, machine, reason in (
-        ({"peak_torque": "minimise"}, two, "peak torque of several cylinders together has no bound over a range"),
+        ({"peak_torque": "minimise"}, two, "peak torque with several cylinders has no bound over a range"),
         ({"peak_torque": "minimise"}, uneven, "peak torque with a speed profile has no bound over a range"),
         (
             {"peak_crank_pin_force": "minimise"},
@@ -246,9 +246,9 @@ def test_what_cannot_be_bounded_is_refused_by_name() -> None:
     rubbing = replace(MACHINE, friction=Friction(guide=0.1))
     for wishes, machine, reason in (
         ({"rms_torque": "minimise"}, MACHINE, "RMS torque over time has no bound"),
-        ({"peak_torque": "minimise"}, rubbing, "peak torque has no bound over a range of designs where there is"),
-        ({"peak_torque": "maximise"}, MACHINE, "peak torque is bounded from below only"),
-        ({"peak_slider_speed": 3.0}, MACHINE, "bounded from below only"),
+        ({"peak_torque": "minimise"}, rubbing, "peak torque has no bound over a range of designs with friction"),
+        ({"peak_torque": "maximise"}, MACHINE, "peak torque only has a lower bound"),
+        ({"peak_slider_speed": 3.0}, MACHINE, "only has a lower bound"),
     ):
         given = problem(wishes, {"stroke": 0.2}, mechanism=machine)  # type: ignore[arg-type]
         with pytest.raises(InputError, match=reason):

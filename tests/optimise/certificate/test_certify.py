@@ -198,12 +198,12 @@ def test_the_hypervolume_gap_holds_for_a_fuller_front() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "reason"), [({"epsilon": 0.0}, "epsilon is a share"), ({"seconds": 0.0}, "longer than zero")]
+    ("options", "reason"), [({"epsilon": 0.0}, "epsilon must be a fraction"), ({"seconds": 0.0}, "longer than zero")]
 )
 def test_senseless_options_are_refused(options: dict[str, float], reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         certify_designs(two().problem, two().dimensions, **options)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="empty front"):
+    with pytest.raises(InputError, match="needs a front with designs"):
         certify_designs(two().problem, np.zeros((0, 3)))
 
 

@@ -86,7 +86,7 @@ def test_what_is_just_possible_is_not_proven_impossible(angle: float) -> None:
 def test_the_message_of_an_infeasible_job_says_that_it_is_proven() -> None:
     front = solve(problem({"peak_torque": "minimise"}, CONTRADICTIONS[0]))
     assert front.status == "infeasible"
-    assert front.message.endswith("proven: no design of the ranges meets them all")
+    assert front.message.endswith("proven: no design within the ranges meets them all")
 
 
 def test_a_budget_that_ends_first_proves_nothing() -> None:
@@ -99,5 +99,7 @@ def test_nothing_is_claimed_where_more_than_the_dimensions_varies() -> None:
     assert prove_infeasible(given)
     varying = Varying(name="mechanism.slider.mass", sets=(("slider_mass", 1.0),), lower=0.5, upper=2.0)
     assert not prove_infeasible(replace(given, mechanism=replace(given.mechanism, varying=(varying,))))
-    with pytest.raises(InputError, match=r"over crank, rod and offset; got mechanism\.slider\.mass as well"):
+    with pytest.raises(
+        InputError, match=r"only crank, rod and offset may vary in a certificate; got mechanism\.slider\.mass as well"
+    ):
         certify_designs(replace(given, mechanism=replace(given.mechanism, varying=(varying,))), np.zeros((1, 4)))

@@ -27,7 +27,7 @@ def test_what_a_killed_process_was_at_is_done_again(processes: Processes, tmp_pa
 
 
 def test_designs_under_which_processes_end_again_and_again_are_named(processes: Processes) -> None:
-    with pytest.raises(EngineError, match=r"got 3 that did at the same designs \(chunk 3 of 5\); look for"):
+    with pytest.raises(EngineError, match=r"; 3 did at the same designs \(chunk 3 of 5\); check for too little"):
         processes.map(work.end_always, range(5))
     assert processes.map(work.square, range(3)) == [0, 1, 4]
 
@@ -131,7 +131,7 @@ def test_what_a_killed_dask_worker_was_at_is_done_again_and_a_lost_scheduler_is_
 
 def test_a_scheduler_that_stays_away_is_given_up() -> None:
     engine = Cluster("tcp://127.0.0.1:9", patience=0.5)
-    with pytest.raises(EngineError, match=r"within 0.5 s; tcp://127.0.0.1:9 was not .*; start it"):
+    with pytest.raises(EngineError, match=r"within 0.5 s; tcp://127.0.0.1:9 did not .*; start it"):
         engine.map(work.square, range(3))
 
 
@@ -144,15 +144,15 @@ def test_a_cluster_without_workers_says_that_it_waits_for_one_and_is_given_up(
             engine.map(work.square, range(3))
         engine.close()
     (said,) = [record.getMessage() for record in caplog.records if record.name.startswith("slidercrank")]
-    assert said.startswith(f"waiting for a worker of the cluster: the scheduler at {dask.address} has none; given up")
+    assert said.startswith(f"waiting for a worker: the scheduler at {dask.address} has none; giving up")
     assert said.endswith(f"start some: dask worker {dask.address}")
 
 
 @pytest.mark.parametrize(
     ("address", "tls", "words"),
     [
-        ("127.0.0.1:8786", False, "is like tcp://host:8786"),
-        ("tcp://127.0.0.1", False, "is like tcp://host:8786"),
+        ("127.0.0.1:8786", False, "must look like tcp://host:8786"),
+        ("tcp://127.0.0.1", False, "must look like tcp://host:8786"),
         ("tls://127.0.0.1:8786", False, "got tls://127.0.0.1:8786 without"),
         ("tcp://127.0.0.1:8786", True, "got tcp://127.0.0.1:8786 with;"),
     ],
@@ -164,7 +164,7 @@ def test_an_address_that_cannot_be_one_is_refused(address: str, tls: bool, words
 
 
 def test_fewer_than_one_process_is_refused() -> None:
-    with pytest.raises(InputError, match="at least one process; got 0"):
+    with pytest.raises(InputError, match="at least one; got 0"):
         Processes(0)
 
 

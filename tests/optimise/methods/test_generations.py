@@ -177,7 +177,7 @@ def test_reference_directions_are_about_as_many_as_designs() -> None:
 
 def test_a_population_of_one_cannot_breed() -> None:
     given = asked("nsga2")
-    with pytest.raises(InputError, match="breeds from two designs or more; got 1"):
+    with pytest.raises(InputError, match="needs at least two designs to breed from; got 1"):
         solve(replace(given, settings=replace(given.settings, samples=1)))
 
 

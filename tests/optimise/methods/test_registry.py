@@ -86,21 +86,21 @@ def test_a_budget_without_a_method_is_refused() -> None:
 
 @pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "one"])
 def test_several_objectives_are_refused_naming_the_methods_that_fit(method: str) -> None:
-    wanted = rf"{method} takes one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
+    wanted = rf"{method} needs one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
     with pytest.raises(InputError, match=wanted):
         solve(asking(BOTH, method))
 
 
 @pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "several"])
 def test_one_objective_is_refused_naming_the_methods_that_fit(method: str) -> None:
-    with pytest.raises(InputError, match=f"{method} takes several objectives; got 1 .*; use one of auto, slsqp"):
+    with pytest.raises(InputError, match=f"{method} needs several objectives; got 1 .*; use one of auto, slsqp"):
         solve(asking(problem({"peak_torque": "minimise"}), method))
 
 
 @pytest.mark.parametrize("method", [name for name, method in methods().items() if not method.equalities])
 def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method: str) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
-    with pytest.raises(InputError, match=f"{method} cannot hold peak_slider_speed at one value.*use slsqp or auto"):
+    with pytest.raises(InputError, match=f"{method} cannot keep peak_slider_speed at one value.*use slsqp or auto"):
         solve(asking(given, method))
 
 
@@ -145,7 +145,7 @@ def test_a_contradiction_is_explained_whatever_the_method() -> None:
     held: dict[str, Bounds] = {"stroke": 0.2, "time_ratio": (1.5, None), "transmission_angle": (degrees(60.0), None)}
     front = solve(asking(problem({"peak_torque": "minimise", "footprint": "minimise"}, held), "sobol"))
     assert front.status == "infeasible"
-    assert "can be had with all else kept" in front.message
+    assert "is possible with all else met" in front.message
 
 
 def test_no_package_that_a_method_computes_with_is_imported_before_it_is_used() -> None:

@@ -98,11 +98,11 @@ def test_a_wider_limit_is_a_job_of_its_own_that_knows_where_it_came_from(client:
 @pytest.mark.parametrize(
     ("of", "side", "value", "sentence"),
     [
-        ("variables.rod", "upper", 500.0, "a wider limit is above 600 mm; got 500"),
-        ("variables.rod", "upper", 600.0, "a wider limit is above 600 mm; got 600"),
-        ("variables.offset", "lower", 5.0, "a wider limit is below 0 mm; got 5"),
+        ("variables.rod", "upper", 500.0, "a wider limit must be above 600 mm; got 500"),
+        ("variables.rod", "upper", 600.0, "a wider limit must be above 600 mm; got 600"),
+        ("variables.offset", "lower", 5.0, "a wider limit must be below 0 mm; got 5"),
         ("constraints.stroke", "upper", 300.0, "choose from variables.crank (lower)"),
-        ("mechanism.speed", "upper", 300.0, "a limit of the job is changed by its place"),
+        ("mechanism.speed", "upper", 300.0, "a limit of the job must be named by its place"),
     ],
 )
 def test_what_is_no_wider_limit_is_refused(

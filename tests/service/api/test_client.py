@@ -157,7 +157,7 @@ def test_the_token_is_sent_but_never_shown(store: Store) -> None:
 
 @pytest.mark.parametrize("url", ["", "localhost:8765", "ftp://x", "http://", "file:///etc/passwd"])
 def test_an_address_of_another_kind_is_refused(url: str) -> None:
-    with pytest.raises(InputError, match="a service is at http://host:port"):
+    with pytest.raises(InputError, match="the address of a service must be http://host:port"):
         Client(url)
 
 
@@ -385,7 +385,7 @@ def test_events_of_a_job_that_is_not_there_are_not_found(client: Client) -> None
 
 def test_waiting_ends_with_the_job_or_the_time(client: Client, store: Store) -> None:
     number = client.submit(TABLES)["id"]
-    with pytest.raises(ServiceError, match=r"was to end within 0\.3 s; it is queued"):
+    with pytest.raises(ServiceError, match=r"must end within 0\.3 s; it is queued"):
         client.wait(number, seconds=0.3)
     threading.Timer(0.2, store.cancel, (number,)).start()
     assert client.wait(number)["state"] == "cancelled"

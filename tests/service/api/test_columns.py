@@ -39,7 +39,7 @@ def test_some_columns_are_asked_for_by_quantity_or_key(solved: Solved, client: h
     found = client.get(f"{solved.path}/columns", params={"columns": "rod, peak_torque_Nm,rod"}).json()
     assert list(found["values"]) == ["rod_mm", "peak_torque_Nm"]
     assert [column["unit"] for column in found["columns"]] == ["mm", "N m"]
-    assert "no quantity or column is called 'x'" in refused(client.get(f"{solved.path}/columns?columns=x"), 422)
+    assert "there is no quantity or column 'x'" in refused(client.get(f"{solved.path}/columns?columns=x"), 422)
 
 
 def test_infinity_is_a_word_and_what_is_not_defined_null(store: Store) -> None:

@@ -102,7 +102,11 @@ def test_runs_without_designs_have_no_sentences_and_one_run_twice_is_refused(
     first = put_in(store, solved.result, TABLES)
     empty = put_in(store, replace(solved.result, designs=[], exact=None, extremes={}, knee=None), TABLES)
     assert client.get(f"{API}/comparison", params={"job": [first, empty]}).json()["sentences"] == []
-    for jobs, sentence in (([first, first], "each run is compared once"), ([first], "at least 2"), ([first, 999], "")):
+    for jobs, sentence in (
+        ([first, first], "a run may be named only once"),
+        ([first], "at least 2"),
+        ([first, 999], ""),
+    ):
         answer = client.get(f"{API}/comparison", params={"job": jobs})
         assert answer.status_code in (404, 422)
         assert sentence in answer.text

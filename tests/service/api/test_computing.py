@@ -63,8 +63,7 @@ def test_a_request_beyond_a_limit_gets_one_sentence_and_the_next_one_its_answer(
 ) -> None:
     before = _process(client)
     assert refused(client.get(f"/long/{asked}"), 422) == (
-        "an answer may take at most 400 MB of memory and 0.5 s of processor time; "
-        f"this one needs more {lacking}; "
+        f"an answer may use at most 400 MB of memory and 0.5 s of processor time; this one needs more {lacking}; "
         "ask for less, or use a command such as slidercrank analyse, which has no limits"
     )
     assert _process(client) != before
@@ -73,7 +72,7 @@ def test_a_request_beyond_a_limit_gets_one_sentence_and_the_next_one_its_answer(
 
 def test_a_process_that_is_killed_fails_its_own_request_alone(client: httpx.Client) -> None:
     answer = client.get("/long/killed")
-    assert "this one ended (killed by SIGKILL); try again" in refused(answer, 503)
+    assert "must not end early; it did (killed by SIGKILL); try again" in refused(answer, 503)
     assert answer.headers["retry-after"] == "5"
     resting = _process(client)
     resting.kill()
@@ -95,7 +94,7 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
         assert client.get("/quick/process").text not in processes
         monkeypatch.setattr(throttle, "_PATIENCE", 0.05)
         answer = client.get("/long/process")
-        assert "long analyses are made 2 at a time; others were first for 0.05 s; try again" in refused(answer, 503)
+        assert "long analyses are made 2 at a time; all were busy for 0.05 s; try again" in refused(answer, 503)
         assert answer.headers["retry-after"] == "5"
 
 

@@ -141,7 +141,7 @@ def test_a_service_without_figures_draws_for_cad_all_the_same(solved: Solved) ->
     with client_of(solved.store, Settings(figures=False)) as client:
         assert client.get(f"{solved.path}/designs/1/linkage.dxf").status_code == 200
         for name in ("motion.gif", "report.html", "report.pdf"):
-            assert "draws no figures" in refused(client.get(f"{solved.path}/designs/1/{name}"), 404)
+            assert "cannot draw figures" in refused(client.get(f"{solved.path}/designs/1/{name}"), 404)
 
 
 def changed(solved: Solved) -> dict[str, float]:
@@ -210,7 +210,10 @@ def test_the_lengths_of_the_design_itself_change_nothing(solved: Solved, client:
 @pytest.mark.parametrize(
     ("query", "said"),
     [
-        ({"crank_mm": 100}, "come together, crank_mm, rod_mm and offset_mm; got none for rod_mm and offset_mm"),
+        (
+            {"crank_mm": 100},
+            "must be given together, crank_mm, rod_mm and offset_mm; got none for rod_mm and offset_mm",
+        ),
         ({"crank_mm": 100, "rod_mm": 90, "offset_mm": 0}, "rod must exceed crank + |offset| for full rotation"),
         ({"crank_mm": "nan", "rod_mm": 300, "offset_mm": 0}, "crank_mm: must be a finite number; got"),
         ({"crank_mm": 0, "rod_mm": 300, "offset_mm": 0}, "crank_mm"),
@@ -227,7 +230,7 @@ def test_lengths_that_make_no_design_are_refused(
 
 def test_other_lengths_are_those_of_one_design(solved: Solved, client: httpx.Client) -> None:
     answer = client.get(f"{solved.path}/figures/parallel_coordinates.png", params=changed(solved))
-    assert "other numbers are those of a single design" in refused(answer, 422)
+    assert "other lengths and values only apply to a single design" in refused(answer, 422)
 
 
 def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> None:

@@ -182,7 +182,7 @@ def test_check_says_what_the_command_line_says(solved: Solved, client: httpx.Cli
     ("change", "words"),
     [
         ({"variables": {"crank": ["20 mm", "10 mm"]}}, "variables"),
-        ({"target_motion": {"file": "/etc/passwd"}}, "a file lies beside the job file, or its content is sent"),
+        ({"target_motion": {"file": "/etc/passwd"}}, "a file must lie beside the job file, or be sent"),
         ({"quantity": {"evil": {"function": "os:system", "unit": "mm", "title": "x"}}}, "quantity.evil"),
         ({"mechanism": {"speed": "nan rpm"}}, "speed"),
     ],
@@ -225,5 +225,5 @@ def test_a_row_of_another_job_is_refused(change: dict[str, Any]) -> None:
     row |= {choice_field(name): label for name, label in labels}
     assert change.keys() <= row.keys()
     design_of(problem, row)
-    with pytest.raises(RunError, match="a stored design must be one of its job"):
+    with pytest.raises(RunError, match="a stored design must match its job"):
         design_of(problem, {**row, **change})

@@ -169,7 +169,7 @@ def test_conditions_that_no_design_meets_are_infeasible_and_wrong_ones_are_not(
         ("designs?limit=99999999999999999999999", 422, "limit"),
         ("designs?offset=-1", 422, "offset"),
         ("designs?where=crank%00 > 1 mm", 400, "NUL"),
-        ("designs?sort=%01", 422, "no quantity or column is called '\\x01'"),
+        ("designs?sort=%01", 422, "there is no quantity or column '\\x01'"),
         (f"designs?where={'x' * 501}", 422, "at most 500"),
         ("designs?" + "&where=crank > 1 mm" * 51, 422, "at most 50"),
         ("designs/0", 422, "design"),

@@ -39,7 +39,7 @@ def test_no_worker_a_free_one_and_busy_ones_are_told_apart(client: httpx.Client,
 
     for _ in range(3):
         add(store)
-    assert told() == (0, 0, 3, "no worker is at work")
+    assert told() == (0, 0, 3, "no worker is running")
     store.greet("one")
     assert told() == (1, 0, 3, "")
     taken(store, "one")
@@ -62,11 +62,11 @@ def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reaso
     reason = client.get("/jobs/1").json()["reason"]
     for said in (refused.json()["detail"], reason, client.get("/jobs").json()["jobs"][0]["reason"]):
         assert "the store needs room on its disk" in said
-        assert "has 4.1 kB free; make room" in said
+        assert "has 4.1 kB free; free some space" in said
     assert client.get("/health/live").is_success
     monkeypatch.undo()
     assert client.get("/health/ready").is_success
-    assert client.get("/jobs/1").json()["reason"] == "no worker is at work"
+    assert client.get("/jobs/1").json()["reason"] == "no worker is running"
 
 
 def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: Store) -> None:

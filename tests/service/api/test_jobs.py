@@ -90,7 +90,7 @@ def test_a_wrong_job_is_refused_with_the_sentence_of_the_command_line(shared: ht
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
-        ({}, "body job: is required"),
+        ({}, "body job: is missing, but required"),
         ({"job": EXAMPLE, "jop": 1}, "body jop: unknown; got 1"),
         ({"job": EXAMPLE, "priority": 1001}, "body priority: must be at most 1000; got 1001"),
         ({"job": EXAMPLE, "priority": "1"}, "body priority"),
@@ -107,8 +107,8 @@ def test_a_file_of_the_client_is_not_opened(shared: httpx.Client) -> None:
     for path, body in (("/jobs", {"job": job}), ("/check", {"job": job})):
         sentence = refused(shared.post(path, json=body), 422)
         assert "target_motion" in sentence
-        assert "its content is sent with the job (API: files)" in sentence
-        assert 'got file "/etc/passwd"; send it, or give the points alone' in sentence
+        assert "be sent with the job (API: files)" in sentence
+        assert 'got file "/etc/passwd"; send it, or give only the points' in sentence
 
 
 def test_functions_of_a_job_run_only_if_the_operator_allows_them(serve: Serve) -> None:
@@ -141,7 +141,7 @@ def test_limits_are_those_of_the_service_unless_lower_ones_are_asked_for(serve: 
     assert submitted(client)["limits"] == {"seconds": 100.0, "evaluations": None, "memory_bytes": 10**9}
     assert submitted(client, limits={"seconds": 10})["limits"]["seconds"] == 10.0
     response = client.post("/jobs", json={"job": EXAMPLE, "limits": {"seconds": 101}})
-    assert "limits.seconds: is at most 100.0 here; got 101.0" in refused(response, 422)
+    assert "limits.seconds: must be at most 100.0 here; got 101.0" in refused(response, 422)
     toml = client.post("/jobs", content=fronts.JOB, headers=TOML).json()
     assert toml["limits"]["seconds"] == 100.0
     assert client.post("/jobs/2/clone", json={}).json()["limits"]["seconds"] == 10.0
@@ -272,7 +272,7 @@ def test_a_merge_patch_does_what_its_standard_says(value: Any, changes: Any, bec
 
 
 def test_a_place_that_is_not_there_and_a_method_it_does_not_know_are_told(shared: httpx.Client) -> None:
-    assert "there is nothing here" in refused(shared.get("/job"), 404)
+    assert "there is nothing at this address" in refused(shared.get("/job"), 404)
     response = shared.put("/jobs/1")
     assert response.headers["allow"] == "GET, DELETE"
     assert "got PUT; use GET, DELETE" in refused(response, 405)

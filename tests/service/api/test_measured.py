@@ -48,7 +48,7 @@ def test_the_record_is_that_of_the_command_line(
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ({"csv": ""}, "must begin with a line that names its columns; got an empty file"),
+        ({"csv": ""}, "must begin with a line of column names; got an empty file"),
         ({"csv": "crank_angle_deg,torque_mm\n0,1\n"}, "torque is a torque"),
         ({"csv": 5}, "csv"),
         ({}, "csv"),

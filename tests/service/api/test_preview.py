@@ -168,7 +168,7 @@ def test_a_requirement_that_no_design_meets_is_blamed_and_not_one_that_most_meet
         allowed = preview(shared, job)["allowed"]
         assert (allowed["hardest"], allowed["hardest_share"], allowed["feasible_share"]) == ("static_safety", 0.0, 0.0)
         (said,) = allowed["said"]
-        assert "on its own, static safety is met by 0 % of those that turn" in said
+        assert "on its own, static safety is met by 0 % of those that rotate fully" in said
         assert "transmission angle" not in said
     job["constraints"]["static_safety"] = {"min": 0.01}
     allowed = preview(shared, job)["allowed"]
@@ -201,7 +201,7 @@ def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:
     found = preview(shared, {"variables": {"crank": "100 mm", "rod": "90 mm", "offset": "0 mm"}})
     assert found["example"] is None
     assert found["allowed"]["turning_share"] == 0.0
-    assert "no crank of these ranges turns fully" in found["allowed"]["said"][0]
+    assert "no crank within these ranges rotates fully" in found["allowed"]["said"][0]
 
 
 WRONG = {
@@ -253,7 +253,7 @@ def test_a_job_that_names_a_file_of_the_service_is_refused(shared: httpx.Client,
     feeder["target_motion"] = {"file": "/etc/passwd"}
     (wrong,) = preview(shared, feeder)["wrong"]
     assert wrong["path"] == "target_motion"
-    assert "a file lies beside the job file, or its content is sent" in wrong["sentence"]
+    assert "a file must lie beside the job file, or be sent" in wrong["sentence"]
 
 
 def hostile(feeder: Job) -> dict[str, Job]:
@@ -296,7 +296,7 @@ def test_no_job_takes_long_or_breaks_the_preview(shared: httpx.Client, feeder: J
 
 def test_a_job_of_too_many_values_is_refused_with_their_number_at_every_door(shared: httpx.Client, feeder: Job) -> None:
     count = len(json.dumps(feeder).split(",")) + MOST
-    rule = f"a job has at most {MOST} values, lists and tables; got "
+    rule = f"a job must have at most {MOST} values, lists and tables; got "
     empty: list[Any] = [{}, {"viscous": 1.0}, []]
     for one in empty:
         job = {**feeder, "load": [one] * count}

@@ -118,7 +118,7 @@ def test_the_swing_of_the_job_is_what_is_asked_without_a_word(served: Served) ->
 
 @pytest.mark.parametrize("path", ["/topics/balance", "/topics/extremes", "/analysis?show=tolerances"])
 def test_an_analysis_of_a_full_turn_is_refused(served: Served, path: str) -> None:
-    assert "is of a crank that turns through; got a job whose crank swings" in served.get(SLOW, path, 422).text
+    assert "needs a rotating crank; the crank of this job swings" in served.get(SLOW, path, 422).text
 
 
 def test_the_outlines_of_a_swing_have_body_and_actuator(served: Served) -> None:
@@ -165,10 +165,10 @@ def test_the_way_back_leads_into_the_swing(served: Served) -> None:
         assert [each["crank_angle_deg"] for each in found["solutions"]] == pytest.approx(
             [curves["crank_angle_deg"][place]], rel=1e-9
         )
-        assert "outside of the swing from 11.16 to 101.16 deg" in found["note"]
+        assert "outside the swing from 11.16 to 101.16 deg" in found["note"]
     beyond = 1.01 * max(curves["slider_position_mm"])
     refused = served.get(SLOW, "/inverse", 422, slider_position_mm=beyond).json()["detail"]
-    assert refused.startswith("the slider stays between ") or "reaches" in refused
+    assert refused.startswith("the position must be between ") or "reaches" in refused
     row = served.get(TURNS, "").json()["design"]
     turning = served.get(TURNS, "/inverse", slider_position_mm=row["rod_mm"]).json()["inverse"]
     assert (len(turning["solutions"]), turning["note"]) == (2, "")

@@ -104,7 +104,7 @@ def test_lengths_beyond_their_ranges_are_named(client: httpx.Client, solved: Sol
         ({"crank_mm": 60, "rod_mm": 64, "offset_mm": 20}, "rod must exceed crank + |offset| for full rotation"),
         ({"crank_mm": 60, "rod_mm": 64, "offset_mm": 900}, "the linkage closes at no crank angle"),
         ({"crank_mm": 0, "rod_mm": 64, "offset_mm": 20}, "crank_mm: must be at least 0.0001"),
-        ({"crank_mm": 40, "rod_mm": 64}, "offset_mm: is required"),
+        ({"crank_mm": 40, "rod_mm": 64}, "offset_mm: is missing, but required"),
         ({"crank_mm": 40, "rod_mm": 64, "offset_mm": 0, "angles": 2}, "curves have 4 to 3600 crank angles"),
         ({"crank_mm": 40, "rod_mm": 64, "offset_mm": 0, "speed": 3}, "speed: unknown"),
     ],
@@ -151,5 +151,6 @@ def test_a_length_that_no_others_can_follow_is_refused(client: httpx.Client, sol
     refused = change(client, solved, {"crank_mm": 200.0, "rod_mm": 600.0, "offset_mm": 0.0, "hold": "crank"})
     assert refused.status_code == 422
     assert (
-        "rod and offset must follow so as to keep stroke exactly 280 mm; got crank 200 mm" in refused.json()["detail"]
+        "rod and offset must change so that stroke exactly 280 mm still holds; for crank 200 mm"
+        in refused.json()["detail"]
     )

@@ -99,7 +99,7 @@ def test_the_client_improves_on_a_design(client: httpx.Client, solved: Solved) -
         ({"at": {"time_ratio": "NaN"}}, 422, "must be a finite number"),
         ({"at": {"transmission_angle": "5 mm"}}, 422, "which is a length"),
         ({"at": {"crank": "5 mm"}}, 422, "one of the objectives time_ratio, transmission_angle; got 'crank'"),
-        ({"at": {"time_ratio": "improve"}}, 422, "got no design"),
+        ({"at": {"time_ratio": "improve"}}, 422, "got none; name one"),
         ({"at": {"time_ratio": "1.2"}, "design": 999}, 404, "got 999"),
         ({"at": {"time_ratio": 1.2}}, 422, "must be text"),
         ({}, 422, "at"),
@@ -117,4 +117,4 @@ def test_nothing_within_what_is_allowed_is_told(client: httpx.Client, solved: So
     at = {"time_ratio": "1.2", "transmission_angle": "may worsen to 89 deg"}
     found = client.post(f"{solved.path}/wish", json={"at": at}).json()
     assert (found["design"], found["objectives"], found["possible"], found["achievement"]) == (None, [], False, None)
-    assert "89 deg or better, where the front has" in found["sentences"][0]
+    assert "89 deg or better, but the best on the front is" in found["sentences"][0]

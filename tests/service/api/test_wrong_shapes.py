@@ -102,7 +102,7 @@ def test_no_message_about_a_job_of_wrong_shape_is_in_words_of_python(serve: Serv
         ({"function": "os.system"}, 'quantity.x.function: must name a module and a function in it; got "os.system"'),
         (
             {"function": "os:system"},
-            'quantity.x: only functions that the operator allows are run here; got "os:system"',
+            'quantity.x: only functions that the operator allows may run here; got "os:system"',
         ),
     ],
 )
@@ -114,7 +114,7 @@ def test_what_stands_in_place_of_a_function_is_told(shared: httpx.Client, part: 
 @pytest.mark.parametrize("path", ["/preview", "/toml", "/analyse", "/jobs/1/clone"])
 def test_a_body_that_is_no_json_is_told_what_is_taken(shared: httpx.Client, path: str, kind: str) -> None:
     sentence = refused(shared.post(path, content='name = "x"', headers={"Content-Type": kind}), 422)
-    assert sentence.startswith("body: is a JSON object of the type application/json; got ")
+    assert sentence.startswith("body: must be a JSON object of type application/json; got ")
     if kind == "application/toml":  # what the remedy names is there
         assert "POST /api/v1/parse" in sentence
         tables = shared.post("/parse", content='name = "x"', headers={"Content-Type": kind}).json()["job"]

@@ -240,7 +240,7 @@ def test_links_of_a_section_have_their_width() -> None:
         assert isinstance(outline, Outline)
         assert math.dist(outline.corners[0], outline.corners[3]) == pytest.approx(30.0)
     assert drawing.title == "Sieve"
-    assert "Widths of links are to scale" in drawing.notes[-1]
+    assert "Link widths are to scale" in drawing.notes[-1]
 
 
 @pytest.mark.parametrize("name", [r"$\frac{ <script>&amp; 50 %%u \P {x;y} ^J", "Größe 寸法\nline", "", "\\U+0041"])

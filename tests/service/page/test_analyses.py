@@ -103,7 +103,7 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
 
     assert re.search(r"speed fluctuation of 0\.02: [\d.]+ lb in² ", first())
     expect(panel).to_contain_text(first(), timeout=30_000)
-    field = panel.get_by_label("Speed fluctuation, at most")
+    field = panel.get_by_label("Maximum speed fluctuation")
     field.fill("0,05")
     field.press("Enter")
     expect(panel).to_contain_text(first(fluctuation=0.05), timeout=30_000)
@@ -118,7 +118,7 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
     refused = httpx.get(path.replace("flywheel", "motor"), params={"fluctuation": 0.05}, timeout=60.0)
     assert (
         refused.status_code,
-        "the topic motor is asked with nothing else; got fluctuation; leave" in refused.text,
+        "the topic motor has no inputs; got fluctuation; leave" in refused.text,
     ) == (422, True)
     page.evaluate("localStorage.clear()")
 

@@ -32,12 +32,12 @@ def test_a_front_says_in_how_many_designs_what_is_allowed_is_exceeded(opened: tu
     page.goto(view)
     count = len(result().designs)
     worst = max(float(str(row["pin_shear_crank_pin_MPa"])) for row in result().designs)
-    said = page.get_by_text("Beyond what is allowed: shear of the crank pin in")
+    said = page.get_by_text("Beyond the allowable value: shear of the crank pin in")
     expect(said).to_contain_text(f"in {count} of {count} designs, at worst {worst:.4g} MPa")
     expect(said).to_contain_text("more than the allowed 202.1 MPa (shear yield strength of the material)")
     sentences = front_violations_in_words(result())
-    expect(page.get_by_text("Beyond what is allowed: ")).to_have_text(
-        [f"Beyond what is allowed: {s}." for s in sentences]
+    expect(page.get_by_text("Beyond the allowable value: ")).to_have_text(
+        [f"Beyond the allowable value: {s}." for s in sentences]
     )
 
 
@@ -48,15 +48,20 @@ def test_a_design_says_what_it_goes_beyond_and_so_does_what_if(opened: tuple[Pag
     expect(said).to_have_count(2)
     own = httpx.get(f"{api}/designs/2").json()
     by = own["violated"]["pin_shear_crank_pin_MPa"]
-    expect(said.first).to_contain_text("Design 2, beyond what is allowed: shear of the crank pin is")
+    expect(said.first).to_contain_text("Design 2, beyond the allowable value: shear of the crank pin is")
     expect(said.first).to_contain_text(f"{by:.4g} MPa more than the allowed")
-    assert said.first.inner_text().removeprefix("Design 2, beyond what is allowed: ").rstrip(".") in own["violations"]
+    assert (
+        said.first.inner_text().removeprefix("Design 2, beyond the allowable value: ").rstrip(".") in own["violations"]
+    )
     expect(said.last).to_contain_text("Design 1, beyond")
     require_accessible(page)
     query = "&".join(f"{key}={value}" for key, value in LENGTHS.items())
     page.goto(f"{view}/designs/1?{query}")
     found = httpx.post(f"{api}/designs/1/what-if", json={**LENGTHS, "angles": 0}, timeout=60.0).json()["violated"]
-    text = f"What if, beyond what is allowed: pressure at the crank pin is .* {found['pin_pressure_crank_pin_MPa']:.4g}"
+    text = (
+        "What if, beyond the allowable value: pressure at the crank pin is .* "
+        f"{found['pin_pressure_crank_pin_MPa']:.4g}"
+    )
     expect(page.locator(".beyond p", has_text="pressure")).to_have_text(re.compile(text))
 
 

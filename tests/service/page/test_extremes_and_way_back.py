@@ -64,7 +64,7 @@ def field(page: Page, name: str) -> Locator:
 def test_extremes_are_those_of_the_command_line_in_either_system(page: Page, solved: Solved) -> None:
     record = told(solved, "analyse", "--show", "extremes")["extremes"]
     page.locator("section.extremes").scroll_into_view_if_needed()
-    curves = table(page, "Extremes over the turn")
+    curves = table(page, "Extreme values over the turn")
     expect(curves).to_be_visible(timeout=30_000)
     entry = record["curves"]["slider_position"]
     metric = [entry[f"{end}{at}"] for end in ("least", "greatest") for at in PLACES]
@@ -165,7 +165,7 @@ def test_at_a_dead_centre_the_speed_is_undefined_and_says_so(page: Page, solved:
 @pytest.mark.slow
 def test_nothing_bars_the_way_of_anybody(page: Page) -> None:
     page.locator("section.extremes").scroll_into_view_if_needed()
-    expect(table(page, "Extremes over the turn")).to_be_visible(timeout=30_000)
+    expect(table(page, "Extreme values over the turn")).to_be_visible(timeout=30_000)
     field(page, "Slider velocity").fill("1")
     field(page, "Slider velocity").press("Enter")
     expect(table(page, "Crank angles found")).to_be_visible()

@@ -25,8 +25,8 @@ def test_each_load_says_what_it_does_and_one_that_pushes_is_questioned(form: Ope
     first.get_by_label("force", exact=True).fill("350")
     expect(first).to_contain_text("350 N outward, helps the outward stroke, throughout")
     beside = page.get_by_role("complementary")
-    expect(beside).to_contain_text("do more work on the machine than they take")
-    expect(beside).to_contain_text("if the load should resist, reverse its sign or state it as a force that")
+    expect(beside).to_contain_text("do more work on the machine than they absorb")
+    expect(beside).to_contain_text("if the load should resist, reverse its sign or define it as a force that")
 
     first.get_by_label("kind of load", exact=True).select_option("helps")
     expect(first).to_contain_text("helps the inward stroke")

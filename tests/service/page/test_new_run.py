@@ -577,7 +577,7 @@ def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: O
     ready(page)
     assert text_of(page)["constraints"]["slow_stroke"] == "inward"
     page.get_by_label("slow stroke", exact=True).select_option("outward")
-    expect(page.locator("main")).to_contain_text("let the offset reach above 0")
+    expect(page.locator("main")).to_contain_text("let the offset go above 0")
     page.get_by_label("slow stroke", exact=True).select_option("")
     ready(page)
     assert "slow_stroke" not in text_of(page)["constraints"]

@@ -127,7 +127,7 @@ def test_what_cannot_be_wished_is_said_at_its_field(page: Page) -> None:
     expect(alert).to_contain_text("No design improves while all other objectives keep")
     wish(page, "least transmission angle", "may worsen to", "89")
     button.click()
-    expect(panel(page).locator("#wish-transmission_angle-wrong")).to_contain_text("better; write the value alone")
+    expect(panel(page).locator("#wish-transmission_angle-wrong")).to_contain_text("better; write only the value")
 
 
 def test_a_wish_is_solved_at_once_after_one_that_was_refused_or_is_on_its_way(page: Page) -> None:

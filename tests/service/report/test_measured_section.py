@@ -57,7 +57,7 @@ def test_every_number_is_in_its_tables(subject: Subject, system: str) -> None:
     assert shift.rows[0][1] == rounded(entry["best_crank_angle_shift_deg"])
     assert entry["best_crank_angle_shift_deg"] == pytest.approx(np.degrees(-0.1), abs=1e-5)
     assert shift.rows[0][2] == rounded(factor * entry["best_shift_Nm"])
-    assert note.text == "Columns that are no curve or empty, left out: room."
+    assert note.text == "Columns that are empty or not a curve, omitted: room."
     (panel,) = picture.draw().axes
     assert panel.get_title(loc="left") == f"drive torque, {unit}"
 
@@ -94,4 +94,6 @@ def test_the_command_writes_them_and_refuses_a_bad_file(tmp_path: Path, kept: Pa
     file.write_text("crank_angle_deg,slider_position_mm\n0,300\n90,200\n")
     assert command(*arguments).exit_code == 0
     assert "Measured minus computed, 2 rows" in out.read_text()
-    assert "Read from the file: 2 rows of crank_angle_deg, slider_position_mm; first 0, 300; " in out.read_text()
+    assert (
+        "Interpretation of the file: 2 rows of crank_angle_deg, slider_position_mm; first 0, 300; " in out.read_text()
+    )

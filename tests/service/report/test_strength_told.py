@@ -77,7 +77,7 @@ def test_a_job_says_the_limits_of_each_option_and_only_counts_them_where_they_ar
     job = press()
     job["choice"][0]["option"] = [option(f"motor {n}", f"{400 + n} N m", f"{250 - n} N m") for n in range(13)]
     rules = summarise(parse_job(job))["rules"]
-    assert "limits that come with 13 combinations of choices" in rules
+    assert "limits set by 13 combinations of choices" in rules
     assert not any("motor 1" in rule for rule in rules)
 
 

@@ -223,7 +223,7 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
         room(store, 50)
         large = Artefact(name="large", media_type="text/plain", content=b"x" * 10_000_000)
         claim.patient = lambda _: False
-        with pytest.raises(StoreError, match=r"database or disk is full; .* free; make room"):
+        with pytest.raises(StoreError, match=r"database or disk is full; .* free; free some space"):
             claim.put(large)
         assert everything(str(tmp_path / "store.db")) == before
         with store.reading() as connection:
@@ -537,8 +537,8 @@ def test_commands_that_write_refuse_a_store_that_cannot_be_written(
     assert "Feeder" in command("jobs", "--store", tmp_path / "store.db").stdout
     done = command("doctor", "--store", tmp_path / "store.db")
     assert done.exit_code == 1
-    assert "nothing is damaged" in done.stdout
-    assert "may not be written, so that no job gets on" in done.stdout
+    assert "no damage found" in done.stdout
+    assert "is not writable, so no job can make progress" in done.stdout
     for name in (("cancel", 1), ("worker", "--drain"), ("serve", "--port", 0, "--workers", 0)):
         done = command(*name, "--store", tmp_path / "store.db")
         assert (done.exit_code, done.stdout) == (2, "")

@@ -96,7 +96,7 @@ def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(stor
     claim.tell(progress(1))
     claim.keep(large_record(2))
     disk.fill()
-    claim.hand_back("its worker stopped; another one goes on")
+    claim.hand_back("its worker stopped; another one continues")
     waiting = store.job(job.id)
     assert (waiting.state, waiting.records, waiting.attempts) == ("queued", 1, 0)
     assert [same(one, search_record(1)) for one in store.records(job.id)] == [True]

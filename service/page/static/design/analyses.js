@@ -11,7 +11,7 @@ import { question } from "./question.js";
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 /** Titles of those that are always in sight, by name. @type {Record<string, string>} */
 const TITLES = {
-  extremes: "Extremes over the turn",
+  extremes: "Extreme values over the turn",
   sensitivity: "What it is sensitive to",
   tolerances: "What tolerances do to the slider's position",
 };

@@ -34,8 +34,8 @@ test("a refusal speaks of fields by their names, and of values with their units"
     "Slider velocity must be at most 1e+6\u00a0m/s; got 2e+6\u00a0m/s; correct it",
   );
   assert.equal(
-    refusalInWords("body name: is required; it is missing; add it"),
-    "Name is required; it is missing; add it",
+    refusalInWords("body name: is missing, but required; add it"),
+    "Name is missing, but required; add it",
   );
   assert.equal(
     refusalInWords("there is no job 7; list the jobs"),

@@ -19,8 +19,8 @@ const SAID = [
   ],
   ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
   [
-    "a quantity that is held at one value cannot be an objective too; got constraints.time_ratio with equals; leave out one of the two",
-    "a quantity that is held at one value cannot be an objective too; got “exactly” among the requirements; leave out one of the two",
+    "a quantity with a fixed value cannot also be an objective; got constraints.time_ratio with equals; leave out one of the two",
+    "a quantity with a fixed value cannot also be an objective; got “exactly” among the requirements; leave out one of the two",
   ],
   [
     'it comes from masses that move or weigh, and from loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
@@ -74,7 +74,7 @@ const SAID = [
     "position, velocity and acceleration diagrams at --at",
     "position, velocity and acceleration diagrams at a crank angle",
   ],
-  ["flywheel for a speed --fluctuation", "flywheel for a speed fluctuation"],
+  ["flywheel that limits the speed --fluctuation", "flywheel that limits the speed fluctuation"],
   [
     "start from rest under [drive], steady running",
     "start from rest under “Motor and flywheel”, steady running",
