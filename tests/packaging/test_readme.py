@@ -114,6 +114,19 @@ def test_the_front_of_the_first_page_is_that_of_the_feeder(root: Path) -> None:
         assert sentence in text
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press"])
+def test_the_gallery_has_the_knee_of_each_front(job: str, root: Path) -> None:
+    (part,) = (part for part in page(root, "gallery.md").split("\n## ") if f"Job: `runs/{job}.toml`.\n" in part)
+    told = re.search(r"^Knee: crank ([\d.]+) mm, rod ([\d.]+) mm, offset (-?[\d.]+) mm\.$", part, re.MULTILINE)
+    assert told is not None
+    front = shipped_front(job)
+    knee = [
+        f"{front.columns[f'{name}_mm'][front.knee()]:#.4g}".removesuffix(".") for name in ("crank", "rod", "offset")
+    ]
+    assert list(told.groups()) == knee
+
+
 def test_bibtex_says_what_the_citation_file_says(root: Path) -> None:
     (entry,) = blocks(page(root, "start.md"), "bibtex")
     fields = dict(re.findall(r"(\w+) += \{+([^}]+)\}+", entry))
