@@ -60,7 +60,7 @@ def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store
 def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     page = open_page(store, "#/jobs/1")
-    expect(page.get_by_text("Waits for a worker. No worker is at work.")).to_be_visible()
+    expect(page.get_by_text("Waits for a worker. No worker is running.")).to_be_visible()
     store.greet("first")
     submit(store, TABLES)
     taken(store, "first")

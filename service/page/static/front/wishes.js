@@ -87,7 +87,7 @@ export function wrongIn(wishes, objectives, count) {
   else if (kinds.every((kind) => CLASSES.includes(kind)))
     found.push({
       id: "",
-      text: "No design improves while all other objectives keep; let one be free, or worsen to a value.",
+      text: "Nothing can improve unless another objective is freed or allowed to worsen.",
     });
   return found;
 }
