@@ -61,7 +61,7 @@ _SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = 
 
 TOLERANCES = _defining(
     lambda machine: machine.fullest.tolerances.given,
-    'a position error needs tolerances; this job has none; add for example [tolerances] crank = "0.05 mm"',
+    'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(
     _friction,

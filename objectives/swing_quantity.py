@@ -65,7 +65,7 @@ class SwingQuantity(Quantity):
                 return reason
             if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
                 return (
-                    "a position error needs tolerances; this job has none; add for example [tolerances] crank = "
+                    "a position error needs tolerances; got none; add for example [tolerances] crank = "
                     '"0.05 mm"'
                 )
         if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:

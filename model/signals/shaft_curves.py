@@ -2,7 +2,7 @@
 
 Each cylinder is a single crank at the angle theta + lead, seen in axes that turn with its bank. Speed and acceleration
 of the shaft are w p and w^2 p p' of the profile p at the shaft's own angle, a constant acceleration added. Every curve
-is the size of a vector with two components, or of the first cylinder; components add up over the cylinders. All of it
+is the size of a vector with two components, or of the first component; components add up over the cylinders. All of it
 is complex, so that one compiled formula gives values, slopes over the crank angle and derivatives by the design.
 """
 

@@ -14,5 +14,5 @@ def require_turning(swing: Swing | None, what: str) -> None:
     """Refuse a crank that swings. what: it is of a full turn, as the subject of the sentence."""
     if swing is not None:
         raise InputError(
-            f"{what} is of a crank that turns through; got a job whose crank swings; swing analyses its designs"
+            f"{what} needs a rotating crank; the crank of this job swings; use swing to analyse its designs"
         )

@@ -79,7 +79,7 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
         ({"crank_angle_deg": [0.0], "load_N": [1.0]}, "'load_N' is not defined for this machine: it comes from loads"),
         (
             {"crank_angle_deg": [0.0], "position_error_mm": [1.0]},
-            "a position error needs tolerances; this job has none",
+            "a position error needs tolerances; got none",
         ),
     ],
 )

@@ -135,7 +135,7 @@ def test_a_requirement_that_zero_does_not_meet_is_refused_where_every_design_has
         solve(replace(stated, mechanism=replace(stated.mechanism, loads=())))
 
 
-@pytest.mark.filterwarnings("ignore:requirements are in SI")  # 1e9 of whatever
+@pytest.mark.filterwarnings("ignore:requirements must be in SI")  # 1e9 of whatever
 def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> None:
     idle = 0
     for causes in ((), ("speed",), ("speed", "masses"), ("speed", "heavy crank"), ("gravity", "masses"), CAUSES):
@@ -146,7 +146,7 @@ def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> 
             told = idle_rules(problem(given, "stroke", Constraint(quantity=name, upper=1e9)))
             why = refusal(given, name).removeprefix(f"objectives.{name}: ")
             assert len(told) == bool(why)
-            assert all(sentence.startswith(f"constraints.{name} leaves no design out: ") for sentence in told)
+            assert all(sentence.startswith(f"constraints.{name} excludes no design: ") for sentence in told)
             assert all(sentence.endswith(why) for sentence in told)
             idle += len(told)
     assert idle > 20

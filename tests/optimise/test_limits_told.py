@@ -76,7 +76,7 @@ ACTIVE = re.compile(r"(?:with|and) (\w+) (?:at least|at most|exactly) ")
 RATIO = re.compile(rf"with a least transmission angle .* it is at most {NUMBER}; ")
 ANGLE = re.compile(rf"lower constraints\.transmission_angle to {NUMBER} deg at most")
 HAD = re.compile(
-    rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* can be had"
+    rf"([A-Za-z -]+) (at least|at most|exactly) [^;]*?, at (?:most|least|the nearest) {NUMBER}[^;]* is possible with"
 )
 TOGETHER = re.compile(rf"([A-Za-z -]+) (at least|at most|exactly) {NUMBER}[^;]*? instead of")
 KEYS = {"at least": "min", "at most": "max", "exactly": "equals"}

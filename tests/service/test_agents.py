@@ -287,7 +287,7 @@ def test_a_cancelled_search_ends_soon_and_goes_on_to_the_same_front(agent: Agent
     (tmp_path / "job.toml").write_text(LONG, encoding="utf-8")
     expected = command("optimise", tmp_path / "job.toml", "--runs", tmp_path, "--no-figures")
     assert lasting(found) == lasting(expected)
-    assert "only an interrupted or cancelled run can continue; on" in agent.refused("optimise", resume=latest["run"])
+    assert "only an interrupted or cancelled run can continue; " in agent.refused("optimise", resume=latest["run"])
 
 
 @pytest.mark.slow

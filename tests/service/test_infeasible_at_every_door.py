@@ -79,7 +79,7 @@ CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "one formula written twice": (
         changed_job(constraints={"crank + rod": {"min": "300 mm"}, "crank +  rod": {"max": "200 mm"}}),
-        "the requirements on one formula must not contradict each other; something",
+        "the requirements on one formula must not contradict each other; got",
     ),
     "a slow stroke on the other side": (
         changed_job(constraints={"slow_stroke": "outward"}, variables={"offset": ["0 mm", "200 mm"]}),
@@ -115,7 +115,7 @@ CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
             "variables": {"crank": "100 mm", "rod": ["20 mm", "40 mm"], "offset": "0 mm"},
             "objectives": {"actuator_travel": "minimise"},
         },
-        "motion: no design of the ranges closes",
+        "motion: no design within the ranges closes",
     ),
     "values of which none fits": (
         changed_job(

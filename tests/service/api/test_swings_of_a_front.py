@@ -185,4 +185,4 @@ def test_questions_of_a_full_turn_are_refused(served: Served) -> None:
     ]
     for answer in answers:
         assert answer.status_code == 422
-        assert "is of a crank that turns through; got a" in answer.json()["detail"]
+        assert "needs a rotating crank" in answer.json()["detail"]
