@@ -34,7 +34,7 @@ from .text.streams import give_up_output, guard_streams
 _DEBUG = "SLIDERCRANK_DEBUG"
 _SHORT = ("can't start new thread", "failed to map segment", "Cannot allocate memory", "cannot allocate memory")
 _MORE_MEMORY = (
-    "slidercrank: there must be memory enough for this; got less; end other programs, or raise the limits of this one "
+    "slidercrank: not enough memory; close other programs, or raise the limits of this one "
     "(ulimit -v, ulimit -u, a container's memory)"
 )
 

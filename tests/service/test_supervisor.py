@@ -153,7 +153,7 @@ def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> No
     assert (store.job(leaves.id).state, store.job(fits.id).state) == ("done", "done")
     told = [event.data.get("reason") for event in store.events(fits.id)]
     assert "a new worker takes it: earlier jobs left too little memory in this one" in told
-    assert re.search(r"it may take 350 MB of memory; its worker used \d{3} MB", store.job(greedy.id).reason)
+    assert re.search(r"it may use 350 MB of memory; its worker used \d{3} MB", store.job(greedy.id).reason)
 
 
 @pytest.mark.slow

@@ -95,7 +95,7 @@ def test_the_client_improves_on_a_design(client: httpx.Client, solved: Solved) -
 @pytest.mark.parametrize(
     ("body", "status", "words"),
     [
-        ({"at": {}}, 422, "nothing is wished"),
+        ({"at": {}}, 422, "no wish was given"),
         ({"at": {"time_ratio": "NaN"}}, 422, "must be a finite number"),
         ({"at": {"transmission_angle": "5 mm"}}, 422, "which is a length"),
         ({"at": {"crank": "5 mm"}}, 422, "one of the objectives time_ratio, transmission_angle; got 'crank'"),
