@@ -15,7 +15,7 @@ LB, LBF, IN = 0.45359237, 4.4482216152605, 25.4
         ("crank_mm", "crank_in", 1.0 / IN),
         ("saving_N_per_kg", "saving_lbf_per_lb", LB / LBF),
         ("stiffness_N_per_m", "stiffness_lbf_per_in", 0.0254 / LBF),
-        ("bound_saving_per_um", "bound_saving_per_um", 1.0),
+        ("bound_saving_per_um", "bound_saving_per_in", 25400.0),
         ("counterweight_moment_kg_m", "counterweight_moment_lb_in", 1000.0 / IN / LB),
         ("least_pressure_bar", "least_pressure_psi", 1e5 * 0.0254**2 / LBF),
         ("pin_pressure_MPa", "pin_pressure_psi", 1e6 * 0.0254**2 / LBF),

@@ -82,7 +82,7 @@ def test_no_condition_selects_all_and_no_designs_none() -> None:
         ("", "write it like"),
         ("transmission_angle", "write it like"),
         ("transmission_angle >= ", "write it like"),
-        ("transmission_angle => 40 deg", "has one of >= <= > < = !=; got"),
+        ("transmission_angle => 40 deg", "must have one of >= <= > < = !=; got"),
         ("40 deg <= transmission_angle", "write it like"),
         ("transmision_angle >= 40 deg", "did you mean transmission_angle"),
         ("no_such >= 1", "no quantity or column"),

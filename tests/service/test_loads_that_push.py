@@ -47,7 +47,7 @@ def test_a_run_has_the_same_numbers_on_the_terminal_and_in_its_report(tmp_path: 
     place, file = tmp_path / "runs", tmp_path / "report.html"
     assert command("optimise", job, "--runs", place, "--no-figures").exit_code == 0
     told = re.findall(
-        r"more work on the machine than they absorb, by .*? a cycle", command("front", "latest", "--runs", place).output
+        r"more work on the machine than they absorb, by .*? per cycle", command("front", "latest", "--runs", place).output
     )
     assert len(told) == 1
     reported = command("report", "latest", "--runs", place, "--design", 1, "--out", file)

@@ -177,7 +177,7 @@ def test_a_job_with_records_of_another_release_begins_anew(
     assert store.job(job.id).state == "done"
     told = [event.data["text"] for event in store.events(job.id) if event.kind == "message"]
     assert any(
-        text.startswith("begins anew: a run can only continue with its original versions; it has") for text in told
+        text.startswith("starts again: a run can only continue with its original versions; it has") for text in told
     )
     assert rounds(store, job.id) == [1, 1, 2, 3]
 

@@ -147,7 +147,7 @@ def test_the_token_is_sent_but_never_shown(store: Store) -> None:
             assert client.jobs() == []
         with Client(f"{address}/?token=secret") as client:
             assert client.jobs() == []
-        with Client(address) as client, pytest.raises(ServiceError, match="carries the token"):
+        with Client(address) as client, pytest.raises(ServiceError, match="must carry the token"):
             client.jobs()
     with Client(f"{address}/?token=secret", patience=0.0) as client, pytest.raises(ServiceError) as away:
         client.jobs()
@@ -372,7 +372,7 @@ def test_a_wrong_token_is_no_reason_to_wait(store: Store) -> None:
     with (
         served(store, Settings(token="secret")) as address,
         Client(address, "wrong") as client,
-        pytest.raises(ServiceError, match="carries the token"),
+        pytest.raises(ServiceError, match="must carry the token"),
     ):
         list(client.events(job.id))
     assert time.monotonic() - started < 15.0

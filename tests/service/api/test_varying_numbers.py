@@ -92,8 +92,8 @@ def test_a_rounded_width_is_kept(asked: tuple[httpx.Client, str], rounded: dict[
     [
         ("rod_width_mm=300", "mechanism.rod.width must be within its range, 20 to 40 mm; got 300"),
         ("rod_width_mm", "a value must be COLUMN=NUMBER; got 'rod_width_mm'"),
-        ("rod_width_mm=wide", "a value must be COLUMN=NUMBER; number"),
-        ("rod_width_mm=nan", "a value must be COLUMN=NUMBER; number"),
+        ("rod_width_mm=wide", "a value must be COLUMN=NUMBER; got"),
+        ("rod_width_mm=nan", "a value must be COLUMN=NUMBER; got"),
         ("status=1", "only variables of this job may have other values: rod_width_mm; got 'status'"),
         ("slider_mass_kg=1", "only variables of this job may have other values"),
     ],

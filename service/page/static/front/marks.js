@@ -177,7 +177,7 @@ export function marksPanel(explorer) {
     fill(
       beyondAllowed,
       front.violations.map((sentence) =>
-        h("p", { class: "error" }, `Beyond what is allowed: ${inShownUnits(sentence)}.`),
+        h("p", { class: "error" }, `Beyond the allowable value: ${inShownUnits(sentence)}.`),
       ),
     );
     drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));
