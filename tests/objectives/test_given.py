@@ -102,7 +102,7 @@ def test_standard_forms_and_fronts_are_compared_without_a_question_of_truth() ->
 def test_lengths_whose_powers_are_no_numbers_give_none(size: float) -> None:
     design = [size, 3.0 * size, 0.5 * size]
     assert np.isnan(sc.evaluate(MACHINE, design, [*NAMES, "peak_slider_speed"])).all()
-    with pytest.raises(sc.InputError, match="a design is 3 finite numbers"):
+    with pytest.raises(sc.InputError, match="a design must be 3 finite numbers"):
         sc.analyse(MACHINE, design)
     near = sc.evaluate(MACHINE, [1e-40, 3e-40, 5e-41], NAMES)
     np.testing.assert_allclose(near[0], sc.evaluate(MACHINE, [1.0, 3.0, 0.5], NAMES)[0], rtol=1e-12)
@@ -113,5 +113,5 @@ def test_what_is_masked_is_not_there() -> None:
     found = sc.evaluate(MACHINE, given, NAMES)
     assert np.isnan(found[0]).all()
     np.testing.assert_array_equal(found[1], sc.evaluate(MACHINE, DESIGN, NAMES))
-    with pytest.raises(sc.InputError, match="a design is 3 finite numbers"):
+    with pytest.raises(sc.InputError, match="a design must be 3 finite numbers"):
         sc.analyse(MACHINE, given[0])

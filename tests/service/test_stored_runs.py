@@ -61,7 +61,7 @@ def test_the_latest_may_be_an_unfinished_run(place: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("202601", "must be unique; '202601' fits 20260101-100000-sieve, 20260101-100000-sieve-2"),
+        ("202601", "must be unique; '202601' matches 20260101-100000-sieve, 20260101-100000-sieve-2"),
         ("2025", "there is no run '2025'.*; the latest is 20260102-090001-feeder"),
         ("", "there is no run ''"),
     ],

@@ -177,8 +177,8 @@ def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, g
         ((*OVER, "--actuator-tolerance", "-1 mm"), "--actuator-tolerance must"),
         ((*OVER, "--actuator-tolerance", "1 mm"), "of a slider that drives"),
         ((*OVER, "--curves", "-"), "name one"),
-        ((*OVER, "--figure", "swing.svg"), "ends with .png"),
-        ((*OVER, "--curves", "."), "ends with .csv"),
+        ((*OVER, "--figure", "swing.svg"), "must end with .png"),
+        ((*OVER, "--curves", "."), "must end with .csv"),
         ((*OVER, "--actuator-tolerance", "inf mm"), 'got "inf mm"; write it like "80 mm"'),
     ],
 )

@@ -153,7 +153,7 @@ def test_a_time_ratio_that_no_linkage_has_is_said_with_what_is_possible(shared: 
     assert "it is at most 1.28521" in wrong["sentence"]
     assert found["understood"] is None
     assert any(
-        "time ratio at least 2 is asked, at most 1.28521 can be had" in sentence
+        "time ratio at least 2 is asked, at most 1.28521 is possible" in sentence
         for sentence in found["allowed"]["said"]
     )
 
