@@ -66,9 +66,8 @@ class _Curve:
         row, low, high, cut = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((low, row))
         row, low, high, cut = row[order], low[order], high[order], cut[order]
-        after = np.append(np.arange(1, len(row)), 0)
-        first = np.searchsorted(row, row, side="left")
-        last = row[after] != row
+        after = np.arange(1, len(row) + 1)
+        first, last = np.searchsorted(row, row, side="left"), np.append(row[1:] != row[:-1], True)
         after[last] = first[last] if len(self.ways) > 1 else -1
         return Segments(row, low, high, cut, after)
 
