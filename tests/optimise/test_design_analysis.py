@@ -149,9 +149,9 @@ def test_problem_with_choices_is_asked_by_its_parts() -> None:
             "objectives": {"peak_torque": "minimise"},
         }
     )
-    with pytest.raises(InputError, match=r"take one of problem.parts\(\)"):
+    with pytest.raises(InputError, match=r"use one of problem.parts\(\)"):
         found.analyse(DESIGN)
-    with pytest.raises(InputError, match=r"take one of problem.parts\(\)"):
+    with pytest.raises(InputError, match=r"use one of problem.parts\(\)"):
         found.evaluate([DESIGN])
     assert found.parts()[0].analyse(DESIGN)["peak_torque"] > 0.0
 

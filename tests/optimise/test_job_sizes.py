@@ -88,13 +88,13 @@ def large_jobs() -> dict[str, tuple[Job, str]]:
         "empty loads": (job(load=[{}] * 110_000), few),
         "as many empty loads as are read": (job(load=[{}] * (MOST - 50)), "load #1: must be one of"),
         "lengths of a catalogue": (job(variables={"crank": {"choices": [f"{n} um" for n in range(100, 90_000)]}}), few),
-        "some of these": (job(variables={"crank": {"choices": [f"{n} um" for n in range(100, 9_000)]}}), "200 at most"),
+        "some of these": (job(variables={"crank": {"choices": [f"{n} um" for n in range(100, 9_000)]}}), "at most 200"),
         "objectives": (job(objectives={f"o{n}": 1 for n in range(80_000)}), few),
         "constraints": (job(constraints={f"o{n}": {"min": 1} for n in range(4_900)}), "unknown key"),
         "paths": (job(variables={f"mechanism.a{n}": [1, 2] for n in range(3_000)}), "must name a number that the job"),
         "quantities": (job(quantity={f"q{n}": {"function": "a:b"} for n in range(4_000)}), "at most 20 entries"),
         "numbers in long tables": (job(load=[TABLE, TABLE, *loads[:46]], variables=shifted(lots, 2, 46)), ""),
-        "numbers in every combination": (job(load=loads, variables={**lots, **masses}), "2000 in all at most"),
+        "numbers in every combination": (job(load=loads, variables={**lots, **masses}), "at most 2000"),
         "choices beside tables": (job(load=[TABLE] * 4, variables=masses), ""),
     }
 

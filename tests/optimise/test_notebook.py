@@ -75,7 +75,7 @@ def test_what_has_no_picture_says_so(front: sc.ParetoFront) -> None:
         arms.plot()
     empty = replace(front, values=front.values[:0], message="nothing <b>fits</b>")
     assert "&lt;b&gt;" in empty._repr_html_()
-    with pytest.raises(InputError, match="got none: nothing"):
+    with pytest.raises(InputError, match="this front is empty: nothing"):
         empty.plot()
 
 

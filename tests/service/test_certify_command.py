@@ -46,7 +46,7 @@ def test_a_budget_that_does_not_suffice_says_what_remains(kept: Path, command: C
     done = command("certify", kept, "--epsilon", 1e-5, "--seconds", 0.01)
     assert done.exit_code == 4
     assert "open (" in done.stdout
-    assert "Farthest from proven: crank" in done.stdout
+    assert "Largest gap in the proof: crank" in done.stdout
     assert json.loads((kept / "certificate.json").read_text())["status"] == "out of budget"
 
 

@@ -249,7 +249,7 @@ def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: D
         wished = other.front.ask("wish", **given)
         assert_same(other.printed("wish", None, given), wished)
         reached = other.client.ask(other.number, None, "wish", **given)["objectives"][0]["reached"]
-        assert reached == pytest.approx(wished["objectives"][0]["reached"], rel=1e-3)  # a flat valley
+        assert reached == pytest.approx(wished["objectives"][0]["reached"], rel=1e-9)
     else:
         assert assert_alike(other, "certify", None, {})["infeasible"]
         (sentence,) = set(other.refusals("wish", None, {"at": {"time_ratio": "1.2"}}))

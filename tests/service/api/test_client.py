@@ -125,7 +125,7 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     assert reader.schema()["$schema"].endswith("2020-12/schema")
     with pytest.raises(NotFound, match="no figure 'none'; choose from"):
         reader.figure(number, "none", tmp_path / "b.png")
-    with pytest.raises(InputError, match=r"ends in \.csv or \.json or \.parquet"):
+    with pytest.raises(InputError, match=r"must end in \.csv or \.json or \.parquet"):
         reader.export(number, tmp_path / "front.xls")
 
 

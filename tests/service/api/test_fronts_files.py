@@ -170,7 +170,7 @@ def test_a_service_without_figures_says_so(solved: Solved) -> None:
     with client_of(solved.store, Settings(figures=False)) as client:
         for place in ("figures", "figures/knee.png"):
             answer = client.get(f"{solved.path}/{place}")
-            assert (answer.status_code, "draws no figures" in answer.json()["detail"]) == (404, True)
+            assert (answer.status_code, "cannot draw figures" in answer.json()["detail"]) == (404, True)
 
 
 def test_any_name_of_a_job_can_be_drawn(solved: Solved, store: Store) -> None:
