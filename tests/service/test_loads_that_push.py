@@ -46,9 +46,8 @@ def test_a_run_has_the_same_numbers_on_the_terminal_and_in_its_report(tmp_path: 
     job.write_text(job.read_text().replace('{ equals = "280 mm" }', '{ min = "200 mm", max = "280 mm" }') + PUSH)
     place, file = tmp_path / "runs", tmp_path / "report.html"
     assert command("optimise", job, "--runs", place, "--no-figures").exit_code == 0
-    told = re.findall(
-        r"more work on the machine than they absorb, by .*? per cycle", command("front", "latest", "--runs", place).output
-    )
+    shown = command("front", "latest", "--runs", place).output
+    told = re.findall(r"more work on the machine than they absorb, by .*? per cycle", shown)
     assert len(told) == 1
     reported = command("report", "latest", "--runs", place, "--design", 1, "--out", file)
     assert told[0] in file.read_text(encoding="utf-8")
