@@ -64,10 +64,7 @@ class SwingQuantity(Quantity):
             if reason is not None:
                 return reason
             if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
-                return (
-                    "a position error needs tolerances; got none; add for example [tolerances] crank = "
-                    '"0.05 mm"'
-                )
+                return 'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
         if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
             return (
                 f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "

@@ -122,9 +122,7 @@ def test_a_function_that_did_not_answer_is_not_asked_again(
     ended = store.job(job)
     assert (ended.state, len(starts)) == ("cancelled", 1)
     assert ended.records > 0
-    assert ended.reason.startswith(
-        "cancelled; custom functions were too slow to report the designs found so far"
-    )
+    assert ended.reason.startswith("cancelled; custom functions were too slow to report the designs found so far")
     assert functions() <= before
 
 

@@ -104,9 +104,7 @@ def numbers(
     """
     reach = limits(mechanism, linkage)
     if not np.any(reach):
-        raise InputError(
-            'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
-        )
+        raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
     (worst_case, at), (rss, at_square) = (
         (float(values[0]), angles)
