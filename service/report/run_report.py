@@ -29,7 +29,7 @@ def run_report(
     subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
     if measured is not None:
         design = subject.design
-        require_turning(design.part.motion, "what --measured compares")
+        require_turning(design.part.motion, "a comparison with measured curves")
         subject = replace(subject, measured=read_measured(measured, design.mechanism, design.linkage))
     made = design_report(subject)
     if pdf:

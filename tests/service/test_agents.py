@@ -218,7 +218,7 @@ def test_a_swing_is_analysed_as_by_its_command(agent: Agent, pytestconfig: pytes
     asked = agent.ask("ask", job="support", **lengths, units="inch")
     assert asked == command("swing", pytestconfig.rootpath / "runs/support.toml", *words, "--units", "inch")
     sentence = agent.refused("ask", job="support", **lengths, topics=["motor"])
-    assert sentence.startswith("the topic motor is of a crank that turns through")
+    assert sentence.startswith("the topic motor needs a rotating crank")
 
 
 def test_a_question_with_a_command_of_its_own_is_asked_as_by_that(agent: Agent, run: str) -> None:
@@ -363,7 +363,7 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
         ("ask", {"run": "latest", "topics": ["press"], "inputs": {"rated_torque": "5 mm"}}, "rated_torque must be"),
         ("ask", {"job": "feeder", "crank": "20 mm"}, 'rod is needed; write it like rod "40 mm"'),
         ("ask", {"job": "feeder", "crank": "9 kg", "rod": "1 m", "offset": "0 m"}, "crank must be a length"),
-        ("ask", {"job": "support", "topics": ["motor"], **SWUNG}, "swing analyses its designs"),
+        ("ask", {"job": "support", "topics": ["motor"], **SWUNG}, "use swing to analyse its designs"),
         ("ask", {"job": "feeder", "topics": ["pres"]}, "topics must name a topic"),
         ("front", {"run": "latest", "knee": True, "topsis": "stroke=1"}, "got knee and topsis; keep one"),
         ("front", {"run": "latest", "topsis": "stroke, b"}, "a design must be chosen by the objectives of its run"),
