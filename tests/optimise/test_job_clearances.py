@@ -36,7 +36,7 @@ def test_without_clearances_there_are_none() -> None:
 
 def test_clearances_alone_are_a_cause_of_a_position_error() -> None:
     assert parse_job(job(clearances={"guide": "0.1 mm"})).objectives
-    with pytest.raises(JobError, match="a position error needs tolerances; this job has none"):
+    with pytest.raises(JobError, match="a position error needs tolerances; got none"):
         parse_job(job(clearances={"guide": 0.0}))
 
 

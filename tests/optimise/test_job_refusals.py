@@ -108,7 +108,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     ("[tolerances]", "[tolerances]\npart_of_stroke = [0.5, 0.2]", ["part_of_stroke", "[0.5, 0.2]", "start < end"]),
     ("[tolerances]", "[tolerances]\npart_of_stroke = [0.5]", ["part_of_stroke", "missing"]),
     ("[tolerances]", '[tolerances]\nduring = "outward"', ["tolerances.during", '"outward stroke"']),
-    (ERRORS, "", ["objectives.position_error", "needs tolerances", "this job has none", "[tolerances]"]),
+    (ERRORS, "", ["objectives.position_error", "needs tolerances", "got none", "[tolerances]"]),
     # Ranges
     (CRANK_RANGE, 'crank = ["160 mm", "80 mm"]', ["variables.crank", "empty range", "swap"]),
     (CRANK_RANGE, 'crank = ["80 mm"]', ["variables.crank", "[lower, upper]", '["80 mm"]']),
