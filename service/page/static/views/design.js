@@ -187,7 +187,11 @@ export async function show(place, { parts, query, signal }) {
       places.beyond,
       designs.flatMap(({ name, violations }) =>
         violations.map((sentence) =>
-          h("p", { class: "error" }, `${name}, beyond the allowable value: ${inShownUnits(sentence)}.`),
+          h(
+            "p",
+            { class: "error" },
+            `${name}, beyond the allowable value: ${inShownUnits(sentence)}.`,
+          ),
         ),
       ),
     );
