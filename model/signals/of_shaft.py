@@ -70,7 +70,7 @@ def peaks_of_shaft(
         part = designs[begin:end]
         for place, group in enumerate(groups):
             shaft = Shaft(mechanism, int(kind), part, members=group, during=during, gradients=gradients)
-            found = shaft_peaks(shaft, len(part), kept=kept, stroke=_STROKES[during])
+            found = shaft_peaks(shaft, kept=kept, stroke=_STROKES[during])
             values[begin:end, place], angles[begin:end, place] = found[:2]
             if len(group) == 1 and count > 1:
                 angles[begin:end, place] = np.mod(found[1] + cylinders_of(mechanism)[place].lead, shaft.period)

@@ -13,15 +13,15 @@ NOTHING = 1e-12
 """Share of what cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
 
 
-def shaft_peaks(shaft: Shaft, count: int, *, kept: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
-    """Return values, crank angles (count, kept) and derivatives of the highest local maxima of the curve's size.
+def shaft_peaks(shaft: Shaft, *, kept: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
+    """Return values, crank angles (n, kept) and derivatives of the highest local maxima of the curve's size.
 
     stroke: whether the outward one alone counts, or the inward one; None for both. Where friction locks a design the
     value is infinite.
     """
     segments = segments_of(shaft.breaks, shaft.period)
     live = None if stroke is None else shaft.outward(segments) == stroke
-    found = find_maxima(shaft, segments, np.broadcast_to(shaft.fineness, count), kept=kept, live=live)
+    found = find_maxima(shaft, segments, shaft.fineness, kept=kept, live=live)
     nothing = np.isfinite(found.values) & (found.values <= NOTHING * found.size[:, None])
     values = np.where(nothing, 0.0, found.values)
     values[~shaft.drives, 0] = np.inf
