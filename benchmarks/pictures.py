@@ -36,7 +36,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 
-from . import load_pictures
+from . import glossary_sketch, load_pictures
 from .moving_picture import exploring_front
 from .service_process import service
 
@@ -125,6 +125,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "compressor_indicator.png": compressor,
     "compressor_cylinders.png": compressor,
     "sealer.png": sealer,
+    "glossary.svg": glossary_sketch.draw,
     "torque.png": python_example,
     "page_front.png": page,
     "page_design.png": page,

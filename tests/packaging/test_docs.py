@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from typer.testing import CliRunner
 
+from benchmarks import glossary_sketch
 from docs.site import hooks
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
@@ -191,6 +192,25 @@ def test_the_sketch_of_the_dead_centres_is_to_scale(root: Path) -> None:
         assert pin == pytest.approx((linkage.crank * math.cos(angle), linkage.crank * math.sin(angle)), abs=pixel)
     # Counter-clockwise the inward stroke, from the outer to the inner dead centre, takes pi + b: the slow one.
     assert linkage.slow_stroke(direction=1.0) == "inward"
+
+
+def test_the_sketch_of_the_glossary_is_made_by_its_script_and_names_terms_of_the_page(
+    root: Path, pages: dict[Path, str]
+) -> None:
+    file = root / "docs" / "glossary.svg"
+    assert file.read_text(encoding="utf-8") == glossary_sketch.sketch()
+    texts = [element.text or "" for element in ElementTree.parse(file).iter() if element.tag.endswith("}text")]
+    assert len(texts) > 14
+    machine = pages[root / "docs" / "glossary.md"].split("## The problem")[0]
+    terms = {term.strip() for row in re.findall(r"^\| ([^|]+) \|", machine, re.MULTILINE) for term in row.split(",")}
+    assert {text for text in texts if text.removeprefix("inner ").removeprefix("outer ") not in terms} == set()
+
+
+def test_every_term_of_the_glossary_is_explained_once(root: Path, pages: dict[Path, str]) -> None:
+    rows = re.findall(r"^\| ([^|]+) \| \S", pages[root / "docs" / "glossary.md"], re.MULTILINE)
+    terms = [term.strip() for row in rows if row not in ("term", "---") for term in row.split(",")]
+    assert len(terms) > 70
+    assert [term for term in terms if terms.count(term) > 1] == []
 
 
 def _tables(page: str) -> list[dict[str, Any]]:

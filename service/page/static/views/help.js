@@ -41,6 +41,7 @@ const DOCUMENTS = [
     "docs/jobs.md",
     "job files beyond the basics: friction, motors, choices, wanted motions, robust designs",
   ],
+  ["docs/glossary.md", "the terms of machine, problem, search and program, with a sketch"],
   ["docs/theory.md", "every equation, derived, with its source"],
   ["docs/optimisers.md", "how the search works, and when another method helps"],
   ["docs/own-quantities.md", "quantities of your own as Python functions"],
