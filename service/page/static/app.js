@@ -7,7 +7,7 @@ import { watchDownloads } from "./lib/download.js";
 import { sayProblem } from "./lib/notices.js";
 import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 import { readyKinds } from "./lib/units.js";
-import { keepPlaces, lookForPlace } from "./lib/place.js";
+import { rememberScroll, restoreScroll } from "./lib/scroll_position.js";
 import { sentenceOf } from "./lib/refusals.js";
 
 /**
@@ -56,7 +56,7 @@ async function showView() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { parts, query } = read();
-  const found = lookForPlace(signal);
+  const found = restoreScroll(signal);
   const main = byId("main");
   markNavigation();
   const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
@@ -151,7 +151,7 @@ document.querySelector(".skip")?.addEventListener("click", (event) => {
 });
 window.addEventListener("hashchange", showView);
 watchDownloads();
-keepPlaces();
+rememberScroll();
 showPreferences();
 const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // what is wrong with the service, the view says
 if (system() === "inch") units.then(showView);

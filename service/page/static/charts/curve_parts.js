@@ -5,22 +5,22 @@ import { text, withUnit } from "../lib/numbers.js";
 import { crankAt, extremes } from "./cycle.js";
 
 /**
- * @import { Across } from "./across.js"
+ * @import { Abscissa } from "./abscissa.js"
  * @import { Drawn, Shown } from "./curves.js"
  */
 
 export const ROOM = { left: 56, right: 12, top: 25, bottom: 24 };
 const NAMES = { turn: ["inner", "outer"], swing: ["start", "end"] };
 
-/** @typedef {{ x: Page.Scale, y: Page.Scale, across: Across, height: number }} Pen Scales of a chart, and what it is drawn over. */
+/** @typedef {{ x: Page.Scale, y: Page.Scale, abscissa: Abscissa, height: number }} Pen Scales of a chart, and what it is drawn over. */
 
 /** @param {Pen} pen @param {number} width */
-export function axes({ x, y, across, height }, width) {
+export function axes({ x, y, abscissa, height }, width) {
   const ticks =
-    across.ticks ??
+    abscissa.ticks ??
     x.ticks.map((at, n, all) => ({
       at,
-      text: n === all.length - 1 ? `${x.text(at)} ${across.unit}` : x.text(at),
+      text: n === all.length - 1 ? `${x.text(at)} ${abscissa.unit}` : x.text(at),
     }));
   return svg(
     "g",
@@ -50,11 +50,11 @@ export function axes({ x, y, across, height }, width) {
 }
 
 /** @param {Pen} pen @param {Shown | undefined} first */
-export function centreLines({ x, across, height }, first) {
+export function centreLines({ x, abscissa, height }, first) {
   if (!first) return [];
   const again = first.turns === 2 ? first.centres.map((place) => place + 180) : [];
   return [...first.centres, ...again].map((angle, n) => {
-    const at = x.at(across.place(first, angle) ?? NaN);
+    const at = x.at(abscissa.place(first, angle) ?? NaN);
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     return svg(
       "g",
@@ -74,11 +74,11 @@ export function centreLines({ x, across, height }, first) {
 }
 
 /** @param {Drawn} one @param {Pen} pen */
-export function line(one, { x, y, across }) {
+export function line(one, { x, y, abscissa }) {
   const { values, series } = one;
   let path = "";
   let pen = "M";
-  for (const { x: at, n } of across.path(one, values.length)) {
+  for (const { x: at, n } of abscissa.path(one, values.length)) {
     const value = values[n];
     if (value === null || Number.isNaN(at)) {
       pen = "M";
@@ -94,13 +94,13 @@ export function line(one, { x, y, across }) {
  * Return the marks of least and greatest value of a curve. Those of its points alone are said to be about that.
  * @param {Drawn} one @param {Pen} pen
  */
-export function peaks(one, { x, y, across }) {
+export function peaks(one, { x, y, abscissa }) {
   const { values, ends, series } = one;
   const found = ends ?? extremes(values);
   if (!found || found.low.value === found.high.value) return null;
   return /** @type {const} */ (["low", "high"]).map((end) => {
     const { angle, value } = found[end];
-    const at = x.at(across.place(one, angle) ?? NaN);
+    const at = x.at(abscissa.place(one, angle) ?? NaN);
     const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
     return svg(
@@ -118,9 +118,9 @@ export function peaks(one, { x, y, across }) {
 
 /**
  * Return a sentence for a curve: its least and greatest value, and where.
- * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Across} across
+ * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Abscissa} abscissa
  */
-export function summary(words, unit, series, key, across) {
+export function summary(words, unit, series, key, abscissa) {
   const each = series.map((one) => {
     const { name, curves, exact } = one;
     const found = exact?.[key] ?? extremes(curves[key]);
@@ -130,5 +130,5 @@ export function summary(words, unit, series, key, across) {
       `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
   });
-  return `${words} over the ${across.title}. ${each.join(". ")}.`;
+  return `${words} over the ${abscissa.title}. ${each.join(". ")}.`;
 }

@@ -2,13 +2,13 @@
 
 import { fill, h, svg } from "../lib/dom.js";
 import { inShown, text, unitOf } from "../lib/numbers.js";
-import { acrossOf } from "./across.js";
+import { abscissaOf } from "./abscissa.js";
 import { axes, centreLines, line, peaks, ROOM, summary } from "./curve_parts.js";
 import { between } from "./cycle.js";
 import { range, scale } from "./scale.js";
 
 /**
- * @import { Across } from "./across.js"
+ * @import { Abscissa } from "./abscissa.js"
  *
  * What a chart shows of a design: its curves under a name; series: which colour it has.
  * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "sliderEnds" | "turns">} Shown
@@ -23,8 +23,8 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
 
 /**
  * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
- * - show(series, panels, across): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
- *   panels: each {key, title, unit}, a curve of the API; across: what they are drawn over. - turn({angle, settled}). - close().
+ * - show(series, panels, abscissa): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
+ *   panels: each {key, title, unit}, a curve of the API; abscissa: what they are drawn over. - turn({angle, settled}). - close().
  * large: keys of the curves that are large, told(keys) as the reader chooses others.
  * @param {HTMLElement} place @param {(angle: number, taken: boolean) => void} turned
  * @param {{ large: string[], told: (large: string[]) => void }} sizes
@@ -32,7 +32,7 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
 export function curveCharts(place, turned, sizes) {
   const [wide, grid] = ["curves large", "curves small"].map((name) => h("div", { class: name }));
   place.append(wide, grid);
-  let across = acrossOf("angle", 0);
+  let abscissa = abscissaOf("angle", 0);
   let { large } = sizes;
   /** @type {{ series: Shown[], panels: Panel[] } | null} */
   let shown = null;
@@ -61,7 +61,7 @@ export function curveCharts(place, turned, sizes) {
     width = Math.round(place.clientWidth);
     if (width < 80) return;
     charts.forEach((one, n) => {
-      one.stale = () => one.draw(panels[n], series, across);
+      one.stale = () => one.draw(panels[n], series, abscissa);
       if (!observed || inSight.has(one.figure)) drawn(one);
     });
     turn({ angle: at, settled: true });
@@ -126,10 +126,10 @@ export function curveCharts(place, turned, sizes) {
   );
   watcher.observe(place);
   return {
-    /** @param {Shown[]} series @param {Panel[]} panels @param {Across} over */
+    /** @param {Shown[]} series @param {Panel[]} panels @param {Abscissa} over */
     show(series, panels, over) {
       shown = { series, panels };
-      across = over;
+      abscissa = over;
       arrange();
     },
     turn,
@@ -171,8 +171,8 @@ function chart(panel, turned, resize) {
   let height = HEIGHTS.small;
   /** @type {Page.Scale & { width: number } | null} */
   let x = null;
-  /** @type {Across} */
-  let across;
+  /** @type {Abscissa} */
+  let abscissa;
   /** @type {Page.Scale} */
   let y;
   /** @type {Drawn[]} */
@@ -189,8 +189,8 @@ function chart(panel, turned, resize) {
       (pixel) => (pixel * /** @type {{ width: number }} */ (x).width) / box.width,
     );
     turned(
-      across.angle
-        ? Math.min(Math.max(across.angle(x.value(at[0])), 0), 359.99)
+      abscissa.angle
+        ? Math.min(Math.max(abscissa.angle(x.value(at[0])), 0), 359.99)
         : nearest(at[0], at[1]),
       lit,
     );
@@ -200,7 +200,7 @@ function chart(panel, turned, resize) {
   function nearest(right, down) {
     const [{ values }] = series;
     let [best, least] = [0, Infinity];
-    for (const { x: at, n } of across.path(series[0], values.length)) {
+    for (const { x: at, n } of abscissa.path(series[0], values.length)) {
       const value = values[n];
       const distance =
         value === null || !x ? Infinity : Math.hypot(x.at(at) - right, y.at(value) - down);
@@ -227,10 +227,10 @@ function chart(panel, turned, resize) {
     },
     /** @type {(() => void) | null} */
     stale: null, // draws what has changed
-    /** @param {Panel} given @param {Shown[]} all @param {Across} over */
+    /** @param {Panel} given @param {Shown[]} all @param {Abscissa} over */
     draw({ key, title: words, unit }, all, over) {
       const width = Math.max(80, Math.round(plot.clientWidth));
-      across = over;
+      abscissa = over;
       series = all
         .filter(({ curves }) => curves[key])
         .map((one) => ({
@@ -243,16 +243,16 @@ function chart(panel, turned, resize) {
         series.flatMap(({ values }) => values),
         0.14,
       );
-      const span = across.span(series);
+      const span = abscissa.span(series);
       x = {
         ...scale(span.low, span.high, ROOM.left, width - ROOM.right, width > 300 ? 6 : 3),
         width,
       };
       y = scale(low, high, height - ROOM.bottom, ROOM.top, height > 200 ? 6 : 3);
       picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-      picture.setAttribute("aria-label", summary(words, unit, series, key, across));
+      picture.setAttribute("aria-label", summary(words, unit, series, key, abscissa));
       dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
-      const pen = { x, y, across, height };
+      const pen = { x, y, abscissa, height };
       fill(
         picture,
         axes(pen, width),
@@ -266,7 +266,7 @@ function chart(panel, turned, resize) {
     turn(angle, read) {
       if (!x) return;
       const scaled = x;
-      const places = series.map((one) => scaled.at(across.place(one, angle) ?? NaN));
+      const places = series.map((one) => scaled.at(abscissa.place(one, angle) ?? NaN));
       cursor.style.transform = `translate(${(places[0] ?? 0).toFixed(1)}px, ${ROOM.top}px)`;
       const values = series.map((one) => between(one.values, angle));
       values.forEach(

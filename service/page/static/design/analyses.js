@@ -2,7 +2,7 @@
 
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { whenNear } from "../lib/near.js";
+import { whenNear } from "../lib/deferred.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
 import { question } from "./question.js";

@@ -3,7 +3,7 @@
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
-import { standing } from "./standing.js";
+import { rankInFront } from "./rank.js";
 
 const KEY = 4; // digits of a key figure; all of them are there when pointed at
 const ALL = 12;
@@ -15,7 +15,7 @@ export function sense({ sense: way, target, unit }) {
 
 /**
  * Put the objectives of the design into `place`; front: values of every design by column; row: of the design; changed: of a what-if, see
- * `standing`; whose: whose objectives they are, "" for those of the design that the page is of.
+ * `rankInFront`; whose: whose objectives they are, "" for those of the design that the page is of.
  * @param {HTMLElement} place
  * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} given
  */
@@ -25,7 +25,7 @@ export function showObjectives(place, { objectives, front, row, changed, whose, 
     whose && h("p", { class: "whose" }, whose),
     objectives.map((objective) => {
       const value = row[objective.column];
-      const { share, words } = standing(objective, front, value, changed);
+      const { share, words } = rankInFront(objective, front, value, changed);
       const part = h("span", {});
       const bar = h("span", { class: "share" }, part);
       part.style.width = `${100 * share}%`;

@@ -1,6 +1,6 @@
 /** The curves of a design: over crank angle, time or the way of the slider, three of them large, and as CSV. */
 
-import { acrossOf, OVER, OVER_SWING } from "../charts/across.js";
+import { abscissaOf, OVER, OVER_SWING } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -63,7 +63,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
   /** @type {Page.Machine[]} */
   let shown = [];
   const draw = () =>
-    charts.show(shown, panelsOf(shown[0].curveColumns, shown), acrossOf(chosen, rpm, turns)); // in the units of now
+    charts.show(shown, panelsOf(shown[0].curveColumns, shown), abscissaOf(chosen, rpm, turns)); // in the units of now
   /** @type {Page.Numbers | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));

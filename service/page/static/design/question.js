@@ -4,7 +4,7 @@ import { address, get, isAbort, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { apiSystem, readySystem, unitOf } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
@@ -26,7 +26,7 @@ export function question({ title, inputs, figure }, { path, job, button = "Compu
   function given() {
     const typed = fields.map(({ key, unit, words, required, example, title: name, field }) => {
       if (words.length) return { key, value: field.value || null };
-      const { value = null, wrong, empty } = measured(field.value, unit);
+      const { value = null, wrong, empty } = parseQuantity(field.value, unit);
       const lacks = empty && required && `${name}: a value is needed, such as ${example}.`;
       return { key, value, wrong: wrong || lacks };
     });

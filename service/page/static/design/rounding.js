@@ -3,10 +3,10 @@
 import { isAbort, postFollowed } from "../lib/api.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
 import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
-import { read } from "../lib/typed.js";
+import { parseNumber } from "../lib/number_text.js";
 import { kindOf, measureOf } from "../lib/units.js";
 import { capital } from "../lib/words.js";
-import { rankOf } from "./standing.js";
+import { rankOf } from "./rank.js";
 import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
@@ -262,7 +262,7 @@ function textsOf(fields) {
   let fine = true;
   const found = fields.flatMap(({ name, unit, input, said, wrong }) => {
     const plain = plainUnitOf(unit);
-    const typed = read(input.value, { unit: plain, ...measureOf(kindOf(plain)) });
+    const typed = parseNumber(input.value, { unit: plain, ...measureOf(kindOf(plain)) });
     if (typed.empty) return [];
     const sentence =
       typed.wrong ??

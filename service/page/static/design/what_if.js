@@ -2,14 +2,14 @@
 
 import { isAbort, post } from "../lib/api.js";
 import { fill, h, numberField } from "../lib/dom.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
-import { keeping } from "./keeping.js";
-import { rankOf } from "./standing.js";
+import { bookmarkForm } from "./bookmark_form.js";
+import { rankOf } from "./rank.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
 
@@ -90,7 +90,7 @@ export function whatIf(
     { type: "button", onclick: () => apply(base), disabled: true },
     "Reset",
   );
-  const keep = keeping({
+  const keep = bookmarkForm({
     job,
     design: Number(path.split("/").pop()),
     dimensions: () =>
@@ -294,7 +294,7 @@ function lengthRow(key, title, [low, high], set) {
 
   /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
   function typed() {
-    const found = measured(number.value, "mm");
+    const found = parseQuantity(number.value, "mm");
     if (found.value !== undefined && (found.value > 0 || key === "offset_mm")) return found;
     return {
       wrong:

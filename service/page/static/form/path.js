@@ -1,6 +1,6 @@
 /** Places in a job: lists of keys, such as ["load", 0, "force"], and what stands there. */
 
-import { isRange } from "../lib/typed.js";
+import { isRange } from "../lib/number_text.js";
 
 /** Return what stands at a path of a job; undefined where there is nothing. @param {unknown} job @param {Form.Path} path @returns {unknown} */
 export function at(job, path) {

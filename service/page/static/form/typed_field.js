@@ -1,6 +1,6 @@
 /** Fields of numbers: what was typed is read, said beside the field, and put in order when the field is left. */
 
-import { read } from "../lib/typed.js";
+import { parseNumber } from "../lib/number_text.js";
 import { join, measureOf } from "../lib/units.js";
 
 /** @typedef {{ kind?: string | null, percent?: boolean, select?: HTMLSelectElement | null, range?: boolean }} Measure range: whether a range may stand for a value */
@@ -36,7 +36,7 @@ export function entered(
   input,
   { kind = null, percent = false, select = null, range = false } = {},
 ) {
-  const found = read(valued(input), {
+  const found = parseNumber(valued(input), {
     unit: select?.value ?? "",
     ...measureOf(kind),
     percent,

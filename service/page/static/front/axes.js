@@ -2,7 +2,7 @@
 
 import { fill, first, focused, h, numberField } from "../lib/dom.js";
 import { ends, text } from "../lib/numbers.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { headed, helpLink } from "./columns.js";
 import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 
@@ -189,7 +189,7 @@ export function axisFields(explorer) {
  * @param {HTMLInputElement} node @param {string} unit @returns {number | null | undefined}
  */
 function number(node, unit) {
-  const { value, wrong } = measured(node.value, unit);
+  const { value, wrong } = parseQuantity(node.value, unit);
   if (wrong === undefined) node.removeAttribute("aria-invalid");
   else node.setAttribute("aria-invalid", "true");
   node.title = wrong ?? "";

@@ -4,7 +4,7 @@ import { get, isAbort, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
 import { fill, h, numberField } from "../lib/dom.js";
 import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
 
@@ -136,7 +136,7 @@ export function bindingPanel(explorer) {
   /** @param {Api.Limit} limit @param {HTMLInputElement} input @param {HTMLButtonElement} button */
   async function widen(limit, input, button) {
     const unit = unitOf(limit.unit);
-    const { value, wrong } = measured(input.value, limit.unit);
+    const { value, wrong } = parseQuantity(input.value, limit.unit);
     if (value === undefined) {
       input.setAttribute("aria-invalid", "true");
       refuse(

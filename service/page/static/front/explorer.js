@@ -9,18 +9,18 @@ import { h } from "../lib/dom.js";
 import { counted, grouped, withUnit } from "../lib/numbers.js";
 import { sayProblem } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
-import { behind } from "./behind.js";
+import { previousFront } from "./previous_front.js";
 import { bindingPanel } from "./binding.js";
 import { chooser } from "./chooser.js";
 import { choicesFrom, queryOf, toggled, wanted } from "./choices.js";
 import { FrontData } from "./data.js";
-import { keptPanel } from "./kept.js";
+import { bookmarksPanel } from "./bookmarks.js";
 import { Limits } from "./limits.js";
-import { keepListed } from "./listed.js";
+import { storeOrder } from "./listed_order.js";
 import { linkagePanel } from "./linkage_panel.js";
 import { linkages } from "./linkages.js";
 import { logged } from "./logarithmic.js";
-import { marksOf, othersOf } from "./marked.js";
+import { marksOf, othersOf } from "./chart_marks.js";
 import { marksPanel } from "./marks.js";
 import { saving } from "./saving.js";
 import { scatterPanel } from "./scatter_panel.js";
@@ -80,7 +80,7 @@ export class Explorer {
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.tabling = undefined;
     this.linkages = linkages(data);
-    /** @type {Awaited<ReturnType<typeof behind>>} */
+    /** @type {Awaited<ReturnType<typeof previousFront>>} */
     this.before = null; // the run that this one is a changed copy of
     this.count = h("p", { class: "count", role: "status" });
     this.clearing = h(
@@ -128,7 +128,7 @@ export class Explorer {
     this.marksPanel = marksPanel(this);
     this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
-    this.kept = keptPanel(this);
+    this.kept = bookmarksPanel(this);
     this.binding = bindingPanel(this);
     this.wishing = wishingPanel(this);
     const columns = data.columns;
@@ -204,7 +204,7 @@ export class Explorer {
     this.signal.addEventListener("abort", () => {
       sizes.disconnect();
       this.linkagePanel.close();
-      keepListed(job.id, limits.open && !chosen.sort ? null : this.table.numbers());
+      storeOrder(job.id, limits.open && !chosen.sort ? null : this.table.numbers());
       clearTimeout(this.settling);
       clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
@@ -221,7 +221,7 @@ export class Explorer {
 
   /** Show the front of the run before, once it is here. @param {number} run */
   async lookBehind(run) {
-    this.before = await behind(run, this.signal);
+    this.before = await previousFront(run, this.signal);
     await this.before?.need([this.chosen.x, this.chosen.y]);
     this.update("all");
   }

@@ -5,9 +5,9 @@ import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { drawing } from "../mechanism/drawing.js";
 import { motionOf } from "../mechanism/motion.js";
-import { turning } from "../mechanism/turning.js";
+import { playback } from "../mechanism/playback.js";
 import { LENGTHS } from "./linkages.js";
-import { namesOf } from "./marked.js";
+import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -32,7 +32,7 @@ export function linkagePanel(explorer) {
     numbers,
   );
   const drawn = drawing(picture, { label: "" });
-  /** @type {ReturnType<typeof turning> | null} */
+  /** @type {ReturnType<typeof playback> | null} */
   let motion = null; // once the service said which way the crank turns
   /** @type {number | null} */
   let shown = null;
@@ -67,7 +67,7 @@ export function linkagePanel(explorer) {
       () => 0,
     );
     if (explorer.signal.aborted) return;
-    motion = turning(rpm, explorer.signal);
+    motion = playback(rpm, explorer.signal);
     motion.set(START);
     motion.listen(({ angle, settled }) => drawn.turn(angle, settled));
     draw("all");

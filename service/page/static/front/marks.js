@@ -5,8 +5,8 @@ import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, inShownUnits, withUnit } from "../lib/numbers.js";
 import { inWords } from "../lib/words.js";
-import { smallLinkage } from "../mechanism/small.js";
-import { namesOf } from "./marked.js";
+import { smallLinkage } from "../mechanism/small_linkage.js";
+import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
 

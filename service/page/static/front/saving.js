@@ -5,7 +5,7 @@ import { h } from "../lib/dom.js";
 import { download } from "../lib/download.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, grouped } from "../lib/numbers.js";
-import { linesOf } from "./listed.js";
+import { linesOf } from "./listed_order.js";
 
 /** @import { Explorer } from "./explorer.js" */
 

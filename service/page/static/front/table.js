@@ -3,7 +3,7 @@
 import { fill, first as firstOf, focused, h } from "../lib/dom.js";
 import { grouped, inShown, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
-import { namesOf } from "./marked.js";
+import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
 

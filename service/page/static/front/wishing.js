@@ -4,9 +4,9 @@ import { link } from "../lib/address.js";
 import { get, isAbort, post } from "../lib/api.js";
 import { fill, first, formOf, h, numberField } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
-import { keeping } from "../design/keeping.js";
+import { bookmarkForm } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
@@ -130,7 +130,7 @@ export function wishingPanel(explorer) {
         const wanted = /** @type {Kind} */ (kind.value);
         return value.hidden
           ? { kind: wanted }
-          : { kind: wanted, value: measured(value.value, unit).value ?? NaN };
+          : { kind: wanted, value: parseQuantity(value.value, unit).value ?? NaN };
       },
       /** @param {Wish | undefined} wish */
       set(wish) {
@@ -294,7 +294,7 @@ export function wishingPanel(explorer) {
               { class: "quiet" },
               "More than its lengths is new, so all of its numbers are here.",
             ),
-        keeping({
+        bookmarkForm({
           job: `${job.id}`,
           design: near,
           dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])),

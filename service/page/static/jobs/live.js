@@ -2,7 +2,7 @@
 
 import { history } from "../charts/history.js";
 import { points } from "../charts/points.js";
-import { steady } from "../charts/steady.js";
+import { growingRange } from "../charts/growing_range.js";
 import { columnOf } from "../front/columns.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { follow } from "../lib/events.js";
@@ -31,7 +31,7 @@ export function watch(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
   const figures = h("dl", { class: "figures" });
   const course = stages();
-  const extent = steady();
+  const extent = growingRange();
   const lost = h(
     "p",
     { class: "lost", role: "status", hidden: true },

@@ -1,7 +1,7 @@
 /** The units that a field offers, and values with units as job files have them: "40 mm". */
 
 import { system, unitTable } from "./numbers.js";
-import { read } from "./typed.js";
+import { parseNumber } from "./number_text.js";
 
 /** @type {Record<string, Record<string, number>>} */
 let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
@@ -82,7 +82,9 @@ export function split(value, kind) {
  */
 export function spread(value, kind) {
   const found =
-    typeof value === "string" ? read(value, { unit: "", ...measureOf(kind), range: true }) : {};
+    typeof value === "string"
+      ? parseNumber(value, { unit: "", ...measureOf(kind), range: true })
+      : {};
   if (!found.ends || (kind && !found.unit)) return null;
   const [low, high] = found.ends.map((end) => (found.unit ? `${end} ${found.unit}` : end));
   return [low, high];

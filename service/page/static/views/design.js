@@ -8,11 +8,11 @@ import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
 import { question } from "../design/question.js";
 import { rounding } from "../design/rounding.js";
-import { stage } from "../design/stage.js";
-import { takeAway } from "../design/take_away.js";
-import { goOn, top } from "../design/top.js";
-import { turning } from "../mechanism/turning.js";
-import { wayBack } from "../design/way_back.js";
+import { mechanismsPanel } from "../design/mechanisms.js";
+import { exportMenu } from "../design/export_menu.js";
+import { designHead, focusLastStep } from "../design/head.js";
+import { playback } from "../mechanism/playback.js";
+import { wayBack } from "../design/inverse.js";
 import { whatIf } from "../design/what_if.js";
 import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
@@ -60,7 +60,7 @@ export async function show(place, { parts, query, signal }) {
   };
   const { turns, seconds } = main;
   const rpm = seconds ? (Math.sign(requirements.speed_rpm) || 1) * (60 / seconds) : 0; // cycles a minute
-  const angle = turning(rpm, signal, CYCLES[turns]);
+  const angle = playback(rpm, signal, CYCLES[turns]);
   /** @param {number} at @param {boolean} taken */
   const hold = (at, taken) => {
     if (taken && angle.playing) angle.pause();
@@ -81,7 +81,7 @@ export async function show(place, { parts, query, signal }) {
       "analyses",
     ].map((name) => [name, h("section", { class: name })]),
   );
-  const files = takeAway(job, number, { signal });
+  const files = exportMenu(job, number, { signal });
   const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
     h(
       "p",
@@ -92,7 +92,7 @@ export async function show(place, { parts, query, signal }) {
   const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
   fill(
     place,
-    top(shared),
+    designHead(shared),
     files.node,
     places.objectives,
     places.beyond,
@@ -113,7 +113,7 @@ export async function show(place, { parts, query, signal }) {
   );
   for (const name of ["stage", "what-if", "trade-offs", "rounding"])
     places[name].classList.add("panel");
-  const machines = stage(places.stage, strip, angle, turns);
+  const machines = mechanismsPanel(places.stage, strip, angle, turns);
   let over = query.get("over") ?? "";
   let tab = query.get("tab") ?? ""; // of the analyses
   const charts = overCycle(places.curves, {
@@ -283,7 +283,7 @@ export async function show(place, { parts, query, signal }) {
     { signal },
   );
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
-  goOn(place);
+  focusLastStep(place);
 }
 
 /** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Numbers, wrong?: string }} */

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import "../browser.mjs";
-import { acrossOf } from "../../../../../service/page/static/charts/across.js";
+import { abscissaOf } from "../../../../../service/page/static/charts/abscissa.js";
 import { crankAt, placeOf } from "../../../../../service/page/static/charts/cycle.js";
 
 const COUNT = 360;
@@ -55,29 +55,29 @@ test("a place of turns is the crank angle over their number", () => {
 
 test("curves of a swing are over both ways, time, crank angle or slider position", () => {
   const one = swing(10, 100);
-  const both = acrossOf("angle", 0, 0);
+  const both = abscissaOf("angle", 0, 0);
   assert.deepEqual(
     both.ticks?.map(({ text }) => text),
     ["start", "end", "start"],
   );
   assert.equal(both.path(one, COUNT).length, COUNT + 1);
-  const crank = acrossOf("crank", 0, 0);
+  const crank = abscissaOf("crank", 0, 0);
   const { low, high } = crank.span([one]);
   assert.ok(low < 10 && high > 100 && high < 110);
   assert.equal(crank.angle, null);
   assert.ok(Math.abs(Number(crank.place(one, 180)) - 100) < 1e-9);
-  const position = acrossOf("position", 0, 0).span([one]);
+  const position = abscissaOf("position", 0, 0).span([one]);
   assert.ok(position.low < 100 && position.high > 190);
-  assert.equal(acrossOf("time", 3, 0).span([one]).high, 20);
+  assert.equal(abscissaOf("time", 3, 0).span([one]).high, 20);
 });
 
 test("a cycle of two turns has its crank angles to 720 deg below it", () => {
   assert.deepEqual(
-    acrossOf("angle", 60, 2).ticks?.map(({ text }) => text),
+    abscissaOf("angle", 60, 2).ticks?.map(({ text }) => text),
     ["0°", "180°", "360°", "540°", "720°"],
   );
   assert.deepEqual(
-    acrossOf("angle", 60).ticks?.map(({ text }) => text),
+    abscissaOf("angle", 60).ticks?.map(({ text }) => text),
     ["0°", "90°", "180°", "270°", "360°"],
   );
 });

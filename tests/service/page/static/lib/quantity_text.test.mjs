@@ -6,12 +6,12 @@ import { draws } from "../draws.mjs";
 
 const { readyKinds } = await import("../../../../../service/page/static/lib/units.js");
 const { readySystem } = await import("../../../../../service/page/static/lib/numbers.js");
-const { measured } = await import("../../../../../service/page/static/lib/measured.js");
+const { parseQuantity } = await import("../../../../../service/page/static/lib/quantity_text.js");
 await Promise.all([readySystem(), readyKinds()]);
 
 /** Expect a text to be read as a value in a unit of the API. */
 function reads(text, unit, value) {
-  const found = measured(text, unit);
+  const found = parseQuantity(text, unit);
   assert.ok(
     Math.abs(found.value - value) <= 1e-11 * Math.abs(value),
     `${text} in ${unit} is ${JSON.stringify(found)}`,
@@ -55,13 +55,13 @@ test("what is no value of the kind has a sentence, and nothing is nothing", () =
     ["1/0", "mm"],
     ["5 mm", "N"],
   ]) {
-    const found = measured(text, unit);
+    const found = parseQuantity(text, unit);
     assert.equal(found.value, undefined, text);
     assert.match(found.wrong, /\.$/, text);
   }
   assert.match(
-    measured("abc", "mm").wrong,
+    parseQuantity("abc", "mm").wrong,
     /“abc” is no length; write a number, in mm or with its unit/,
   );
-  for (const text of ["", "  ", "="]) assert.deepEqual(measured(text, "mm"), { empty: true });
+  for (const text of ["", "  ", "="]) assert.deepEqual(parseQuantity(text, "mm"), { empty: true });
 });

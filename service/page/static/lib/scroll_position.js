@@ -15,7 +15,7 @@ function note() {
 }
 
 /** Keep the place from now on; what leads elsewhere notes it before. */
-export function keepPlaces() {
+export function rememberScroll() {
   history.scrollRestoration = "manual";
   window.addEventListener(
     "scroll",
@@ -34,7 +34,7 @@ export function keepPlaces() {
  * beginning. The reader who moves meanwhile is left alone.
  * @param {AbortSignal} signal of the view
  */
-export function lookForPlace(signal) {
+export function restoreScroll(signal) {
   clearTimeout(timer);
   looking = true;
   const top = Number(history.state?.top ?? 0);

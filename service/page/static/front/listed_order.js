@@ -4,7 +4,7 @@
 const key = (job) => `listed ${job}`;
 
 /** Keep the numbers of designs in their order; null forgets them. @param {string | number} job @param {number[] | null} numbers */
-export function keepListed(job, numbers) {
+export function storeOrder(job, numbers) {
   try {
     if (numbers === null) sessionStorage.removeItem(key(job));
     else sessionStorage.setItem(key(job), JSON.stringify(numbers));
@@ -18,7 +18,7 @@ export function keepListed(job, numbers) {
  * without a list, or outside of it, among all designs of the front.
  * @param {string | number} job @param {number} number @param {number} all
  */
-export function beside(job, number, all) {
+export function neighbours(job, number, all) {
   const numbers = kept(job);
   const place = numbers.indexOf(number);
   if (place >= 0)

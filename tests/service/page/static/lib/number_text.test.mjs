@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { isRange, read } from "../../../../../service/page/static/lib/typed.js";
+import { isRange, parseNumber } from "../../../../../service/page/static/lib/number_text.js";
 import { draws } from "../draws.mjs";
 
 const LENGTH = {
@@ -20,7 +20,7 @@ const TURNING = {
 
 /** Expect a text to be read as a number in a unit, and said unless it is plain. */
 function reads(text, number, field = LENGTH, unit = field.unit) {
-  const found = read(text, field);
+  const found = parseNumber(text, field);
   assert.ok(
     Math.abs(Number(found.number) - number) <= 1e-11 * Math.abs(number),
     `${text} is ${JSON.stringify(found)}`,
@@ -110,7 +110,7 @@ test("what cannot be read is said in a sentence", () => {
     ["mm", null],
   ];
   for (const [text, sentence] of known) {
-    const { wrong } = read(text, LENGTH);
+    const { wrong } = parseNumber(text, LENGTH);
     if (sentence) assert.match(wrong ?? "", sentence, text);
     else assert.equal(wrong, undefined);
   }
@@ -130,19 +130,22 @@ test("a middle and half a width are the two ends of a range, in the unit of the 
     ["5 +- -1", 4, 6],
   ];
   for (const [text, low, high] of known) {
-    const { ends, unit, said, number } = read(text, { ...LENGTH, range: true });
+    const { ends, unit, said, number } = parseNumber(text, { ...LENGTH, range: true });
     assert.deepEqual([ends, unit, number], [[String(low), String(high)], "mm", undefined], text);
     assert.equal(said, `"${text}" = ${low} to ${high} mm`);
   }
-  assert.deepEqual(read("300 1/min +- 0.5 Hz", { ...TURNING, range: true }).ends, ["270", "330"]);
+  assert.deepEqual(parseNumber("300 1/min +- 0.5 Hz", { ...TURNING, range: true }).ends, [
+    "270",
+    "330",
+  ]);
   assert.match(
-    read("1,500 +- 5", { ...LENGTH, range: true }).said,
+    parseNumber("1,500 +- 5", { ...LENGTH, range: true }).said,
     /is read as 1495 to 1505 mm; write 1\.500 if/,
   );
   const { number } = draws(92);
   for (let n = 0; n < 300; n += 1) {
     const [middle, half] = [number(-500, 500), number(0, 5)].map((one) => Number(one.toFixed(4)));
-    const { ends } = read(`${middle} +- ${half} cm`, { ...LENGTH, range: true });
+    const { ends } = parseNumber(`${middle} +- ${half} cm`, { ...LENGTH, range: true });
     assert.ok(
       Math.abs(Number(ends[0]) - 10 * (middle - half)) < 1e-8 &&
         Math.abs(Number(ends[1]) - 10 * (middle + half)) < 1e-8,
@@ -152,10 +155,10 @@ test("a middle and half a width are the two ends of a range, in the unit of the 
 
 test("where one value is asked for, a range is refused, and never taken for a difference", () => {
   for (const text of ["100 mm +- 0.5 mm", "100 ± 0.5", "100+-0.5", "100 +/- 0.5 mm"])
-    assert.deepEqual(read(text, LENGTH), {
+    assert.deepEqual(parseNumber(text, LENGTH), {
       wrong: `"${text}" is a range; write a single value here.`,
     });
-  assert.match(read("120 rpm +- 5 rpm", TURNING).wrong, /is a range/);
+  assert.match(parseNumber("120 rpm +- 5 rpm", TURNING).wrong, /is a range/);
   const known = [
     ["+-5", /missing before/],
     ["± 5", /missing before/],
@@ -167,11 +170,11 @@ test("where one value is asked for, a range is refused, and never taken for a di
   for (const [text, sentence] of known)
     for (const range of [true, false])
       assert.match(
-        read(text, { ...LENGTH, range }).wrong ?? "",
+        parseNumber(text, { ...LENGTH, range }).wrong ?? "",
         text === "1 +- 2 +- 3" && !range ? /is a range/ : sentence,
         text,
       );
-  assert.deepEqual(read("rod +- 2 mm", { ...LENGTH, range: true }), {});
+  assert.deepEqual(parseNumber("rod +- 2 mm", { ...LENGTH, range: true }), {});
   for (const [text, says] of [
     ["2 mm +- 1", true],
     ["2±1", true],
@@ -190,9 +193,9 @@ test("other words for units mean what the service says, and only there", () => {
     ["2*60 1/min", 120],
   ])
     reads(text, number, TURNING);
-  assert.deepEqual(read("300 min^-1", { ...TURNING, spoken: {} }), {});
-  assert.equal(read("300 1/min", { ...TURNING, spoken: {} }).number, undefined);
-  assert.deepEqual(read("5 Hz", LENGTH), {});
+  assert.deepEqual(parseNumber("300 min^-1", { ...TURNING, spoken: {} }), {});
+  assert.equal(parseNumber("300 1/min", { ...TURNING, spoken: {} }).number, undefined);
+  assert.deepEqual(parseNumber("5 Hz", LENGTH), {});
 });
 
 test("formulas and units that only the service knows are left to it, nothing is nothing", () => {
@@ -207,8 +210,8 @@ test("formulas and units that only the service knows are left to it, nothing is 
     "1e",
     "5 mmm",
   ])
-    assert.deepEqual(read(text, LENGTH), {});
-  for (const text of ["", "  ", "="]) assert.deepEqual(read(text, LENGTH), { empty: true });
+    assert.deepEqual(parseNumber(text, LENGTH), {});
+  for (const text of ["", "  ", "="]) assert.deepEqual(parseNumber(text, LENGTH), { empty: true });
 });
 
 test("sums and products of drawn numbers are what arithmetic makes of them", () => {
@@ -226,7 +229,7 @@ test("sums and products of drawn numbers are what arithmetic makes of them", () 
   };
   for (let n = 0; n < 500; n += 1) {
     const [text, value] = drawn(4);
-    const found = Number(read(text, RATIO).number);
+    const found = Number(parseNumber(text, RATIO).number);
     assert.ok(
       Math.abs(found - value) <= 1e-9 * Math.max(1, Math.abs(value)),
       `${text} is ${found}, not ${value}`,
@@ -237,7 +240,7 @@ test("sums and products of drawn numbers are what arithmetic makes of them", () 
       ["mm", 1],
     ]);
     assert.ok(
-      Math.abs(Number(read(`${text} ${unit}`, LENGTH).number) - value * factor) <=
+      Math.abs(Number(parseNumber(`${text} ${unit}`, LENGTH).number) - value * factor) <=
         1e-9 * Math.max(1, Math.abs(value * factor)),
     );
   }
@@ -246,7 +249,7 @@ test("sums and products of drawn numbers are what arithmetic makes of them", () 
 test("no text, however broken, throws", () => {
   const { one, whole } = draws(91);
   for (let n = 0; n < 5000; n += 1)
-    read(
+    parseNumber(
       Array.from({ length: whole(0, 9) }, () =>
         one([
           "1",

@@ -4,7 +4,7 @@ import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { say } from "../lib/notices.js";
-import { printWhole } from "../lib/near.js";
+import { printWhole } from "../lib/deferred.js";
 import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [
@@ -23,7 +23,7 @@ const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
  * itself again with null.
  * @param {string} job @param {number} number @param {{ signal?: AbortSignal }} options
  */
-export function takeAway(job, number, { signal } = {}) {
+export function exportMenu(job, number, { signal } = {}) {
   /** @type {Page.Numbers | null} */
   let lengths = null;
   /** @param {string} path @param {string} title @param {string} words */

@@ -14,7 +14,7 @@ const SHORTEST = 0.2; // s of a turn that a screen can show
  * whether nothing moves, so that what takes longer to draw may be drawn.
  * @param {number} rpm @param {AbortSignal} signal @param {string} cycle
  */
-export function turning(rpm, signal, cycle = "one turn") {
+export function playback(rpm, signal, cycle = "one turn") {
   /** @type {((turn: Page.Turn) => void)[]} */
   const listeners = [];
   const paces = pacesOf(rpm, cycle);

@@ -1,7 +1,7 @@
 /** What people type into a field of a quantity, in the unit of the API: "37,5", "2*19", "1 1/2 in". */
 
 import { fromShown, plainUnitOf, unitOf } from "./numbers.js";
-import { read } from "./typed.js";
+import { parseNumber } from "./number_text.js";
 import { kindOf, measureOf } from "./units.js";
 
 /** @typedef {{ value: number, said: string | null, wrong?: undefined, empty?: undefined } | { wrong: string, value?: undefined, empty?: undefined } | { empty: true, value?: undefined, wrong?: undefined }} Measured */
@@ -10,10 +10,10 @@ import { kindOf, measureOf } from "./units.js";
  * Return {value, said} in a unit of the API, and how it was read unless that is plain; {wrong} with a sentence; or {empty}. A number without a unit is in the one that is shown.
  * @param {string} typed @param {string} unit of the API @returns {Measured}
  */
-export function measured(typed, unit) {
+export function parseQuantity(typed, unit) {
   const shown = plainUnitOf(unit);
   const kind = kindOf(shown);
-  const found = read(typed, { unit: shown, ...measureOf(kind) });
+  const found = parseNumber(typed, { unit: shown, ...measureOf(kind) });
   if (found.empty) return { empty: true };
   const value =
     found.number !== undefined && found.unit === shown

@@ -1,13 +1,13 @@
 /** The head of the view: where it is, the designs before and after it, and what stands beside it. */
 
-import { beside as besideIn } from "../front/listed.js";
+import { neighbours } from "../front/listed_order.js";
 import { left, link, read } from "../lib/address.js";
 import { first, h } from "../lib/dom.js";
 
 let stepped = ""; // words of the step that was taken last
 
 /** Give the focus back to the step that led here, so that the next one is a key away. @param {HTMLElement} place */
-export function goOn(place) {
+export function focusLastStep(place) {
   const words = stepped;
   stepped = "";
   if (words) first(place, `.design-head [aria-label="${words}"]`)?.focus({ preventScroll: true });
@@ -22,9 +22,9 @@ function shown() {
 }
 
 /** Return the head. @param {Place} place */
-export function top({ job, number, front, others }) {
+export function designHead({ job, number, front, others }) {
   const beside = others.map((one) => one.number).join(",");
-  const { place, count, before, after, listed } = besideIn(job, number, front.count);
+  const { place, count, before, after, listed } = neighbours(job, number, front.count);
   /** @param {number | null} to @param {string} words @param {string} sign */
   const step = (to, words, sign) =>
     to !== null

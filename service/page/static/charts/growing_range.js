@@ -8,7 +8,7 @@ const AHEAD = 0.2; // of the range, which is left free on the side where it had 
  * Return a function that gives the range of an axis for values: it holds all that it has held before, and grows by steps.
  * @returns {(key: string, values: Iterable<Api.Row[string]>) => Page.Range}
  */
-export function steady() {
+export function growingRange() {
   /** @type {Map<string, Page.Range>} */
   const held = new Map();
   return (key, values) => {

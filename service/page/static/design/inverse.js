@@ -2,7 +2,7 @@
 
 import { get, isAbort } from "../lib/api.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
-import { measured } from "../lib/measured.js";
+import { parseQuantity } from "../lib/quantity_text.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
@@ -66,7 +66,7 @@ export function wayBack(place, { path, positions, turnTo, signal }) {
 
   /** Keep what was typed, in the unit of the API. @param {HTMLInputElement} input @param {Key} key @param {string} unit */
   function take(input, key, unit) {
-    const typed = measured(input.value, unit);
+    const typed = parseQuantity(input.value, unit);
     input.setAttribute("aria-invalid", String(typed.wrong !== undefined));
     if (typed.wrong === undefined) wrong.delete(key);
     else wrong.set(key, typed.wrong);

@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { steady } from "../../../../../service/page/static/charts/steady.js";
+import { growingRange } from "../../../../../service/page/static/charts/growing_range.js";
 import { draws } from "../draws.mjs";
 
 test("an axis holds all it has shown, never shrinks, and moves seldom", () => {
   const drawn = draws(3);
-  const extent = steady();
+  const extent = growingRange();
   let [before, moved, least, most] = [null, 0, Infinity, -Infinity];
   for (let n = 0; n < 400; n += 1) {
     const values = Array.from({ length: 5 }, () => drawn.number(-1, 1) * (1 + n / 100));
@@ -21,7 +21,7 @@ test("an axis holds all it has shown, never shrinks, and moves seldom", () => {
 });
 
 test("each axis has its own range", () => {
-  const extent = steady();
+  const extent = growingRange();
   extent("a", [0, 1]);
   assert.deepEqual(extent("b", [10, 20]), { low: 8, high: 22 });
   assert.deepEqual(extent("b", [12, 13]), { low: 8, high: 22 });

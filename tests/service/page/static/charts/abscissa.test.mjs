@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import "../browser.mjs";
-import { acrossOf, wayAt } from "../../../../../service/page/static/charts/across.js";
+import { abscissaOf, wayAt } from "../../../../../service/page/static/charts/abscissa.js";
 import { draws } from "../draws.mjs";
 
 /** Return a design whose slider goes as crank and rod make it go, at so many angles. */
@@ -28,7 +28,7 @@ test("time goes with the crank, whichever way it turns", () => {
       draw.number(5, 3000) * (draw.whole(0, 1) ? 1 : -1),
       draw.number(0, 359.9),
     ];
-    const over = acrossOf("time", rpm);
+    const over = abscissaOf("time", rpm);
     const seconds = over.place({}, angle);
     const turned = (((6 * rpm * seconds) % 360) + 360) % 360; // 6 deg/s in one rpm
     assert.ok(Math.min(Math.abs(turned - angle), 360 - Math.abs(turned - angle)) < 1e-6);
@@ -49,16 +49,16 @@ test("over the way of the slider the curve goes from the inner dead centre to th
   for (let n = 0; n < 100; n += 1) {
     const one = design(draw);
     const stroke = one.sliderEnds[1] - one.sliderEnds[0];
-    const over = acrossOf("way", 60);
+    const over = abscissaOf("way", 60);
     const path = over.path(one, 360);
     assert.equal(path[0].x, path.at(-1).x);
     assert.ok(Math.abs(Math.min(...path.map(({ x }) => x))) < 1e-3 * stroke);
     assert.ok(Math.abs(Math.max(...path.map(({ x }) => x)) - stroke) < 1e-3 * stroke);
     assert.ok(Math.abs(wayAt(one, one.centres[1]) - stroke) < 1e-3 * stroke);
-    assert.equal(acrossOf("position", 60).place(one, 0), one.curves.slider_position_mm[0]);
+    assert.equal(abscissaOf("position", 60).place(one, 0), one.curves.slider_position_mm[0]);
   }
 });
 
 test("a crank without speed has no time", () => {
-  assert.equal(acrossOf("time", 0).title, "crank angle");
+  assert.equal(abscissaOf("time", 0).title, "crank angle");
 });

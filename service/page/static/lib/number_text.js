@@ -48,7 +48,7 @@ class Unknown extends Error {}
  * A comma or point before exactly three digits: a comma is taken for thousands, as this page writes them, and that is said.
  * @param {string} typed @param {Field} field @returns {Nothing | Read | Ends | Wrong}
  */
-export function read(typed, field) {
+export function parseNumber(typed, field) {
   const text = typed.trim().replaceAll("−", "-").replace(/^=\s*/, "");
   if (text === "") return { empty: true };
   if (PLAIN.test(text)) return { number: text, unit: field.unit, said: null };
@@ -159,7 +159,7 @@ class Parser {
 
   /** @returns {Part} */
   term() {
-    let found = this.measured(this.operand());
+    let found = this.parseQuantity(this.operand());
     for (let sign = this.taken(/^[*/×·÷]/); sign; sign = this.taken(/^[*/×·÷]/)) {
       const other = this.operand();
       const by = sign === "/" || sign === "÷";
@@ -168,7 +168,7 @@ class Parser {
           `Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`,
         );
       if (by && other.value === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
-      found = this.measured({
+      found = this.parseQuantity({
         value: by ? found.value / other.value : found.value * other.value,
         unit: found.unit ?? other.unit,
       });
@@ -177,7 +177,7 @@ class Parser {
   }
 
   /** Return a part with the unit behind it, if there is one. @param {Part} part @returns {Part} */
-  measured(part) {
+  parseQuantity(part) {
     const found = this.spellings.find(
       ([spelling]) =>
         this.rest.startsWith(spelling) &&

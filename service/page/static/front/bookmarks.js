@@ -5,7 +5,7 @@ import { address, get, isAbort, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
 import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
-import { searching } from "../design/keeping.js";
+import { searchButton } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
 import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
@@ -15,7 +15,7 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 const EVERY = 5_000; // ms between two looks at what others keep
 
 /** Return {place, file, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
-export function keptPanel(explorer) {
+export function bookmarksPanel(explorer) {
   const { data, job, chosen } = explorer;
   const table = h("div", {
     class: "scroll",
@@ -209,7 +209,7 @@ export function keptPanel(explorer) {
       h(
         "td",
         {},
-        searching(`${job.id}`, () => lengthsOf(one.cells), {
+        searchButton(`${job.id}`, () => lengthsOf(one.cells), {
           title: "Search near",
           name: `Search near ${name}`,
           act: `near-${number}`,

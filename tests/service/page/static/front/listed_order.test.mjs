@@ -9,8 +9,8 @@ globalThis.sessionStorage = {
   setItem: (key, value) => stored.set(key, value),
   removeItem: (key) => stored.delete(key),
 };
-const { beside, keepListed, linesOf } =
-  await import("../../../../../service/page/static/front/listed.js");
+const { neighbours, storeOrder, linesOf } =
+  await import("../../../../../service/page/static/front/listed_order.js");
 
 test("a list is walked through from end to end and back", () => {
   const { whole } = draws(95);
@@ -19,18 +19,18 @@ test("a list is walked through from end to end and back", () => {
     const numbers = Array.from({ length: all }, (_, at) => at + 1)
       .filter(() => whole(0, 1))
       .sort(() => whole(-1, 1));
-    keepListed(7, numbers);
+    storeOrder(7, numbers);
     if (!numbers.length) continue;
     const walked = [numbers[0]];
     for (
-      let next = beside(7, walked[0], all).after;
+      let next = neighbours(7, walked[0], all).after;
       next !== null;
-      next = beside(7, next, all).after
+      next = neighbours(7, next, all).after
     )
       walked.push(next);
     assert.deepEqual(walked, numbers);
     assert.deepEqual(
-      [...walked].reverse().map((one) => beside(7, one, all).before),
+      [...walked].reverse().map((one) => neighbours(7, one, all).before),
       [...numbers].reverse().map((_, at) => [...numbers].reverse()[at + 1] ?? null),
     );
   }
@@ -38,20 +38,20 @@ test("a list is walked through from end to end and back", () => {
 
 test("without a list, outside of it, or with a broken one, all designs are walked through by number", () => {
   for (const make of [
-    () => keepListed(7, null),
-    () => keepListed(7, [2, 4]),
+    () => storeOrder(7, null),
+    () => storeOrder(7, [2, 4]),
     () => stored.set("listed 7", "{"),
     () => stored.set("listed 7", "{}"),
   ]) {
     make();
-    assert.deepEqual(beside(7, 3, 3), {
+    assert.deepEqual(neighbours(7, 3, 3), {
       place: 3,
       count: 3,
       before: 2,
       after: null,
       listed: false,
     });
-    assert.equal(beside(7, 1, 3).before, null);
+    assert.equal(neighbours(7, 1, 3).before, null);
   }
 });
 

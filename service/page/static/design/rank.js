@@ -17,7 +17,7 @@ export function rankOf(value, { sense, target }) {
  * not of the front, and whether that misses a requirement.
  * @param {Api.Objective} objective @param {Api.Row[]} front @param {Api.Row[string] | undefined} value @param {{ broken: boolean } | null} changed
  */
-export function standing(objective, front, value, changed) {
+export function rankInFront(objective, front, value, changed) {
   const own = rankOf(value, objective);
   const ranks = front.map((one) => rankOf(one[objective.column], objective));
   const [best, worst] = [Math.min(...ranks), Math.max(...ranks)];

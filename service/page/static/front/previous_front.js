@@ -10,7 +10,7 @@ const MOST = 1500; // designs of it that are drawn, evenly spread
  * need(keys); null where the run has none of a front, or is gone.
  * @param {number} run @param {AbortSignal} signal
  */
-export async function behind(run, signal) {
+export async function previousFront(run, signal) {
   /** @type {FrontData} */
   let data;
   try {

@@ -7,7 +7,7 @@ import { range } from "./scale.js";
 /**
  * @typedef {Pick<Page.Machine, "curves" | "centres" | "sliderEnds" | "turns">} Curved
  * @typedef {{ x: number, n: number }} Passed A point that a curve passes: x in shown units, and its place among the values.
- * @typedef {object} Across
+ * @typedef {object} Abscissa
  * @property {string} title
  * @property {string} unit as it is shown
  * @property {{ at: number, text: string }[]} [ticks] where they are not those of the scale
@@ -46,9 +46,9 @@ export function wayAt({ curves, sliderEnds: [inner] }, angle) {
 
 /**
  * Return what is chosen by name. rpm: cycles a minute, its sign the direction of the crank. turns: of the crank in a cycle, 0 of a swing.
- * @param {string} name @param {number} rpm @param {number} turns @returns {Across}
+ * @param {string} name @param {number} rpm @param {number} turns @returns {Abscissa}
  */
-export function acrossOf(name, rpm, turns = 1) {
+export function abscissaOf(name, rpm, turns = 1) {
   if (name === "time" && rpm) return overTime(60 / Math.abs(rpm), Math.sign(rpm));
   if (name === "position" || name === "way") return overWay(name);
   if (name === "crank") return overCrank();
@@ -64,7 +64,7 @@ export function acrossOf(name, rpm, turns = 1) {
   };
 }
 
-/** @param {number} seconds of a turn @param {number} direction @returns {Across} */
+/** @param {number} seconds of a turn @param {number} direction @returns {Abscissa} */
 function overTime(seconds, direction) {
   return {
     title: "time",
@@ -80,7 +80,7 @@ function overTime(seconds, direction) {
   };
 }
 
-/** Over the crank angle of a swing, forth and back. @returns {Across} */
+/** Over the crank angle of a swing, forth and back. @returns {Abscissa} */
 function overCrank() {
   /** @param {Curved} one @param {number} place */
   const place = (one, place) => crankAt(one, place);
@@ -102,7 +102,7 @@ function overCrank() {
   };
 }
 
-/** @param {string} name @returns {Across} */
+/** @param {string} name @returns {Abscissa} */
 function overWay(name) {
   /** @param {Curved} one @param {number} angle */
   const place = (one, angle) => {

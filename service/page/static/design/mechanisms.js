@@ -8,7 +8,7 @@ import { drawing } from "../mechanism/drawing.js";
 import { lengthsOf } from "./loading.js";
 import { around, frameOf } from "../mechanism/frame.js";
 
-/** @import { turning as turningOf } from "../mechanism/turning.js" */
+/** @import { playback as playbackOf } from "../mechanism/playback.js" */
 
 const EVERY = 100; // ms between two readouts while it moves
 /** What sets the place in the cycle, and how, by the turns in it. */
@@ -30,9 +30,9 @@ const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown
  * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres, sliderEnds}, drawn at one scale; the first is the one that is told of; faded(yes); close().
  * turns: of the crank in a cycle, 0 of a swing.
- * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof turningOf>} turning @param {number} turns
+ * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof playbackOf>} turning @param {number} turns
  */
-export function stage(place, strip, turning, turns) {
+export function mechanismsPanel(place, strip, turning, turns) {
   const [named, hint] = WORDS[turns];
   const drawn = h("div", { class: "machines" });
   /** @type {Page.Machine[]} */

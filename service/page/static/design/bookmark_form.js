@@ -11,7 +11,7 @@ import { sentenceOf } from "../lib/refusals.js";
  * lengths(): that a search may begin near to; without it none is offered.
  * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} given
  */
-export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
+export function bookmarkForm({ job, design, dimensions, kept = () => {}, lengths }) {
   const name = h("input", {
     type: "text",
     maxlength: 200,
@@ -63,7 +63,7 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
     "div",
     { class: "row keep-or-search" },
     h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
-    lengths && searching(job, lengths, { title: "Search near this" }),
+    lengths && searchButton(job, lengths, { title: "Search near this" }),
   );
 }
 
@@ -72,7 +72,7 @@ export function keeping({ job, design, dimensions, kept = () => {}, lengths }) {
  * that is drawn anew.
  * @param {string} job @param {() => Page.Lengths} lengths @param {{ title: string, name?: string, act?: string }} looks
  */
-export function searching(job, lengths, { title, name, act }) {
+export function searchButton(job, lengths, { title, name, act }) {
   /** @param {HTMLButtonElement} near */
   const search = async (near) => {
     near.disabled = true;
