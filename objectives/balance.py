@@ -1,6 +1,6 @@
 """Balance: effect of the moving masses on the frame over the cycle, without gravity and load.
 
-See `model.dynamics.inertia`; of several cylinders it is that of all, `model.signals.of_shaft`.
+See `model.dynamics.inertia`; of several cylinders it is that of all, `model.signals.shaft_statistics`.
 """
 
 from functools import partial

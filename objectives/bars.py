@@ -11,9 +11,9 @@ import numpy as np
 
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.memoise import remembered_batch
 from ..model.machine.numbers import PINS, of_numbers
 from ..model.machine.raw import Raw
-from ..model.machine.remembered import remembered_batch
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal

@@ -10,7 +10,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
 from ..model.machine.raw import Raw
 from ..model.signals.averages import average
-from ..model.signals.of_shaft import time_share
+from ..model.signals.shaft_statistics import time_share
 from ..model.signals.signals import Signal
 from .quantity import Array, Quantity, Values, fact
 

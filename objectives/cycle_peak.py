@@ -10,8 +10,8 @@ import numpy as np
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import find_peaks
 from ..model.signals.screening import ANGLES, screen, screens
+from ..model.signals.signal_inputs import stroke_dependent
 from ..model.signals.signals import Signal
-from ..model.signals.watch import stroke_dependent
 from .quantity import Array, Pieces, Quantity, Values
 
 

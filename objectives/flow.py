@@ -20,12 +20,12 @@ from ..model.machine.loads.load import Load
 from ..model.machine.loads.stroke_force import StrokeForce
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
+from ..model.machine.memoise import remembered
 from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import LOAD_SLOTS, Raw
-from ..model.machine.remembered import remembered
 from ..model.machine.varying import Varying
-from ..model.signals.of_shaft import time_share
 from ..model.signals.peaks import find_peaks
+from ..model.signals.shaft_statistics import time_share
 from ..model.signals.signals import Signal
 from .kinds import RATIO, VOLUME_FLOW
 from .needs import COMPRESSOR, EVEN_SPEED, SPEED, Need

@@ -22,7 +22,7 @@ from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
 from ..model.machine.two_turns import cycle_turns
-from ..model.signals.whole import couples, shakes
+from ..model.signals.shaking_balance import couples, shakes
 
 Without = Literal["undefined", "equal", "zero"]
 

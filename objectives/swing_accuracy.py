@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..model.swing.points import ERROR
+from ..model.swing.swing_states import ERROR
 from .kinds import ANGLE, LENGTH
 from .position_error import POSITION_ERROR
 from .quantity import Group

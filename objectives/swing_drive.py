@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..model.swing.points import DRIVE, POWER
+from ..model.swing.swing_states import DRIVE, POWER
 from .kinds import ENERGY, FORCE, RATIO, TORQUE
 from .kinds import POWER as POWER_KIND
 from .quantity import Group

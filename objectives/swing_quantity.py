@@ -14,7 +14,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.swing.closure import driven_angles, passes, swing_angles, travels
 from ..model.swing.peaks import SwingPeaks, holding_peaks, least_drives, swing_peaks
 from ..model.swing.swing import Swing
-from ..model.swing.words import Driver, Stated
+from ..model.swing.swing_types import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
 from .needs import Without
 from .quantity import MECHANICS, Array, Pieces, Quantity, Values

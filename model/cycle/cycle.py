@@ -21,13 +21,13 @@ from ..linkage.single import single
 from ..machine.derived import derived
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
+from ..machine.memoise import remembered_batch
 from ..machine.raw import Loads, load_structure, raw_vector
-from ..machine.remembered import remembered_batch
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
+from ..signals.signal_inputs import watch_of
 from ..signals.signals import Signal, design_motion
-from ..signals.watch import watch_of
-from .pace import pace
+from .crank_speed import pace
 from .self_locking import require_driving
 
 _COLUMNS = 16

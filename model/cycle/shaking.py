@@ -15,7 +15,7 @@ from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
 from ..signals.signals import design_motion
-from .pace import pace
+from .crank_speed import pace
 
 
 @dataclass(frozen=True)

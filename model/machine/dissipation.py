@@ -14,7 +14,7 @@ from dataclasses import replace
 from .links import Bar, Link, RigidLink
 from .loads.load import Load
 from .mechanism import Mechanism
-from .remembered import remembered
+from .memoise import remembered
 from .varying import Varying
 
 _ROUNDING = 1e-12

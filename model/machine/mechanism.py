@@ -15,7 +15,7 @@ from .drive import Drive
 from .friction import Friction
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
-from .loads.words import between
+from .loads.load_text import between
 from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .start import Start
@@ -119,7 +119,7 @@ class Mechanism:
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
     drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
     speed_profile: how the speed goes over the crank angle; what moves under a motor finds its own.
-    arrangement: identical cylinders on one crankshaft; `signals.of_shaft` says what adds up and what is of one.
+    arrangement: identical cylinders on one crankshaft; `signals.shaft_statistics` says what adds up and what is of one.
     clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
     strength: material and pins, for what judges the strength of bars; nothing else depends on it.
     start: of a swing, where designs choose it; nothing else depends on it.

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ..errors import InputError
 from .arrangement import require_one_cylinder
 from .mechanism import Mechanism
-from .remembered import remembered
+from .memoise import remembered
 
 
 class Member(NamedTuple):

@@ -21,8 +21,8 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
+from .memoise import remembered, remembered_batch
 from .raw import LOAD_SLOTS, Raw, raw_vector
-from .remembered import remembered, remembered_batch
 from .varying import Varying
 
 _LINK = {

@@ -19,7 +19,7 @@ from .links import Bar, Link
 from .loads.load import Load
 from .loads.registry import code_of
 from .mechanism import Mechanism
-from .remembered import remembered
+from .memoise import remembered
 from .two_turns import require_one_turn
 
 Raw = IntEnum(

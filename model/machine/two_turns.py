@@ -21,7 +21,7 @@ from ..arrays import Array, Whole
 from ..errors import InputError
 from .loads.load import Load
 from .mechanism import Mechanism
-from .remembered import remembered
+from .memoise import remembered
 from .varying import Varying
 
 TURN = 2.0 * math.pi

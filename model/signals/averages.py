@@ -36,11 +36,10 @@ from ..machine.design import design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
+from ..machine.memoise import remembered_batch
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
-from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
-from .of_shaft import averages_of_shaft
 from .quadrature import (
     ANGLE_ROUNDING,
     DEEPEST,
@@ -55,9 +54,10 @@ from .quadrature import (
     square_along,
     steepness,
 )
+from .shaft_statistics import averages_of_shaft
+from .signal_inputs import inputs_of, watch_of
 from .signals import Signal, signal
 from .two_turns import averaged
-from .watch import inputs_of, watch_of
 
 _NODES = 192  # of a smooth curve; why so many: `quadrature`
 _TORQUE = int(Signal.TORQUE)

@@ -40,10 +40,10 @@ from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
-from .of_shaft import apart, highest_of, peaks_of_shaft
+from .shaft_statistics import apart, highest_of, peaks_of_shaft
+from .signal_inputs import inputs_of, watch_of
 from .signals import Signal, design_motion, signal
 from .two_turns import highest
-from .watch import inputs_of, watch_of
 
 ANGLES = 128
 """Sampled angles a turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds

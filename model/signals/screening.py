@@ -26,14 +26,14 @@ from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.members import is_shaft
+from ..machine.memoise import remembered
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
-from ..machine.remembered import remembered
 from ..machine.two_turns import one_turn
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
+from .signal_inputs import watch_of
 from .signals import Signal, design_motion, signal
-from .watch import watch_of
 
 ANGLES = 64
 """Sampled angles a turn, where thousands of designs are only sorted."""

@@ -10,9 +10,9 @@ import numpy as np
 from ..arrays import Array, Mask, Whole
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs
-from ..dynamics.pace import pace_of
 from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import crowding
+from ..dynamics.speed_ratio import pace_of
 from ..kinematics import geometry
 from ..machine.derived import derived
 from ..machine.design import design_at
@@ -24,8 +24,8 @@ from ..machine.two_turns import TURN, cycle_turns, half_at, halves
 from .cycle_segments import Segments
 from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, Found, Items, cut_rates, follow_kernel
 from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
+from .signal_inputs import inputs_of, watch_of
 from .signals import Signal
-from .watch import inputs_of, watch_of
 
 _NEAR = 1e-9  # rad: so near to where a turn of two begins a breakpoint may be of either
 _CONTACTS = 24  # panels of a turn in which the guide's force may change sides, of 16 samples each

@@ -16,9 +16,9 @@ import numpy as np
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.pace import Pace, ratio_at
 from ..dynamics.rubbing import Sides, joint_forces, touch
 from ..dynamics.segments import Cuts, Watch, cut_shift, enter, load_on_slider
+from ..dynamics.speed_ratio import Pace, ratio_at
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
 from ..kinematics.position import third_derivative

@@ -31,14 +31,14 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
+from ..machine.memoise import remembered_batch
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
-from ..machine.remembered import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
-from .of_shaft import turn_work_of_shaft
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
+from .shaft_statistics import turn_work_of_shaft
+from .signal_inputs import inputs_of
 from .signals import Signal
-from .watch import inputs_of
 
 LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
 """Places of the curves."""

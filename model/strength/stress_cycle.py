@@ -30,7 +30,7 @@ from ..arrays import Array, Mask, Whole
 from ..errors import InputError
 from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
-from ..machine.remembered import remembered_batch
+from ..machine.memoise import remembered_batch
 from ..machine.two_turns import cycle_turns, halves
 from .places import Place, Places, places_of
 from .section_forces import Stress, at_share

@@ -24,8 +24,8 @@ from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import Numbers, numbers_of
 from ..machine.raw import Loads, Raw
+from ..signals.signal_inputs import inputs_of, watch_of
 from ..signals.signals import Signal, design_motion
-from ..signals.watch import inputs_of, watch_of
 from .section_forces import stress_along
 
 ANGLES = 128

@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import Numbers
-from .places import angles_of
+from .angles_from_position import angles_of
 from .swing import STARTS, Swing
 
 Complexes = NDArray[np.complex128]

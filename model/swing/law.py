@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
-from .words import Law
+from .swing_types import Law
 
 _TURN = 2.0 * np.pi
 _RAMP = 1.0 / 3.0

@@ -19,9 +19,9 @@ from ..machine.mechanism import Mechanism
 from ..signals.cycle_segments import Segments
 from ..signals.peak_search import Maxima, find_maxima
 from .closure import passes
-from .many import Many, Pieces
-from .points import DRIVE, ERROR
 from .swing import Swing
+from .swing_batch import Many, Pieces
+from .swing_states import DRIVE, ERROR
 
 KEPT = 6
 """Peaks kept of a design, highest first."""

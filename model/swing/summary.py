@@ -9,8 +9,8 @@ import numpy as np
 from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from .over import At, Over
 from .swing import Swing, placed, require_swing, slowly
+from .swing_cycle import At, Over
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import one_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
+from .angles_from_position import angles_of
 from .law import NO_TABLE, spline
-from .places import angles_of
-from .words import Driver, Law, Side, Stated
+from .swing_types import Driver, Law, Side, Stated
 
 STARTS = {"crank": "start.angle", "slider": "start.place"}
 """Which number of a machine says where a swing starts, by what its ends are stated of."""

@@ -16,9 +16,9 @@ from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
 from .closure import passes
-from .many import Many, Pieces
-from .points import DRIVE, RATE
 from .swing import Swing
+from .swing_batch import Many, Pieces
+from .swing_states import DRIVE, RATE
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _PANELS, _GRADED = 8, 1

@@ -36,10 +36,10 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
+from ..signals.signal_inputs import watch_of
 from ..signals.signals import Signal, design_motion
-from ..signals.watch import watch_of
 from .energy import height_energy, moving_inertia
-from .rubbed import Rubbed, Rubbing, Senses, jamming, least_inertia
+from .friction_torque import Rubbed, Rubbing, Senses, jamming, least_inertia
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12

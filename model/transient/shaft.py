@@ -17,7 +17,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import Member, members
 from ..machine.two_turns import cycle_turns, half_at, halves
 from .equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
-from .rubbed import ITERATIONS, Rubbed, added_up, narrowed, require_single, settled
+from .friction_torque import ITERATIONS, Rubbed, added_up, narrowed, require_single, settled
 
 
 class ShaftStretch(Span):

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.follow import follow_forces
+from ...model.signals.complex_forces import follow_forces
 from .apply import Answer, Function, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 

@@ -16,7 +16,7 @@ from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.follow import follow_forces
+from ...model.signals.complex_forces import follow_forces
 from ..needs import ONE_TIMING
 
 Numbers = NDArray[Any]

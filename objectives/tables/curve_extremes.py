@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...model.cycle.crank_speed import pace_knots
 from ...model.cycle.cycle import breakpoints
-from ...model.cycle.pace import pace_knots
+from ...model.cycle.multi_cylinder import whole_breakpoints
 from ...model.cycle.self_locking import locking_margin
-from ...model.cycle.several import whole_breakpoints
 from ...model.dynamics.segments import crowded, crowding, uncrowded
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single

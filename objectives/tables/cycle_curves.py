@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...model.cycle.crank_speed import bend, pace
 from ...model.cycle.cycle import cycle
-from ...model.cycle.pace import bend, pace
-from ...model.cycle.several import whole_curves
+from ...model.cycle.multi_cylinder import whole_curves
 from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.linkage.linkage import Linkage

@@ -13,8 +13,8 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
 from ...model.swing.closure import passes
-from ...model.swing.many import driven
 from ...model.swing.swing import Swing
+from ...model.swing.swing_batch import driven
 from ..cycle_peak import screened
 from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas

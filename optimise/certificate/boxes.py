@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import is_shaft
 from ...model.machine.raw import Raw, raw_vector
 from ...model.machine.two_turns import cycle_turns, halves
-from ...model.signals.of_shaft import apart
+from ...model.signals.shaft_statistics import apart
 from ...model.signals.signals import Signal
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak

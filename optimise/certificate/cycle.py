@@ -24,8 +24,8 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw import Loads
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
+from ...model.signals.signal_inputs import inputs_of, watch_of
 from ...model.signals.signals import Signal, design_motion, signal, size_of_force
-from ...model.signals.watch import inputs_of, watch_of
 from ...objectives.cycle_peak import CyclePeak
 from .enclosure import UNIT, Enclosure, beside, between, chosen
 from .gas import gas_force

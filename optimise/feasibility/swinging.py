@@ -12,8 +12,8 @@ from ...model.errors import InfeasibleError
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import closes, passes
 from ...model.swing.ends import start_column
-from ...model.swing.many import driven
 from ...model.swing.swing import Swing
+from ...model.swing.swing_batch import driven
 from ...objectives.tables.evaluate import moving
 from ..problem.problem import Problem
 from ..search.elimination import sheets

@@ -13,7 +13,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.start import Start
 from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
-from ...model.swing.words import Driver, Law, Side, Stated
+from ...model.swing.swing_types import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
 from ...objectives.needs import SPEED
 from ...objectives.quantity import Quantity

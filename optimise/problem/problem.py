@@ -43,7 +43,7 @@ from .table_columns import choice_field, least_amount_field, least_field, note_f
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
     from ...model.swing.swing import Swing
-    from ...model.swing.words import Driver, Law, Side
+    from ...model.swing.swing_types import Driver, Law, Side
 
 _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": ""}
 
@@ -334,12 +334,13 @@ class Problem:
         What is left out is as the problem's own motion has it; without one the crank drives, slowly. start, end: crank
         angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side` of
         the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: of its motion, see
-        `model.swing.words`; duration: of one way, s, for all but "slow". actuator_tolerance: of the driven slider, m.
+        `model.swing.swing_types`; duration: of one way, s, for all but "slow". actuator_tolerance: of the driven
+        slider, m.
         Raises `AssemblyError` where the linkage does not close, `InputError` for a dead point that the slider cannot
         pass, ends that are missing or of two kinds, and as `analyse` does.
         """
-        from ...model.swing.asked import AskedSwing, asked_swing
         from ...model.swing.summary import summarise
+        from ...model.swing.swing_request import AskedSwing, asked_swing
 
         self._require_chosen()
         asked = AskedSwing(

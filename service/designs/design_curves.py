@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.cycle.pace import turn_time
+from ...model.cycle.crank_speed import turn_time
 from ...model.errors import InputError
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import placed, require_swing

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.cycle.crank_speed import turn_time
 from ...model.cycle.gas_cycle import cylinders
 from ...model.cycle.indicator import indicator
-from ...model.cycle.pace import turn_time
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns

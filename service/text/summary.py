@@ -6,11 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...model.cycle.pace import turn_time
+from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
-from ...model.machine.loads.words import between
+from ...model.machine.loads.load_text import between
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.two_turns import cycle_turns

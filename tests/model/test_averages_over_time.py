@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.several import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_cycle
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -22,7 +22,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.uneven import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
 from slidercrank.optimise.job import load_job
 from tests.model.bodies import bodies
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine

@@ -284,7 +284,7 @@ def test_digests_do_not_depend_on_the_process() -> None:
     code = (
         "import json; import slidercrank.model.cycle.cycle, slidercrank.model.signals.averages;"
         "import slidercrank.model.signals.peaks;"
-        "import slidercrank.model.signals.screening, slidercrank.model.signals.follow;"
+        "import slidercrank.model.signals.screening, slidercrank.model.signals.complex_forces;"
         "from slidercrank.model.kernel.kernel import KERNELS; from slidercrank.model.kernel.closure import digest;"
         "print(json.dumps({w.name: digest(w.function, w.examples) for w in (k.wanted() for k in KERNELS)}))"
     )

@@ -25,7 +25,7 @@ from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.signals.turn_work import LOAD, turn_work
 from slidercrank.model.swing.peaks import swing_peaks
-from slidercrank.model.swing.points import DRIVE
+from slidercrank.model.swing.swing_states import DRIVE
 from slidercrank.model.swing.work import swing_work
 from slidercrank.optimise.job import parse_job
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
 from slidercrank.model.cycle.efficiency import energies
-from slidercrank.model.cycle.several import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke

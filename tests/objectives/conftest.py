@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from slidercrank.model.machine import remembered
+from slidercrank.model.machine import memoise
 
 
 @pytest.fixture(scope="module")
 def shared_batches() -> Iterator[None]:
     """Keep what was asked about some hundred batches of designs: each quantity of a file asks about the same ones."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(remembered, "_BATCHES", 200)
+        patch.setattr(memoise, "_BATCHES", 200)
         yield

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from slidercrank import solve
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.several import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -23,14 +23,14 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.uneven import uneven_curves, uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from tests.model.cases import AIR, RUBBING_PIVOT, SMOOTH, Array, linkage_of, random_designs, random_friction
-from tests.model.test_several import random_whole
-from tests.model.transient.test_uneven import random_uneven
+from tests.model.test_multi_cylinder import random_whole
+from tests.model.transient.test_speed_profile_cycle import random_uneven
 from tests.model.varying_machines import BARS, unit_steps, varied_designs
 from tests.objectives.richardson import derivatives, steps_to_the_nearest_edge
 

@@ -14,7 +14,7 @@ from scipy.integrate import quad
 import slidercrank as sc
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.transient.uneven import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.notes import notes_of
 

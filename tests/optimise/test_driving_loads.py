@@ -26,7 +26,7 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.driving_loads import driven_by_loads, front_driven_by_loads, net_work
 from slidercrank.optimise.search.samples import samples
 from slidercrank.optimise.solve import solve
-from tests.model.test_loads_in_words import random_load
+from tests.model.test_load_text import random_load
 from tests.model.virtual_work import crank_torque, path, slider_load
 
 _SIZE = 2000.0

@@ -15,7 +15,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.swing.closure import passes
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.many import driven
+from slidercrank.model.swing.swing_batch import driven
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE

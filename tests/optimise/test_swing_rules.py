@@ -12,7 +12,7 @@ from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.closure import passes
 from slidercrank.model.swing.ends import ends_of, farthest
 from slidercrank.model.swing.swing import Swing
-from slidercrank.model.swing.words import Side
+from slidercrank.model.swing.swing_types import Side
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.search.elimination import sheets

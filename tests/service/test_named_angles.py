@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.several import whole_curves
+from slidercrank.model.cycle.multi_cylinder import whole_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink

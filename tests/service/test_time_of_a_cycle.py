@@ -12,7 +12,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.model.transient.uneven import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
 from slidercrank.objectives.tables.measured import measured_from
 from slidercrank.service.motion.play import play_of_turn
 from tests.service.api.fixed_front import API, Solved, client_of

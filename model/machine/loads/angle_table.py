@@ -31,7 +31,7 @@ from .load import (
     require_table,
     require_word,
 )
-from .words import SLIDES, effect_by_direction, range_of_angles, sized, without_steps_from_zero
+from .load_text import SLIDES, effect_by_direction, range_of_angles, sized, without_steps_from_zero
 
 _ROUNDING = 1e-9  # rad
 _TURN = 2.0 * math.pi

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from .angle_table import AngleTable
 from .load import ANGLE_DATUM, CYCLE, Entry, Passage, Table, built, points
-from .words import TURNS, effect_by_direction, sized
+from .load_text import TURNS, effect_by_direction, sized
 
 
 @dataclass(frozen=True, kw_only=True)

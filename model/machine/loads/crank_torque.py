@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from ...checks import require_numbers
 from .load import Enters, Entry, Load, Table, built
-from .words import TURNS, effect_by_direction, sized, spring_effect
+from .load_text import TURNS, effect_by_direction, sized, spring_effect
 
 
 @dataclass(frozen=True, kw_only=True)

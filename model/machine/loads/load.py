@@ -18,7 +18,7 @@ import numpy as np
 from ...arrays import Array
 from ...checks import require_all_finite
 from ...errors import InputError
-from .words import effect_in_strokes
+from .load_text import effect_in_strokes
 
 Datum = Literal["crank pivot", "inner dead centre", "outer dead centre"]
 AngleDatum = Literal["zero crank angle", "inner dead centre", "outer dead centre"]

@@ -27,7 +27,7 @@ from .load import (
     require_table,
     require_word,
 )
-from .words import range_of_positions, sized, without_steps_from_zero
+from .load_text import range_of_positions, sized, without_steps_from_zero
 
 
 @dataclass(frozen=True, kw_only=True)

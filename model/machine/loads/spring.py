@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ...checks import require_numbers
 from .load import DATUM, Datum, Enters, Entry, Load, Table, built, require_word
-from .words import spring_effect
+from .load_text import spring_effect
 
 
 @dataclass(frozen=True, kw_only=True)

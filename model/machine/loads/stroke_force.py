@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from ...checks import require_numbers
 from ...errors import InputError
 from .load import DURING, During, Enters, Entry, Load, Passage, StrokePart, Table
+from .load_text import sized
 from .position_table import PositionTable
-from .words import sized
 
 
 @dataclass(frozen=True, kw_only=True)

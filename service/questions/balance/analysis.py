@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....model.cycle.several import WholeCurves, whole_curves
+from ....model.cycle.multi_cylinder import WholeCurves, whole_curves
 from ....model.cycle.shaking import ShakingCurves, shaking_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.several import whole_breakpoints, whole_curves, whole_cycle
+from ....model.cycle.multi_cylinder import whole_breakpoints, whole_curves, whole_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.members import Member, alone, members

@@ -9,10 +9,10 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ....model.cycle.crank_speed import pace
 from ....model.cycle.cycle import breakpoints, cycle
-from ....model.cycle.pace import pace
+from ....model.cycle.multi_cylinder import whole_curves
 from ....model.cycle.self_locking import locking_margin
-from ....model.cycle.several import whole_curves
 from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
@@ -21,7 +21,7 @@ from ....model.machine.members import cylinders_of
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
-from ....model.signals.of_shaft import time_share
+from ....model.signals.shaft_statistics import time_share
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.needs import SPEED

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from ....model.cycle.several import whole_breakpoints, whole_curves
+from ....model.cycle.multi_cylinder import whole_breakpoints, whole_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement

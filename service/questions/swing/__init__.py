@@ -1,6 +1,6 @@
 """A crank that swings between two angles or places of the slider, and what drives it."""
 
-from ....model.swing.words import Driver, Law, Side
+from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.kinds import ANGLE, LENGTH, TIME
 from ..inputs import Input
 from ..question import Command, Question

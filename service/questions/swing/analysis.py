@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism, Window
-from ....model.swing.asked import AskedSwing, asked_swing
-from ....model.swing.over import At, Over
 from ....model.swing.summary import SwingSummary, summarise
 from ....model.swing.swing import Swing
-from ....model.swing.words import Driver, Law, Side
+from ....model.swing.swing_cycle import At, Over
+from ....model.swing.swing_request import AskedSwing, asked_swing
+from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
 from ....objectives.tables.cycle_curves import KINDS

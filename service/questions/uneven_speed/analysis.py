@@ -8,13 +8,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from ....model.cycle.crank_speed import pace_knots
 from ....model.cycle.cycle import breakpoints
-from ....model.cycle.pace import pace_knots
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
-from ....model.transient.uneven import uneven_curves, uneven_cycle
+from ....model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.sheets import DASHED, Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, Value, compared, joined, named_number, number_list

@@ -14,7 +14,7 @@ from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
-from slidercrank.model.swing.words import Driver, Law
+from slidercrank.model.swing.swing_types import Driver, Law
 from tests.model.cases import random_friction, random_machine
 
 

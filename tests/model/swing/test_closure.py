@@ -11,7 +11,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.swing.closure import passes
 from slidercrank.model.swing.swing import Swing, require_swing
-from slidercrank.model.swing.words import Driver
+from slidercrank.model.swing.swing_types import Driver
 
 
 def test_designs_pass_where_each_alone_is_taken() -> None:

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.machine.mechanism import Clearances, Tolerance, Tolerances
 from slidercrank.model.swing.errors import error_shares
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.over import Over
+from slidercrank.model.swing.swing_cycle import Over
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from tests.model.swing.swings import random_swings
 

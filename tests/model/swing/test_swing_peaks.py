@@ -9,8 +9,8 @@ import pytest
 
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.peaks import SwingPeaks, least_drives, swing_peaks
-from slidercrank.model.swing.points import DRIVE, ERROR, POWER
 from slidercrank.model.swing.swing import Swing
+from slidercrank.model.swing.swing_states import DRIVE, ERROR, POWER
 from tests.model.cases import Array
 from tests.model.swing.swings import random_swings
 

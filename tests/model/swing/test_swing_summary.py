@@ -23,7 +23,7 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, dead_points, require_swing, slowly
-from slidercrank.model.swing.words import Law
+from slidercrank.model.swing.swing_types import Law
 from tests.model.bodies import bodies
 from tests.model.swing.swings import random_swings
 

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.model.cycle.efficiency import energies
-from slidercrank.model.cycle.several import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -22,8 +22,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient import turn
 from slidercrank.model.transient.flywheel import design_flywheel
+from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
 from slidercrank.model.transient.steady import Runner
-from slidercrank.model.transient.uneven import uneven_cycle
 from tests.model.cases import Array
 
 CRANK, ROD, SPEED = 0.06, 0.3, 24.0 * math.pi / 30.0

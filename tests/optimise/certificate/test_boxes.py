@@ -23,7 +23,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances, Window
 from slidercrank.model.machine.slider_distances import SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.of_shaft import SUMS
+from slidercrank.model.signals.shaft_statistics import SUMS
 from slidercrank.objectives.cycle_peak import CyclePeak
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boxes import Boxes, covered

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.model.dynamics.pace import pace_of, ratio_at
+from slidercrank.model.dynamics.speed_ratio import pace_of, ratio_at
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 

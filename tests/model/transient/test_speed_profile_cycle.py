@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from slidercrank.model.cycle.crank_speed import pace
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.pace import pace
-from slidercrank.model.cycle.several import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -24,8 +24,8 @@ from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.equation import CrankEquation
+from slidercrank.model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
 from slidercrank.model.transient.steady import steady_running
-from slidercrank.model.transient.uneven import uneven_curves, uneven_cycle
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_friction, random_machine
 from tests.model.test_cylinder import random_case as compressor_case
 

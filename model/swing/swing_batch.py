@@ -27,8 +27,8 @@ from .closure import driven_angles, passes
 from .ends import Ends, ends_of, farthest, start_column, with_start
 from .forces import locking_angle
 from .law import corners, mirrored, shares_of
-from .points import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
 from .swing import Swing, slowly
+from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
 
 _THIN = 1e-12
 _SCAN = 33

@@ -8,8 +8,8 @@ from ..arrays import Array
 from ..dynamics.segments import Watch
 from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
+from ..machine.memoise import remembered
 from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
-from ..machine.remembered import remembered
 from ..machine.two_turns import one_turn
 from .signals import Signal
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Row, Table
 from ..machine.mechanism import Mechanism
-from ..machine.remembered import remembered
+from ..machine.memoise import remembered
 from ..machine.speed_profile import Harmonics
 
 _TURN = 2.0 * math.pi

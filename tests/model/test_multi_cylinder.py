@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.several import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage

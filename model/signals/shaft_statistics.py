@@ -21,8 +21,8 @@ from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
 from .shaft_peaks import shaft_peaks
+from .shaking_balance import couples
 from .signals import Signal
-from .whole import couples
 
 Found = tuple[Array, Array, Array | None]
 

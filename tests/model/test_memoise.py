@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.remembered import remembered
+from slidercrank.model.machine.memoise import remembered
 
 
 def test_an_answer_is_kept_for_the_same_object_and_arguments_alone() -> None:

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..cycle.crank_speed import pace, pace_knots
 from ..cycle.cycle import Cycle, breakpoints, cycle
-from ..cycle.pace import pace, pace_knots
 from ..cycle.shaking import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage

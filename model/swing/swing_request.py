@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..machine.mechanism import Mechanism
 from ..machine.start import Start
 from .swing import Swing, started
-from .words import Driver, Law, Side
+from .swing_types import Driver, Law, Side
 
 _ANGLES, _PLACES = ("start", "end"), ("slider_start", "slider_end")
 

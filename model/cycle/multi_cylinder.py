@@ -24,8 +24,8 @@ from ..machine.speed_profile import time_per_angle
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, Panels, panels_of, peak_of
+from .crank_speed import pace, pace_knots
 from .cycle import breakpoints, cycle
-from .pace import pace, pace_knots
 from .shaking import shaking_curves
 
 _PIECES = 12  # panels of a turn at least
