@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.memoise import remembered_batch
+from ..model.machine.memoise import memoise_by_batch
 from ..model.machine.numbers import PINS, of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.strength import Strength
@@ -141,7 +141,7 @@ def strength_of(mechanism: Mechanism) -> Strength:
     return mechanism.strength
 
 
-@remembered_batch
+@memoise_by_batch
 def stresses(
     mechanism: Mechanism,
     designs: Array,
@@ -155,7 +155,7 @@ def stresses(
     return [Part(each.values, each.gradients, each.labels) for each in found]
 
 
-@remembered_batch
+@memoise_by_batch
 def pin_force(mechanism: Mechanism, designs: Array, pin: str, kept: int, gradients: bool) -> Part:
     """Return the greatest force of a pin over the cycle, N."""
     found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)

@@ -10,7 +10,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import number_of
 from ..model.machine.raw import Raw
 from ..model.signals.averages import average
-from ..model.signals.shaft_statistics import time_share
+from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .quantity import Array, Quantity, Values, fact
 
@@ -42,7 +42,7 @@ class CycleAverage(Quantity):
             (found.mean, found.mean_gradients) if self.which == "mean" else (found.rms, found.rms_gradients)
         )
         if self.times_speed:
-            share = time_share(mechanism)
+            share = mean_speed_ratio(mechanism)
             if not mechanism.varying:
                 speed = mechanism.speed * share
                 return Values(speed * values, None if slopes is None else speed * slopes)

@@ -20,12 +20,12 @@ from ..model.machine.loads.load import Load
 from ..model.machine.loads.stroke_force import StrokeForce
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
-from ..model.machine.memoise import remembered
+from ..model.machine.memoise import memoise_by_machine
 from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import LOAD_SLOTS, Raw
 from ..model.machine.varying import Varying
 from ..model.signals.peaks import find_peaks
-from ..model.signals.shaft_statistics import time_share
+from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .kinds import RATIO, VOLUME_FLOW
 from .needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
@@ -44,7 +44,7 @@ class Flow(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        factor = mechanism.direction * time_share(mechanism) / (2.0 * math.pi)
+        factor = mechanism.direction * mean_speed_ratio(mechanism) / (2.0 * math.pi)
         rate = of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
         volume = gas_cycle(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
         return Values(*volume).times(Values(*rate))
@@ -114,7 +114,7 @@ def _mean(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any
     return swept * sum(_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
 
 
-@remembered
+@memoise_by_machine
 def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
     """Return the machine whose drive torque is the flow; its designs end with the pumps' areas and a torque less."""
     loads: list[Load] = []

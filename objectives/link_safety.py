@@ -10,7 +10,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Along, Place
+from ..model.strength.places import Place, WholeBar
 from .bars import LINKS, NEAR, Formula, OfBars, Part, beside_pin, eyes_of, strength_of, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
@@ -30,7 +30,7 @@ class FatigueSafety(OfBars):
         criteria = ((worn + steady, worn - steady), (worn, worn))
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
-        places: tuple[Place, ...] = (*(Along(LINKS[name].part) for name in bars), *eyes)
+        places: tuple[Place, ...] = (*(WholeBar(LINKS[name].part) for name in bars), *eyes)
         found = stresses(mechanism, designs, places, criteria, kept, gradients)
         return [
             part.into(beside_pin(mechanism, designs, place, gradients))
@@ -46,7 +46,7 @@ class BucklingSafety(OfBars):
         material = strength_of(mechanism).material
         found = []
         bars = [LINKS[name] for name in self.bars(mechanism)]
-        places = tuple(Along(own.part, bent=False) for own in bars)
+        places = tuple(WholeBar(own.part, bent=False) for own in bars)
         squeezed = stresses(mechanism, designs, places, _COMPRESSION, kept, gradients)
         for own, pressed in zip(bars, squeezed, strict=True):
             for side in (own.width, own.depth):

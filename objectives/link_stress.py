@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Along, Place
+from ..model.strength.places import Place, WholeBar
 from ..model.strength.stress_cycle import stress_peaks
 from .bars import (
     LINKS,
@@ -94,7 +94,7 @@ def _angle_of(mechanism: Mechanism, place: Place, design: Array) -> float:
 def _places(mechanism: Mechanism) -> list[tuple[str, str, Place]]:
     """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
-    found: list[tuple[str, str, Place]] = [(name, "", Along(LINKS[name].part)) for name in bars]
+    found: list[tuple[str, str, Place]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
     return found + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 

@@ -22,7 +22,7 @@ from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
 from ..model.machine.two_turns import cycle_turns
-from ..model.signals.shaking_balance import couples, shakes
+from ..model.signals.shaking_balance import has_rocking_couple, has_shaking_force
 
 Without = Literal["undefined", "equal", "zero"]
 
@@ -132,13 +132,13 @@ COMPRESSOR = _defining(
 )
 
 SHAKES = Need(
-    shakes,
+    has_shaking_force,
     "the shaking forces of these cylinders cancel for every design; got cranks and banks that stand against each other "
     "in pairs; use peak_rocking_couple, or leave it out",
 )
 """Cylinders whose shaking forces leave something."""
 COUPLES = _defining(
-    couples,
+    has_rocking_couple,
     "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got no "
     "places, or all forces at one; add for example "
     '[mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',

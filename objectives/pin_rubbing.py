@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.members import alone
+from ..model.machine.members import single_cylinder
 from ..model.machine.numbers import of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
@@ -39,7 +39,7 @@ class PinRubbing(OfBars):
 
     def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
         """Return it for each bar that the pin bears in; see `OfBars`."""
-        work, place = turn_work(alone(mechanism), designs, gradients=gradients), _RUBS[self.pin]
+        work, place = turn_work(single_cylinder(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]
         mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)

@@ -62,11 +62,11 @@ def polygons(
     slider = np.stack([crank[..., 0] + linkage.sign * np.sqrt((l - rise) * (l + rise)), e], axis=-1)
     rod = slider - crank
 
-    pin_velocity = _left(crank) * w[..., None]
+    pin_velocity = _quarter_turned(crank) * w[..., None]
     slider_velocity, rod_velocity = _meet_slider_line(pin_velocity, rod)
 
     normal = -crank * (w * w)[..., None]
-    pin_acceleration = normal + _left(crank) * alpha[..., None]
+    pin_acceleration = normal + _quarter_turned(crank) * alpha[..., None]
     towards_pin = pin_acceleration - rod * (rod_velocity**2)[..., None]
     slider_acceleration, rod_acceleration = _meet_slider_line(towards_pin, rod)
     return Polygons(
@@ -78,7 +78,7 @@ def polygons(
     )
 
 
-def _left(vector: Array) -> Array:
+def _quarter_turned(vector: Array) -> Array:
     """Return vectors (..., 2) turned by a quarter counter-clockwise."""
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
 

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..machine.mechanism import Mechanism
 
 
-def pace(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
+def crank_speed(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
     """Return crank speed, rad/s, and acceleration, rad/s^2, at crank angles (n,), rad."""
     profile, speed = mechanism.speed_profile, mechanism.speed
     if profile is None:
@@ -26,7 +26,7 @@ def turn_time(mechanism: Mechanism) -> float:
     return 2.0 * math.pi / abs(over_time) if over_time else math.inf
 
 
-def bend(mechanism: Mechanism, crank_angle: Array) -> Array:
+def acceleration_slope(mechanism: Mechanism, crank_angle: Array) -> Array:
     """Return the slope of the acceleration over the crank angle, rad/s^2, at crank angles (n,), rad."""
     profile = mechanism.speed_profile
     if profile is None:
@@ -35,6 +35,6 @@ def bend(mechanism: Mechanism, crank_angle: Array) -> Array:
     return np.asarray(mechanism.speed**2 * (slope**2 + profile.ratio(crank_angle) * profile.curvature(crank_angle)))
 
 
-def pace_knots(mechanism: Mechanism) -> Array:
+def speed_knots(mechanism: Mechanism) -> Array:
     """Return the crank angles (k,), rad, at which the speed is not analytic."""
     return np.array([] if mechanism.speed_profile is None else mechanism.speed_profile.knots, dtype=np.float64)

@@ -13,7 +13,7 @@ from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Watch, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
@@ -21,13 +21,13 @@ from ..linkage.single import single
 from ..machine.derived import derived
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.memoise import remembered_batch
+from ..machine.memoise import memoise_by_batch
 from ..machine.raw import Loads, load_structure, raw_vector
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
-from ..signals.signal_inputs import watch_of
+from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
-from .crank_speed import pace
+from .crank_speed import crank_speed
 from .self_locking import require_driving
 
 _COLUMNS = 16
@@ -66,7 +66,7 @@ class Cycle:
 def _curves(
     block: Table,
     loads: Loads,
-    watch: Watch,
+    watch: CycleWindow,
     angles: Row,
     speeds: Row,
     accelerations: Row,
@@ -123,7 +123,7 @@ def cycle(
     """
     linkage = single(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
-    own = pace(mechanism, angles)
+    own = crank_speed(mechanism, angles)
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(of if given is None else given, dtype=np.float64), angles.shape))
         for given, of in zip((speed, acceleration), own, strict=True)
@@ -138,7 +138,7 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
     if cycle_turns(mechanism) > 1:
         return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
-    watch, loads = Watch(0, 0.0, 1.0, False), load_structure(mechanism)
+    watch, loads = CycleWindow(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
     block = _block(mechanism, linkage).copy()  # the kernel sets the speed of each angle
     _curves(block, loads, watch, at, w, a, out, rubs(mechanism))
@@ -164,7 +164,7 @@ def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     loads = load_structure(mechanism)
     block = _block(mechanism, linkage).copy()
     block[_SPEED] = 0.0  # valves open in both senses of rotation
-    found = breakpoints_of(block[None], loads, watch_of(mechanism, Signal.TORQUE), rubbing=False)
+    found = breakpoints_of(block[None], loads, cycle_window(mechanism, Signal.TORQUE), rubbing=False)
     return found.angle[0, : found.many[0]]
 
 
@@ -172,7 +172,7 @@ def _block(mechanism: Mechanism, linkage: Linkage) -> Table:
     return _blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
 
 
-@remembered_batch  # searches along the curves of one linkage ask a thousand times
+@memoise_by_batch  # searches along the curves of one linkage ask a thousand times
 def _blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = design[0]
@@ -194,6 +194,6 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     require_driving(mechanism.friction, linkage)
-    watch = watch_of(mechanism, Signal.TORQUE)
+    watch = cycle_window(mechanism, Signal.TORQUE)
     cuts = breakpoints_of(derived(raw, loads)[0], loads, watch, rubbing=rubs(mechanism))
     return cuts.angle[0, : cuts.many[0]]

@@ -24,7 +24,7 @@ from ..machine.speed_profile import time_per_angle
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, Panels, panels_of, peak_of
-from .crank_speed import pace, pace_knots
+from .crank_speed import crank_speed, speed_knots
 from .cycle import breakpoints, cycle
 from .shaking import shaking_curves
 
@@ -37,7 +37,7 @@ _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 
 
 @dataclass(frozen=True)
-class WholeCurves:
+class MultiCylinderCurves:
     """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, axes as those of zero bank.
 
     torque: of the drive, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
@@ -55,7 +55,7 @@ class WholeCurves:
 
 
 @dataclass(frozen=True)
-class WholeCycle:
+class MultiCylinderCycle:
     """Numbers of all cylinders together over a turn; SI.
 
     least, greatest: torque. peak: the torque of greatest magnitude. mean: of the torque, over the crank angle. rms: of
@@ -79,10 +79,10 @@ class WholeCycle:
     couple: Extreme
 
 
-def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> WholeCurves:
+def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> MultiCylinderCurves:
     """Return the curves of all cylinders together at crank angles (n,) of the shaft, rad; raises as `cycle` does."""
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    speed, acceleration = pace(mechanism, theta)
+    speed, acceleration = crank_speed(mechanism, theta)
     torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
     for member in members(mechanism):
         at = theta + member.lead
@@ -97,29 +97,31 @@ def whole_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     sums[np.abs(sums) <= _ROUNDING * sizes] = 0.0
     force_x, force_y, moment, couple_x, couple_y = sums
     torque = np.sum(torques, axis=0)
-    return WholeCurves(theta, torque, force_x, force_y, moment, couple_x, couple_y, np.stack(torques))
+    return MultiCylinderCurves(theta, torque, force_x, force_y, moment, couple_x, couple_y, np.stack(torques))
 
 
-def whole_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
+def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles of the shaft, rad from 0, where a torque may jump or turn sharply."""
     found = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
-    found += [pace_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
+    found += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
     return np.unique(np.mod(np.concatenate(found), cycle_turns(mechanism) * TURN))
 
 
-def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
+def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinderCycle:
     """Return the numbers of all cylinders together; raises as `cycle` and `breakpoints` do."""
     linkage = single(mechanism, linkage)
-    cuts = whole_breakpoints(mechanism, linkage)
+    cuts = multi_cylinder_breakpoints(mechanism, linkage)
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
     sizes = _sizes(mechanism, linkage)
-    found = panels_of(lambda theta: _followed(mechanism, whole_curves(mechanism, linkage, theta)), ends, sizes)
-    least, greatest = (_real(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
+    found = panels_of(
+        lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
+    )
+    least, greatest = (_unless_cancelled(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
     moment = peak_of(found.extremes(_MOMENT), period)
     mean, time = found.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
-    return WholeCycle(
+    return MultiCylinderCycle(
         least=least,
         greatest=greatest,
         peak=peak_of((least, greatest), period),
@@ -127,15 +129,15 @@ def whole_cycle(mechanism: Mechanism, linkage: Linkage) -> WholeCycle:
         rms=math.sqrt(found.mean_square(_TORQUE, time=time)),
         fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
         energy_change=found.swing(_TORQUE),
-        shaking_force=_root(found, _FORCE, sizes, period),
+        shaking_force=_force_extreme(found, _FORCE, sizes, period),
         rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE, time))),
-        shaking_moment=_real(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
+        shaking_moment=_unless_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
         rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT, time=time)),
-        couple=_root(found, _COUPLE, sizes, period),
+        couple=_force_extreme(found, _COUPLE, sizes, period),
     )
 
 
-def _followed(mechanism: Mechanism, curves: WholeCurves) -> Array:
+def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
     x, y = curves.force_x, curves.force_y
     couple = curves.couple_x**2 + curves.couple_y**2
     profile = mechanism.speed_profile
@@ -150,21 +152,23 @@ def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
     for member in members(mechanism):
         alone = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
-        own = whole_curves(alone, linkage, theta)
+        own = multi_cylinder_curves(alone, linkage, theta)
         force, torque = np.hypot(own.force_x, own.force_y).max(), np.abs(own.torque).max()
         sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place), 0.0])
     sizes[[_FORCE, _COUPLE]] **= 2
     return sizes
 
 
-def _real(extreme: Extreme, size: float, period: float) -> Extreme:
+def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme; none where cylinders cancel but for rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
     return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
 
 
-def _root(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:
+def _force_extreme(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:
     """Return the greatest size of a force whose square is followed."""
     greatest = found.extremes(curve)[1]
-    return _real(Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period)
+    return _unless_cancelled(
+        Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period
+    )

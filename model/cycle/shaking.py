@@ -15,7 +15,7 @@ from ..machine.design import DESIGN, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
 from ..signals.signals import design_motion
-from .crank_speed import pace
+from .crank_speed import crank_speed
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def shaking_curves(
     derive(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
     if mechanism.speed_profile is not None:
-        own = pace(mechanism, theta)
+        own = crank_speed(mechanism, theta)
         speed = own[0] if speed is None else speed
         acceleration = own[1] if acceleration is None else acceleration
     d = d if speed is None else d._replace(speed=speed)

@@ -12,7 +12,7 @@ from ..machine.design import design_at
 from ..machine.raw import Loads
 from .contact import cut_contacts
 from .rubbing import always_drives
-from .segments import Cuts, Watch, cut_cycle, room_for
+from .segments import Cuts, CycleWindow, cut_cycle, room_for
 
 
 class Breakpoints(NamedTuple):
@@ -29,7 +29,7 @@ class Breakpoints(NamedTuple):
 
 
 @kernel
-def _cut(blocks: Cube, loads: Loads, watch: Watch, found: Breakpoints, rubbing: bool) -> None:
+def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, found: Breakpoints, rubbing: bool) -> None:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     for n in range(blocks.shape[0]):
         block = blocks[n]
@@ -44,7 +44,7 @@ def _cut(blocks: Cube, loads: Loads, watch: Watch, found: Breakpoints, rubbing: 
         found.many[n] = count
 
 
-def breakpoints_of(blocks: Array, loads: Loads, watch: Watch, *, rubbing: bool) -> Breakpoints:
+def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: bool) -> Breakpoints:
     """Return the breakpoints of designs by their blocks (n, rows, 1), each turning fully."""
     shape = len(blocks), room_for(loads)
     found = Breakpoints(

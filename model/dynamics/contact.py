@@ -13,7 +13,18 @@ from ..kernel.arithmetic import STEP, analytic
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .rubbing import Sides, touch
-from .segments import Cuts, Watch, add_cut, crowded, crowding, cut_shift, enter, load_on_slider, uncrowded, within
+from .segments import (
+    Cuts,
+    CycleWindow,
+    add_cut,
+    angle_within,
+    crowded,
+    crowding,
+    cut_shift,
+    enter,
+    load_on_slider,
+    uncrowded,
+)
 
 CONTACT = 5
 """Code of a cut where the guide's force changes sides."""
@@ -60,7 +71,7 @@ def sides_of(
 
 @analytic
 def cut_contacts(
-    d: Any, block: Any, j: Any, loads: Any, watch: Watch, cuts: Cuts, count: int, piece: Any, shift: Any
+    d: Any, block: Any, j: Any, loads: Any, watch: CycleWindow, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
     """Add cuts where the guide's force changes sides to the first `count` cuts; return their new number.
 
@@ -76,7 +87,7 @@ def cut_contacts(
         b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
         if b - a < 1e-12:
             continue
-        inside = within(a, b)
+        inside = angle_within(a, b)
         _, outward = enter(d, block, j, inside, loads, watch, piece, shift)
         _, swing, grip = _senses(inside, d)
         low, high = crowded(a, kappa), crowded(b, kappa)

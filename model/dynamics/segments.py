@@ -34,7 +34,7 @@ ROOM = 40
 friction makes."""
 
 
-class Watch(NamedTuple):
+class CycleWindow(NamedTuple):
     """The counted part of the cycle, and the kinds of breakpoints in it.
 
     strokes: 0 the cycle, 1 the outward stroke, 2 the inward stroke. start, end: fractions of the stroke from the inner
@@ -109,7 +109,7 @@ def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float,
 
 
 @analytic
-def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: Watch, cuts: Cuts) -> int:
+def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
     """Fill `cuts` with the breakpoints of a design in ascending crank angle; return how many (at least one)."""
     n = 0
     if watch.split or watch.strokes != 0:
@@ -183,7 +183,7 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
 
 
 @analytic
-def within(a: float, b: float) -> float:
+def angle_within(a: float, b: float) -> float:
     """Return a crank angle in (a, b) that tells the segment's stroke and table pieces.
 
     Not its middle: without offset that is a dead centre, where rounding decides on which side of an end of the stroke,
@@ -228,7 +228,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 
 @analytic
 def enter(
-    d: Design, block: Any, j: int, inside: float, loads: Loads, watch: Watch, piece: Any, shift: Any
+    d: Design, block: Any, j: int, inside: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
     """Fix the table pieces of the segment that the crank angle `inside` lies in; return (counts, outward).
 

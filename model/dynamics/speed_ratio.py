@@ -10,13 +10,13 @@ import numpy as np
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Row, Table
 from ..machine.mechanism import Mechanism
-from ..machine.memoise import remembered
+from ..machine.memoise import memoise_by_machine
 from ..machine.speed_profile import Harmonics
 
 _TURN = 2.0 * math.pi
 
 
-class Pace(NamedTuple):
+class SpeedRatio(NamedTuple):
     """A profile p(theta) of the crank speed, 1 on the mean: harmonics, or the pieces of a periodic cubic spline.
 
     cosines, sines: (h,). knots: (k + 1,), increasing, spanning a turn, rad; none for harmonics. pieces: (4, k), by
@@ -29,20 +29,20 @@ class Pace(NamedTuple):
     pieces: Table
 
 
-@remembered
-def pace_of(mechanism: Mechanism) -> Pace:
+@memoise_by_machine
+def speed_ratio_of(mechanism: Mechanism) -> SpeedRatio:
     """Return the profile of a machine; without one it is 1 throughout."""
     profile, none = mechanism.speed_profile, np.zeros(0)
     if profile is None:
-        return Pace(none, none, none, np.zeros((4, 0)))
+        return SpeedRatio(none, none, none, np.zeros((4, 0)))
     if isinstance(profile, Harmonics):
         pairs = np.array(profile.pairs).reshape(-1, 2)
-        return Pace(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), none, np.zeros((4, 0)))
-    return Pace(none, none, *profile.pieces)
+        return SpeedRatio(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), none, np.zeros((4, 0)))
+    return SpeedRatio(none, none, *profile.pieces)
 
 
 @analytic
-def ratio_at(theta: Any, pace: Pace) -> Any:
+def speed_ratio_at(theta: Any, pace: SpeedRatio) -> Any:
     """Return p and its first three derivatives at a crank angle of the shaft, rad."""
     p, first, second, third = 1.0, 0.0, 0.0, 0.0
     for i in range(pace.cosines.shape[0]):

@@ -25,7 +25,7 @@ _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     """Return the digest of a kernel for arguments like the examples."""
     found = hashlib.sha256(_surroundings())
-    found.update(_of(examples).encode())
+    found.update(_fingerprint(examples).encode())
     for _, text in _reached(function):
         found.update(text)
     return found.hexdigest()[:24]
@@ -74,11 +74,11 @@ _ASIDE = (
 def _parts(function: Any) -> tuple[bytes, list[Any]]:
     """Return a function's own code and constants, and the functions that it calls."""
     calls: list[Any] = []
-    text = [function.__qualname__, _of(function.__defaults__)]
+    text = [function.__qualname__, _fingerprint(function.__defaults__)]
     codes = list(_codes(function.__code__))
     for code in codes:
         text += [code.co_code.hex(), repr((code.co_varnames, code.co_names, code.co_freevars))]
-        text += [_of(constant) for constant in code.co_consts if not isinstance(constant, CodeType)]
+        text += [_fingerprint(constant) for constant in code.co_consts if not isinstance(constant, CodeType)]
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     names = dict.fromkeys(name for code in codes for name in code.co_names)
     for value in (*cells, *(function.__globals__[name] for name in names if name in function.__globals__)):
@@ -86,7 +86,7 @@ def _parts(function: Any) -> tuple[bytes, list[Any]]:
             calls.append(value)
             text.append(value.__qualname__)
         else:
-            text.append(_of(value))
+            text.append(_fingerprint(value))
     return "\n".join(text).encode(), calls
 
 
@@ -97,12 +97,12 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
             yield from _codes(constant)
 
 
-def _of(value: Any) -> str:
+def _fingerprint(value: Any) -> str:
     """Return a text that tells a value of a formula, or the type of an example, from others."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype.str}{value.shape}{value.tobytes().hex()}"
     if isinstance(value, tuple):
-        return f"{type(value).__qualname__}({','.join(map(_of, value))})"
+        return f"{type(value).__qualname__}({','.join(map(_fingerprint, value))})"
     if isinstance(value, enum.EnumType):
         return f"{value.__qualname__}{list(value.__members__.items())}"
     if isinstance(value, ModuleType):

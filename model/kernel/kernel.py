@@ -49,15 +49,15 @@ def kernel(function: Function) -> Function:
     Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
     returns a number or nothing.
     """
-    return _kept(function, seldom=False)
+    return _register(function, seldom=False)
 
 
 def seldom_kernel(function: Function) -> Function:
     """Compile a function as `kernel` does, after all others: few jobs need it, and it takes long."""
-    return _kept(function, seldom=True)
+    return _register(function, seldom=True)
 
 
-def _kept(function: Function, *, seldom: bool) -> Function:
+def _register(function: Function, *, seldom: bool) -> Function:
     compiled = Kernel(function, seldom=seldom)
     KERNELS.append(compiled)
     return cast(Function, compiled)

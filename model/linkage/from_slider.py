@@ -53,7 +53,7 @@ def crank_solutions(
 
     Where the rod is all but normal to the slider line, a rounding of the angle moves the slider by some 1e-8 cranks.
     """
-    crank, rod, offset = _one(linkage)
+    crank, rod, offset = _real_lengths(linkage)
     asked = _Asked(
         _number("slider position", position),
         None if velocity is None else _number("slider velocity", velocity),
@@ -77,19 +77,19 @@ def crank_solutions(
     if min(to_outer, to_inner) <= rounding:
         angle = math.atan2(offset, asked.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
         return (_at_dead_centre(linkage, angle, asked),)
-    found = [each for stroke in get_args(Solution) for each in _between(linkage, stroke, asked)]
+    found = [each for stroke in get_args(Solution) for each in _crank_solutions(linkage, stroke, asked)]
     if not found:
         raise _out_of_reach(linkage, asked.position)
     return tuple(found)
 
 
-def reach(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
+def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     """Return the ranges of slider positions, m, that one linkage reaches on its branch, in ascending order.
 
     One range, or two where the crank moves within two separate arcs, rod + |offset| < crank. They end at a dead centre
     or, not included, where the rod is normal to the slider line: there the linkage locks.
     """
-    crank, rod, offset = _one(linkage)
+    crank, rod, offset = _real_lengths(linkage)
     sines = ((offset - rod) / crank, (offset + rod) / crank)
     normal = [crank * math.sqrt((1.0 - sine) * (1.0 + sine)) for sine in sines if abs(sine) < 1.0]
     right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin is
@@ -103,7 +103,7 @@ def reach(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     return tuple(sorted((min(arc), max(arc)) for arc in arcs))
 
 
-def _between(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[CrankSolution]:
+def _crank_solutions(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[CrankSolution]:
     """Return the solution of a stroke away from the dead centres; none if it is on the other branch."""
     try:
         angle = float(crank_angle_at(linkage, asked.position, solution=stroke))
@@ -132,7 +132,7 @@ def _between(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[Crank
 
 def _at_dead_centre(linkage: Dimensions, angle: float, asked: _Asked) -> CrankSolution:
     """Return the solution at a dead centre. Raises `InputError` for a slider motion that no crank gives there."""
-    crank, rod, offset = _one(linkage)
+    crank, rod, offset = _real_lengths(linkage)
     if linkage.sign * (asked.position - crank * math.cos(angle)) <= 0.0:
         raise _out_of_reach(linkage, asked.position)
     m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
@@ -155,13 +155,13 @@ def _at_dead_centre(linkage: Dimensions, angle: float, asked: _Asked) -> CrankSo
 
 
 def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
-    crank, rod, offset = _one(linkage)
+    crank, rod, offset = _real_lengths(linkage)
     # Rounded inward, and off the ends where the linkage locks: who gives an end as it is told is in reach.
     inward = 0.0 if rod > crank + abs(offset) else _LOCKED * rod
     up, down = Context(_DIGITS, ROUND_CEILING), Context(_DIGITS, ROUND_FLOOR)
     ends = (
         (up.create_decimal(repr(1e3 * (low + inward))), down.create_decimal(repr(1e3 * (high - inward))))
-        for low, high in reach(linkage)
+        for low, high in slider_ranges(linkage)
     )
     ranges = " or ".join(f"{float(low):.{_DIGITS}g} mm to {float(high):.{_DIGITS}g} mm" for low, high in ends)
     sizes = f"crank {1e3 * crank:g} mm, rod {1e3 * rod:g} mm, offset {1e3 * offset:g} mm"
@@ -171,7 +171,7 @@ def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
     )
 
 
-def _one(linkage: Dimensions) -> tuple[float, float, float]:
+def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     """Return crank, rod and offset, m. Raises `InputError` for an array of linkages and for complex dimensions."""
     sizes = (linkage.crank, linkage.rod, linkage.offset)
     shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))

@@ -25,7 +25,7 @@ from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Branch
-from .values import first, numbers
+from .values import first_marked, numbers
 
 Solution = Literal["outward", "inward"]
 
@@ -194,10 +194,10 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
         real, rod_, off, crank = s.real, l.real, e.real, r.real
         wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
     if np.any(wrong):
-        remedy = "lengthen the rod or reduce the offset" if first(real, wrong) > 0.0 else "give a stroke above 0"
+        remedy = "lengthen the rod or reduce the offset" if first_marked(real, wrong) > 0.0 else "give a stroke above 0"
         raise AssemblyError(
             "no crank gives this stroke with full rotation; "
-            f"got stroke {1e3 * first(s.real, wrong):g} mm, rod {1e3 * first(l.real, wrong):g} mm, "
-            f"offset {1e3 * first(e.real, wrong):g} mm; {remedy}"
+            f"got stroke {1e3 * first_marked(s.real, wrong):g} mm, rod {1e3 * first_marked(l.real, wrong):g} mm, "
+            f"offset {1e3 * first_marked(e.real, wrong):g} mm; {remedy}"
         )
     return r

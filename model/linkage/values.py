@@ -70,7 +70,7 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
         raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
     for name, size in zip(("crank", "rod"), real, strict=False):
         if np.any(size <= 0.0):
-            raise InputError(f"{name} must be longer than zero; got {first(size, size <= 0.0):g} m")
+            raise InputError(f"{name} must be longer than zero; got {first_marked(size, size <= 0.0):g} m")
     apart = np.abs(real[2]) >= real[0] + real[1]
     if np.any(apart):
         raise AssemblyError(
@@ -91,7 +91,7 @@ def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
         beyond = np.isfinite(size) & (np.abs(size) > limit)
         if np.any(beyond):
-            return both_readings(name, first(size, beyond), "m", "mm", 1e3)
+            return both_readings(name, first_marked(size, beyond), "m", "mm", 1e3)
     return None
 
 
@@ -113,7 +113,7 @@ def in_a_turn(angle: Array) -> Array:
     return found
 
 
-def first(values: Array, where: Mask) -> float:
+def first_marked(values: Array, where: Mask) -> float:
     """Return the first of the values that are marked."""
     return float(np.asarray(values)[where].flat[0])
 
@@ -122,6 +122,6 @@ def in_mm(crank: Array, rod: Array, offset: Array, where: Mask) -> str:
     """Return the first of the linkages that are marked, in words, mm."""
     crank, rod, offset = (np.broadcast_to(value, where.shape) for value in (crank, rod, offset))
     return (
-        f"rod {1e3 * first(rod, where):g} mm, crank {1e3 * first(crank, where):g} mm, "
-        f"offset {1e3 * first(offset, where):g} mm"
+        f"rod {1e3 * first_marked(rod, where):g} mm, crank {1e3 * first_marked(crank, where):g} mm, "
+        f"offset {1e3 * first_marked(offset, where):g} mm"
     )

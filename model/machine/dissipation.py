@@ -14,7 +14,7 @@ from dataclasses import replace
 from .links import Bar, Link, RigidLink
 from .loads.load import Load
 from .mechanism import Mechanism
-from .memoise import remembered
+from .memoise import memoise_by_machine
 from .varying import Varying
 
 _ROUNDING = 1e-12
@@ -36,7 +36,7 @@ def load_works_over_a_turn(mechanism: Mechanism) -> bool:
     return any(map(_load_works, _tried(mechanism)))
 
 
-@remembered
+@memoise_by_machine
 def with_loads_alone(mechanism: Mechanism) -> Mechanism:
     """Return the machine without what weighs and what rubs: all that its drive gives goes into the loads."""
     nothing = RigidLink(mass=0.0)

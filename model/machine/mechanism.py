@@ -15,7 +15,7 @@ from .drive import Drive
 from .friction import Friction
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
-from .loads.load_text import between
+from .loads.load_text import range_text
 from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .start import Start
@@ -207,7 +207,7 @@ class Mechanism:
     def load_texts(self) -> list[str]:
         """Each load in a sentence, with the ranges of its varying numbers."""
         low, high = self.ends
-        return [between(one.text, other.text) for one, other in zip(low.loads, high.loads, strict=True)]
+        return [range_text(one.text, other.text) for one, other in zip(low.loads, high.loads, strict=True)]
 
     def at(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, of its varying numbers (k,)."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ..errors import InputError
 from .arrangement import require_one_cylinder
 from .mechanism import Mechanism
-from .memoise import remembered
+from .memoise import memoise_by_machine
 
 
 class Member(NamedTuple):
@@ -35,13 +35,13 @@ def cylinder_count(mechanism: Mechanism) -> int:
     return 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
 
 
-@remembered
-def alone(mechanism: Mechanism) -> Mechanism:
+@memoise_by_machine
+def single_cylinder(mechanism: Mechanism) -> Mechanism:
     """Return one cylinder of a machine by itself, in the bank of angle zero, at its constant mean speed."""
     return replace(mechanism, arrangement=None, speed_profile=None) if is_shaft(mechanism) else mechanism
 
 
-@remembered
+@memoise_by_machine
 def members(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of a machine, each as a machine of its own. Raises `InputError` without an arrangement.
 
@@ -76,4 +76,8 @@ def require_plain(mechanism: Mechanism, what: str) -> None:
 
 def cylinders_of(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of any machine: the only one of a machine without an arrangement."""
-    return members(mechanism) if mechanism.arrangement is not None else (Member(alone(mechanism), 0.0, 0.0, 0.0),)
+    return (
+        members(mechanism)
+        if mechanism.arrangement is not None
+        else (Member(single_cylinder(mechanism), 0.0, 0.0, 0.0),)
+    )

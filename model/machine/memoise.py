@@ -11,24 +11,24 @@ from typing import Concatenate, ParamSpec, TypeVar
 from ..arrays import Array
 from .mechanism import Mechanism
 
-Given = ParamSpec("Given")
-Answer = TypeVar("Answer")
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
 
 _BATCHES = 4
 _LARGEST = 10_000  # designs of a batch: the largest fronts, whose tables ask for the same again and again
 
 
-def remembered(
-    function: Callable[Concatenate[Mechanism, Given], Answer],
-) -> Callable[Concatenate[Mechanism, Given], Answer]:
+def memoise_by_machine(
+    function: Callable[Concatenate[Mechanism, Parameters], Result],
+) -> Callable[Concatenate[Mechanism, Parameters], Result]:
     """Keep what a function says of the machine that was last asked about: a search asks thousands of times.
 
     Its other arguments are hashable, and its answers are not written to.
     """
-    last: tuple[Mechanism | None, dict[object, Answer]] = (None, {})
+    last: tuple[Mechanism | None, dict[object, Result]] = (None, {})
 
     @wraps(function)
-    def known(mechanism: Mechanism, /, *given: Given.args, **named: Given.kwargs) -> Answer:
+    def known(mechanism: Mechanism, /, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
         nonlocal last
         before, answers = last
         if before is not mechanism:
@@ -42,20 +42,20 @@ def remembered(
     return known
 
 
-def remembered_batch(
-    function: Callable[Concatenate[Mechanism, Array, Given], Answer],
-) -> Callable[Concatenate[Mechanism, Array, Given], Answer]:
+def memoise_by_batch(
+    function: Callable[Concatenate[Mechanism, Array, Parameters], Result],
+) -> Callable[Concatenate[Mechanism, Array, Parameters], Result]:
     """Keep the answers of a function for the last few batches of designs (n, 3 + k).
 
     Several quantities ask for the same.
 
     Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
     """
-    kept: OrderedDict[object, tuple[Mechanism, dict[object, Answer]]] = OrderedDict()
+    kept: OrderedDict[object, tuple[Mechanism, dict[object, Result]]] = OrderedDict()
     lock = Lock()
 
     @wraps(function)
-    def known(mechanism: Mechanism, designs: Array, /, *given: Given.args, **named: Given.kwargs) -> Answer:
+    def known(mechanism: Mechanism, designs: Array, /, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
         if len(designs) > _LARGEST:
             return function(mechanism, designs, *given, **named)
         batch, key = (id(mechanism), designs.shape, designs.tobytes()), (given, *named.items())

@@ -21,7 +21,7 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
 from .mechanism import Mechanism
-from .memoise import remembered, remembered_batch
+from .memoise import memoise_by_batch, memoise_by_machine
 from .raw import LOAD_SLOTS, Raw, raw_vector
 from .varying import Varying
 
@@ -102,7 +102,7 @@ class Numbers:
 _THREE = np.arange(3)
 
 
-@remembered_batch
+@memoise_by_batch
 def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bool) -> Numbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
 
@@ -172,7 +172,7 @@ def of_numbers(
     return plain, numbers.chain(by_number)
 
 
-@remembered
+@memoise_by_machine
 def _nominal(mechanism: Mechanism) -> Array:
     return raw_vector(mechanism.nominal)
 

@@ -19,7 +19,7 @@ from .links import Bar, Link
 from .loads.load import Load
 from .loads.registry import code_of
 from .mechanism import Mechanism
-from .memoise import remembered
+from .memoise import memoise_by_machine
 from .two_turns import require_one_turn
 
 Raw = IntEnum(
@@ -103,7 +103,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
     return np.array(raw, dtype=np.float64)
 
 
-@remembered
+@memoise_by_machine
 def fullest_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
     """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has."""
     raw = raw_vector(mechanism.fullest)
@@ -126,13 +126,13 @@ def _factors(load: Load) -> tuple[float, float, float]:
     return (outward, inward, 0.0)
 
 
-@remembered
+@memoise_by_machine
 def knot_count(mechanism: Mechanism) -> int:
     """Return how many knots the tables of a mechanism's loads have."""
     return sum(len(load.knots()[0]) for load in mechanism.loads)
 
 
-@remembered
+@memoise_by_machine
 def load_structure(mechanism: Mechanism) -> Loads:
     """Return kinds, datums and tables of a mechanism's loads. Raises `InputError` for a cycle of two turns."""
     require_one_turn(mechanism, "this analysis")

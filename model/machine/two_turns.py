@@ -21,7 +21,7 @@ from ..arrays import Array, Whole
 from ..errors import InputError
 from .loads.load import Load
 from .mechanism import Mechanism
-from .memoise import remembered
+from .memoise import memoise_by_machine
 from .varying import Varying
 
 TURN = 2.0 * math.pi
@@ -37,7 +37,7 @@ def turns_per_cycle(loads: Iterable[Load]) -> int:
     return max((load.cycle_turns for load in loads), default=1)
 
 
-@remembered
+@memoise_by_machine
 def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
     _datum(mechanism)

@@ -56,7 +56,7 @@ def put(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
         raise InputError(f"a value is needed for every number that varies ({names}); got {len(values)} values")
     for item, value in zip(varying, values, strict=True):
         for path, factor in item.sets:
-            part = _with(part, path.split("."), factor * float(value), path)
+            part = _replace_at(part, path.split("."), factor * float(value), path)
     return part
 
 
@@ -114,10 +114,10 @@ def _member(part: Any, key: str, path: str) -> Any:
     raise InputError(f"a varying number must be a number of the machine; got {path!r}, which it has not")
 
 
-def _with(part: Any, keys: list[str], number: float, path: str) -> Any:
+def _replace_at(part: Any, keys: list[str], number: float, path: str) -> Any:
     if not keys:
         return number
-    inner = _with(_member(part, keys[0], path), keys[1:], number, path)
+    inner = _replace_at(_member(part, keys[0], path), keys[1:], number, path)
     if isinstance(part, tuple):
         index = int(keys[0])
         return (*part[:index], inner, *part[index + 1 :])

@@ -26,7 +26,17 @@ from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, on_crank, sense_of
 from ..dynamics.rubbing import always_drives, joint_forces
-from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    angle_within,
+    crowded,
+    cut_cycle,
+    enter,
+    load_on_slider,
+    room_for,
+    uncrowded,
+)
 from ..kernel.arithmetic import STEP, analytic, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
@@ -36,7 +46,7 @@ from ..machine.design import design_at
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
-from ..machine.memoise import remembered_batch
+from ..machine.memoise import memoise_by_batch
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
@@ -54,8 +64,8 @@ from .quadrature import (
     square_along,
     steepness,
 )
-from .shaft_statistics import averages_of_shaft
-from .signal_inputs import inputs_of, watch_of
+from .shaft_statistics import shaft_signal_averages
+from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal, signal
 from .two_turns import averaged
 
@@ -132,7 +142,7 @@ def _average(
     steps: ComplexCube,
     gaps: Row,
     loads: Loads,
-    watch: Watch,
+    watch: CycleWindow,
     rule: tuple[Row, Row, Table],
     wanted: bool,
     mean: Row,
@@ -172,7 +182,7 @@ def _average(
             greatest[v] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            inside = within(a, b)
+            inside = angle_within(a, b)
             _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
@@ -267,22 +277,22 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
     return Averages(known.values.copy(), None if known.gradients is None else known.gradients.copy())
 
 
-@remembered_batch
+@memoise_by_batch
 def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
     """Return averages that are kept: of one batch mean and RMS torque, power, energy and more are asked for."""
     designs = turning(designs)
     if is_shaft(mechanism):
-        return Averages(*averages_of_shaft(mechanism, kind, designs, gradients=gradients))
+        return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (average(half, kind, designs, gradients=gradients) for half in halves(mechanism))
         return Averages(*averaged(first, second))
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
-    raw, loads = inputs_of(mechanism, kind)
+    raw, loads = signal_inputs(mechanism, kind)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((2, n if gradients else 0, len(columns)))
-    watch = watch_of(mechanism, kind)
+    watch = cycle_window(mechanism, kind)
     rubbing = kind.needs_forces and rubs(mechanism)
     jumps = rubbing or (kind.needs_forces and any(load.steps for load in mechanism.fullest.loads))
     rule, gaps = panel_rule(), gaps_of(*designs.T[:3])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Watch, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, seldom_kernel
@@ -24,14 +24,14 @@ from .signals import design_motion
 
 Complex = NDArray[np.complex128]
 
-_WIDE = len(Forces._fields) + 1
+_ROWS = len(Forces._fields) + 1
 
 
 @seldom_kernel
-def _follow(
+def _fill_forces(
     raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool
 ) -> None:
-    watch = Watch(0, 0.0, 1.0, False)
+    watch = CycleWindow(0, 0.0, 1.0, False)
     rows = DESIGN + LOAD_ROWS * loads.kind.shape[0]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     block = np.empty((rows, 1))
@@ -66,18 +66,18 @@ def _follow(
             out[n, 8, k] = load
 
 
-def follow_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tuple[Forces, Complex]:
+def complex_joint_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tuple[Forces, Complex]:
     """Return the joint forces and the load on the slider, N outward, each (n, k).
 
     designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
     """
     # Arrays of one kind, so that one compiled kernel serves.
     designs, angles = (np.require(given, np.complex128, ["C", "W"]) for given in (designs, angles))
-    out = np.empty((len(angles), _WIDE, angles.shape[1]), np.complex128)
+    out = np.empty((len(angles), _ROWS, angles.shape[1]), np.complex128)
     raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
 
     def work(begin: int, end: int) -> None:
-        _follow(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
+        _fill_forces(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
 
     in_chunks(len(designs), work, size=64)
     *found, load = out.swapaxes(0, 1)

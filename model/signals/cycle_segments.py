@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, Whole
-from ..dynamics.segments import within
+from ..dynamics.segments import angle_within
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Segments:
         """A place in each that tells strokes and pieces."""
         low: Any = self.low
         high: Any = self.high
-        return np.asarray(within(low, high))
+        return np.asarray(angle_within(low, high))
 
     def panels(self, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
         """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) a unit."""

@@ -20,7 +20,8 @@ from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import (
     Cuts,
-    Watch,
+    CycleWindow,
+    angle_within,
     crowded,
     crowding,
     cut_cycle,
@@ -28,7 +29,6 @@ from ..dynamics.segments import (
     load_on_slider,
     room_for,
     uncrowded,
-    within,
 )
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.batches import in_chunks, turning
@@ -40,8 +40,8 @@ from ..machine.members import is_shaft
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
-from .shaft_statistics import apart, highest_of, peaks_of_shaft
-from .signal_inputs import inputs_of, watch_of
+from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
+from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal, design_motion, signal
 from .two_turns import highest
 
@@ -166,7 +166,7 @@ def _divide(
 
 
 @analytic
-def _known(angles: Any, count: Any, theta: Any) -> bool:
+def _is_listed(angles: Any, count: Any, theta: Any) -> bool:
     """Whether a peak at that angle is in the list."""
     known = False
     for i in range(count):
@@ -194,7 +194,7 @@ def _find(
     blocks: Cube,
     steps: ComplexCube,
     loads: Loads,
-    watch: Watch,
+    watch: CycleWindow,
     angles: int,
     values: Table,
     where: Table,
@@ -237,7 +237,7 @@ def _find(
             a, b = cuts.angle[s], cuts.angle[s + 1]
             first[s + 1] = first[s]
             thin[s] = b - a < _THIN
-            inside = within(a, b)
+            inside = angle_within(a, b)
             live[s], outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             if thin[s] or not live[s]:
                 known = False
@@ -279,7 +279,7 @@ def _find(
             if not hopeful:
                 edge[s, :] = -1.0
                 continue
-            inside = within(a, b)
+            inside = angle_within(a, b)
             _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             for side in range(2):
@@ -305,7 +305,7 @@ def _find(
                 for finer in range(2):
                     value, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides)
                     # A finer row that rises to the very end of the segment has no top; the breakpoint may be one.
-                    if (finer == 0 or a + _SAME < angle < b - _SAME) and not _known(at, found, angle):
+                    if (finer == 0 or a + _SAME < angle < b - _SAME) and not _is_listed(at, found, angle):
                         found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
                     if finer == 1 or not f[i] > _NEAR * best:
                         break
@@ -342,7 +342,7 @@ def _find(
             turned = at[i] - _TURN * math.floor(at[i] / _TURN)
             where[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
             s = segment[i]
-            inside = within(cuts.angle[s], cuts.angle[s + 1])
+            inside = angle_within(cuts.angle[s], cuts.angle[s + 1])
             _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
@@ -384,11 +384,11 @@ def find_peaks(
     if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
         parts = [
             find_peaks(one, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
-            for one in apart(mechanism, kind)
+            for one in equivalent_single_cranks(mechanism, kind)
         ]
         if parts:
-            return Peaks(*highest_of([(part.values, part.angles, part.gradients) for part in parts]))
-        return Peaks(*peaks_of_shaft(mechanism, kind, designs, during=during, gradients=gradients, kept=kept))
+            return Peaks(*highest_peaks([(part.values, part.angles, part.gradients) for part in parts]))
+        return Peaks(*shaft_signal_peaks(mechanism, kind, designs, during=during, gradients=gradients, kept=kept))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
             find_peaks(half, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
@@ -397,11 +397,11 @@ def find_peaks(
         return Peaks(*highest(mechanism, designs, first, second))
     n = len(designs)
     values, where = np.empty((n, kept)), np.empty((n, kept))
-    raw, loads = inputs_of(mechanism, kind)
+    raw, loads = signal_inputs(mechanism, kind)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((n if gradients else 0, kept, len(columns)))
-    watch = watch_of(mechanism, kind, during=during)
+    watch = cycle_window(mechanism, kind, during=during)
     rubbing = kind.needs_forces and rubs(mechanism)
 
     def work(begin: int, end: int) -> None:

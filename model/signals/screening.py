@@ -26,13 +26,13 @@ from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.members import is_shaft
-from ..machine.memoise import remembered
+from ..machine.memoise import memoise_by_machine
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.two_turns import one_turn
 from .locate import LANES as LANES
 from .locate import ROWS, prepare, row_of, sweep, two_highest
-from .signal_inputs import watch_of
+from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal
 
 ANGLES = 64
@@ -58,12 +58,12 @@ class Screened:
     gradients: Array | None
 
 
-@remembered
+@memoise_by_machine
 def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
     """Whether `screen` handles this signal of this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
-    watch, shaft = watch_of(mechanism, kind, during=during), is_shaft(mechanism)
+    watch, shaft = cycle_window(mechanism, kind, during=during), is_shaft(mechanism)
     mechanism = mechanism.fullest
     whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():

@@ -12,19 +12,19 @@ from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs
 from ..dynamics.rubbing import always_drives
 from ..dynamics.segments import crowding
-from ..dynamics.speed_ratio import pace_of
+from ..dynamics.speed_ratio import speed_ratio_of
 from ..kinematics import geometry
 from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.members import alone, cylinders_of
+from ..machine.members import cylinders_of, single_cylinder
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves
 from .cycle_segments import Segments
 from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, Found, Items, cut_rates, follow_kernel
 from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
-from .signal_inputs import inputs_of, watch_of
+from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
 _NEAR = 1e-9  # rad: so near to where a turn of two begins a breakpoint may be of either
@@ -51,7 +51,7 @@ class Shaft:
     ) -> None:
         self.kind, self.members, self.gradients = kind, np.array(members, dtype=np.int64), gradients
         signal = Signal(kind) if kind < TOUCH else Signal.CRANK_PIN_FORCE
-        single = alone(mechanism)
+        single = single_cylinder(mechanism)
         self._single, self._designs = single, designs
         whole = signal.needs_forces and cycle_turns(single) > 1
         self._parts = halves(single) if whole else (single,)
@@ -62,11 +62,11 @@ class Shaft:
         lead, bank = np.array([own.lead for own in cylinders]), np.array([own.bank for own in cylinders])
         place = np.array([own.place for own in cylinders])
         self._axes = Axes(lead, np.cos(bank), np.sin(bank), place)
-        self._pace, self.profile = pace_of(mechanism), mechanism.speed_profile
+        self._pace, self.profile = speed_ratio_of(mechanism), mechanism.speed_profile
         self._loads: list[Loads] = []
         plain, stepped = [], []
         for part in self._parts:
-            raw, loads = inputs_of(part, signal)
+            raw, loads = signal_inputs(part, signal)
             numbers = numbers_of(part, designs, room=len(raw), gradients=gradients)
             blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
             self._loads.append(loads)
@@ -78,7 +78,7 @@ class Shaft:
                     rates = np.einsum("ncr,ncu->nur", rates, numbers.slopes)
                 own = np.concatenate([own, own + 1j * rates], axis=1)
             stepped.append(own)
-        self._watch = watch_of(self._parts[0], signal, during=during)
+        self._watch = cycle_window(self._parts[0], signal, during=during)
         if kind >= WORK:
             self._watch = self._watch._replace(split=True, swing=True)
         self.numbers = designs.shape[1] if gradients else 0

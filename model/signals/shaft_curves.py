@@ -17,8 +17,8 @@ from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import beside_crank_loads, sense_of
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import Sides, joint_forces, touch
-from ..dynamics.segments import Cuts, Watch, cut_shift, enter, load_on_slider
-from ..dynamics.speed_ratio import Pace, ratio_at
+from ..dynamics.segments import Cuts, CycleWindow, cut_shift, enter, load_on_slider
+from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
 from ..kinematics.position import third_derivative
@@ -137,7 +137,7 @@ def follow_kernel(
     members: Integers,
     asked: Items,
     axes: Axes,
-    pace: Pace,
+    pace: SpeedRatio,
     blocks: Blocks,
     first: Loads,
     second: Loads,
@@ -153,13 +153,13 @@ def follow_kernel(
     """
     rows, count = blocks.plain.shape[1], members.shape[0]
     numbers = blocks.stepped.shape[0] // max(1, blocks.plain.shape[0])
-    watch = Watch(0, 0.0, 1.0, False)
+    watch = CycleWindow(0, 0.0, 1.0, False)
     own, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
     piece = np.zeros((count, first.kind.shape[0]), np.int64)
     shift = np.zeros((count, first.kind.shape[0]))
     sides = np.zeros((count, 5))
     for p in range(asked.row.shape[0]):
-        ratio, slope, _, _ = ratio_at(asked.inside[p], pace)
+        ratio, slope, _, _ = speed_ratio_at(asked.inside[p], pace)
         for i in range(count):
             k = members[i]
             loads = first if asked.half[p, k] == 0 else second
@@ -182,7 +182,7 @@ def follow_kernel(
             out.outward[p, i] = 1 if outward else 0
         for a in range(asked.angle.shape[1]):
             theta = asked.angle[p, a]
-            p_0, p_1, p_2, p_3 = ratio_at(theta, pace)
+            p_0, p_1, p_2, p_3 = speed_ratio_at(theta, pace)
             for v in range(numbers if wanted else 1):
                 step = STEP if v == 0 else STEP * asked.rate[p, v - 1]
                 ratio_now, slope_now = complex(p_0, step * p_1), complex(p_1, step * p_2)

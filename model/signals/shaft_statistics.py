@@ -15,16 +15,16 @@ from ..arrays import Array
 from ..kernel.batches import in_chunks
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
-from ..machine.members import alone, cylinder_count, cylinders_of
+from ..machine.members import cylinder_count, cylinders_of, single_cylinder
 from ..machine.raw import knot_count
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
 from .shaft_peaks import shaft_peaks
-from .shaking_balance import couples
+from .shaking_balance import has_rocking_couple
 from .signals import Signal
 
-Found = tuple[Array, Array, Array | None]
+PeakArrays = tuple[Array, Array, Array | None]
 
 SUMS = (
     Signal.TORQUE,
@@ -40,10 +40,10 @@ _CHUNK = 128  # designs
 _STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
 
 
-def apart(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
+def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     """Return machines of one crank at constant speed whose highest peak is that of the shaft, if any."""
     if kind in _GEOMETRY:
-        return (alone(mechanism),)
+        return (single_cylinder(mechanism),)
     banked = any(own.bank for own in cylinders_of(mechanism))
     turned = banked and any(path.startswith("gravity.") for item in mechanism.varying for path in item.paths)
     if kind in SUMS or mechanism.speed_profile is not None or turned:
@@ -51,15 +51,15 @@ def apart(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     return tuple({own.mechanism.gravity: own.mechanism for own in cylinders_of(mechanism)}.values())
 
 
-def peaks_of_shaft(
+def shaft_signal_peaks(
     mechanism: Mechanism, kind: Signal, designs: Array, *, during: str, gradients: bool, kept: int
-) -> Found:
+) -> PeakArrays:
     """Return values, angles (n, kept) and derivatives of the highest local peaks of a signal; see `find_peaks`.
 
     Over one stroke several cylinders together have none, nor is there a rocking couple in one plane: NaN.
     """
     count = cylinder_count(mechanism)
-    if (during != "cycle" and count > 1) or (kind is Signal.ROCKING_COUPLE and not couples(mechanism)):
+    if (during != "cycle" and count > 1) or (kind is Signal.ROCKING_COUPLE and not has_rocking_couple(mechanism)):
         nothing = np.full((len(designs), kept), np.nan)
         return nothing, nothing.copy(), np.full((len(designs), kept, designs.shape[1]), np.nan) if gradients else None
     groups = [tuple(range(count))] if kind in SUMS else [(k,) for k in range(count)]
@@ -78,12 +78,12 @@ def peaks_of_shaft(
                 slopes[begin:end, place] = found[2]
 
     in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
-    return highest_of(
+    return highest_peaks(
         [(values[:, p], angles[:, p], None if slopes is None else slopes[:, p]) for p in range(len(groups))]
     )
 
 
-def highest_of(parts: list[Found]) -> Found:
+def highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
     """Return the highest of several lists of peaks (n, k), as many as each has."""
     if len(parts) == 1:
         return parts[0]
@@ -97,7 +97,7 @@ def highest_of(parts: list[Found]) -> Found:
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), slopes
 
 
-def averages_of_shaft(
+def shaft_signal_averages(
     mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool
 ) -> tuple[Array, Array | None]:
     """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `average`.
@@ -145,7 +145,7 @@ def _averages(
     return values, slopes
 
 
-def turn_work_of_shaft(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[Array, Array | None]:
+def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[Array, Array | None]:
     """Return the means (n, 5) of `turn_work`, added up over the cylinders, and their derivatives (n, 5, 3 + k)."""
     mean = np.zeros((len(designs), CURVES))
     slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
@@ -160,6 +160,6 @@ def turn_work_of_shaft(mechanism: Mechanism, designs: Array, *, gradients: bool)
     return np.where(locks, np.inf, mean), slopes
 
 
-def time_share(mechanism: Mechanism) -> float:
+def mean_speed_ratio(mechanism: Mechanism) -> float:
     """Return the mean speed over time as a share of that over the crank angle; 1 without a profile."""
     return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.over_time

@@ -12,21 +12,21 @@ from ..machine.mechanism import Mechanism
 _SAME = 1e-9  # rad, and share of a sum that has cancelled
 
 
-def shakes(mechanism: Mechanism) -> bool:
+def has_shaking_force(mechanism: Mechanism) -> bool:
     """Return whether the shaking forces of a machine's cylinders leave something for some design."""
     arrangement = mechanism.arrangement
-    return arrangement is None or _left(arrangement, lambda k: cmath.exp(1j * arrangement.bank(k)))
+    return arrangement is None or is_unbalanced(arrangement, lambda k: cmath.exp(1j * arrangement.bank(k)))
 
 
-def couples(mechanism: Mechanism) -> bool:
+def has_rocking_couple(mechanism: Mechanism) -> bool:
     """Return whether the shaking forces of a machine's cylinders leave a couple for some design."""
     arrangement = mechanism.arrangement
     if arrangement is None or not any(arrangement.places):
         return False
-    return _left(arrangement, lambda k: arrangement.place(k) * cmath.exp(1j * arrangement.bank(k)))
+    return is_unbalanced(arrangement, lambda k: arrangement.place(k) * cmath.exp(1j * arrangement.bank(k)))
 
 
-def _left(arrangement: Arrangement, share: Callable[[int], complex]) -> bool:
+def is_unbalanced(arrangement: Arrangement, share: Callable[[int], complex]) -> bool:
     """Return whether shares add up to something over the cylinders that stand alike.
 
     A curve of period 2 pi with every harmonic cancels only among cylinders with the same crank angle from their lines.

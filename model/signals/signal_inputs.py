@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import cache
 
 from ..arrays import Array
-from ..dynamics.segments import Watch
+from ..dynamics.segments import CycleWindow
 from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
-from ..machine.memoise import remembered
+from ..machine.memoise import memoise_by_machine
 from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
 from ..machine.two_turns import one_turn
 from .signals import Signal
 
 
-def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Watch:
+def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> CycleWindow:
     """Return which part of the cycle counts for a signal of a mechanism."""
     strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
     friction = mechanism.fullest.friction
@@ -22,11 +22,11 @@ def watch_of(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> Wa
     swing = kind.needs_forces and friction.slider_pin.circle > 0.0
     if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         window = mechanism.tolerances.window
-        return Watch(strokes[window.during], float(window.start), float(window.end), False)
-    return Watch(strokes[during], 0.0, 1.0, split, swing)
+        return CycleWindow(strokes[window.during], float(window.start), float(window.end), False)
+    return CycleWindow(strokes[during], 0.0, 1.0, split, swing)
 
 
-def inputs_of(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
+def signal_inputs(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
     if kind.needs_forces:
         require_no_winding(mechanism)
@@ -40,7 +40,7 @@ def _no_loads() -> Loads:
     return load_structure(Mechanism())
 
 
-@remembered
+@memoise_by_machine
 def stroke_dependent(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
     if any(load.by_stroke for load in mechanism.fullest.loads):

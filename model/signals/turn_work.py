@@ -22,7 +22,17 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
 from ..dynamics.rubbing import always_drives, joint_forces
-from ..dynamics.segments import Cuts, Watch, crowded, cut_cycle, enter, load_on_slider, room_for, uncrowded, within
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    angle_within,
+    crowded,
+    cut_cycle,
+    enter,
+    load_on_slider,
+    room_for,
+    uncrowded,
+)
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks, turning
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
@@ -31,19 +41,21 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.members import is_shaft
-from ..machine.memoise import remembered_batch
+from ..machine.memoise import memoise_by_batch
 from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import cycle_turns, halves
 from .quadrature import DEEPEST, EVEN, NOISE, PANELS, RESOLVED, gaps_of, panel_rule, rough, square_along
-from .shaft_statistics import turn_work_of_shaft
-from .signal_inputs import inputs_of
+from .shaft_statistics import shaft_turn_work
+from .signal_inputs import signal_inputs
 from .signals import Signal
 
 LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
 """Places of the curves."""
 _CURVES, _POINTS = 5, 16
-_WATCH = Watch(0, 0.0, 1.0, True, True)  # |x'| and |phi'| turn over at the dead centres and where the rod turns back
+_WATCH = CycleWindow(
+    0, 0.0, 1.0, True, True
+)  # |x'| and |phi'| turn over at the dead centres and where the rod turns back
 _TURN = 2.0 * math.pi
 _SHARE = 0.1
 """Of what may be left of a curve, what a panel may leave of its mean: the narrower a panel, the less its tail counts.
@@ -90,7 +102,7 @@ def _integrate(
     steps: ComplexCube,
     gaps: Row,
     loads: Loads,
-    watch: Watch,
+    watch: CycleWindow,
     rule: tuple[Row, Row, Table],
     mean: Table,
     slopes: Cube,
@@ -124,7 +136,7 @@ def _integrate(
         greatest[:] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            inside = within(a, b)
+            inside = angle_within(a, b)
             _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
             sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
@@ -178,7 +190,7 @@ def _integrate(
                         slopes[n, k, v] += sign * f[k] * slip
 
 
-@remembered_batch
+@memoise_by_batch
 def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> TurnWork:
     """Return the means of fully turning designs (n, 3 + k): crank, rod, offset, m, then the machine's varying numbers.
 
@@ -186,7 +198,7 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
     """
     designs = turning(designs)
     if is_shaft(mechanism):
-        return TurnWork(*turn_work_of_shaft(mechanism, designs, gradients=gradients))
+        return TurnWork(*shaft_turn_work(mechanism, designs, gradients=gradients))
     if cycle_turns(mechanism) > 1:
         first, second = (turn_work(half, designs, gradients=gradients) for half in halves(mechanism))
         slopes = None
@@ -195,7 +207,7 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
         return TurnWork(0.5 * (first.mean + second.mean), slopes)
     n = len(designs)
     mean = np.empty((n, _CURVES))
-    raw, loads = inputs_of(mechanism, Signal.CRANK_PIN_FORCE)
+    raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     found = np.empty((n if gradients else 0, _CURVES, len(columns)))

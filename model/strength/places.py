@@ -28,7 +28,7 @@ from .stress_points import WIDE, Field, Samples
 _MANY = WIDE // 2
 
 
-class Along(NamedTuple):
+class WholeBar(NamedTuple):
     """All along a link. part: `ROD` or `CRANK`. bent: whether moments count."""
 
     part: int
@@ -50,7 +50,7 @@ class Eye(NamedTuple):
     outer: bool
 
 
-Place = Along | Eye
+Place = WholeBar | Eye
 
 
 @dataclass(frozen=True)

@@ -30,12 +30,12 @@ from ..arrays import Array, Mask, Whole
 from ..errors import InputError
 from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
-from ..machine.memoise import remembered_batch
+from ..machine.memoise import memoise_by_batch
 from ..machine.two_turns import cycle_turns, halves
 from .places import Place, Places, places_of
 from .section_forces import Stress, at_share
 from .stress_points import field_of
-from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_of, propose, room_for
+from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_candidates, propose, room_for
 
 KEPT = 8
 """Maxima kept of a design, highest first."""
@@ -103,7 +103,7 @@ def _of_samples(bars: Places, faces: Array, criteria: Array, near: float, kept: 
     best = np.empty((len(faces), len(criteria), STATIONS))
     found = room_for(room)
     count = propose(start, first, stress, 0, faces, criteria, near, *space, best, found)
-    found = first_of(found, count)
+    found = first_candidates(found, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, kept), np.int64)
     climb(theta, first, stress, 0, faces, criteria, found, values, angles)
     choose(found, criteria, values, angles, chosen)
@@ -173,7 +173,7 @@ def _gradients(bars: Places, faces: Array, criteria: Array, maxima: _Maxima, pin
 _FACES = np.array([1.0, -1.0])
 
 
-_kept_field = remembered_batch(field_of)
+_kept_field = memoise_by_batch(field_of)
 
 
 def _peaks(bars: Places, criteria: Array, gradients: bool, kept: int) -> StressPeaks:

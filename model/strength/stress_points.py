@@ -16,7 +16,7 @@ from ..arrays import Array, Mask, Whole
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
 from ..dynamics.contact import rubs, shift_of, sides_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Cuts, Watch, crowded, crowding, enter, load_on_slider, uncrowded, within
+from ..dynamics.segments import Cuts, CycleWindow, angle_within, crowded, crowding, enter, load_on_slider, uncrowded
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, seldom_kernel
 from ..machine.derived import derived
@@ -24,7 +24,7 @@ from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import Numbers, numbers_of
 from ..machine.raw import Loads, Raw
-from ..signals.signal_inputs import inputs_of, watch_of
+from ..signals.signal_inputs import cycle_window, signal_inputs
 from ..signals.signals import Signal, design_motion
 from .section_forces import stress_along
 
@@ -78,7 +78,7 @@ def _stress(
     rubbing: bool,
     out: Table,
 ) -> None:
-    watch = Watch(0, 0.0, 1.0, False)
+    watch = CycleWindow(0, 0.0, 1.0, False)
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     rows, nv = blocks.shape[1], turned.shape[0]
     block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
@@ -129,7 +129,7 @@ def _stress(
 
 
 @seldom_kernel
-def _place(
+def _sample_segments(
     designs: Table,
     cuts: Breakpoints,
     start: Integers,
@@ -156,7 +156,7 @@ def _place(
             for i in range(points):
                 angle = uncrowded(low + (high - low) * i / (points - 1), kappa)
                 theta[total] = a if i == 0 else b if i == points - 1 else angle
-                inside[total], first[total], segment[total] = within(a, b), i == 0, s
+                inside[total], first[total], segment[total] = angle_within(a, b), i == 0, s
                 total += 1
     start[designs.shape[0]] = total
     return total
@@ -194,8 +194,10 @@ class Field:
         """Return stress and its derivatives by the crank angle, (p, 2 WIDE)."""
         begin, end = self.ends(which, segment)
         none = np.full(len(which), -1)
-        points = Points(which, _inside(begin, end), angle, none, none)
-        return _at(self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism))
+        points = Points(which, _angles_within(begin, end), angle, none, none)
+        return _stress_at(
+            self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism)
+        )
 
     def slopes(self, which: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
         """Return stress and its derivatives by the raw numbers of `numbers`, (p, c, 2 WIDE).
@@ -205,30 +207,30 @@ class Field:
         begin, end = self.ends(which, segment)
         columns = self.numbers.columns
         many = len(columns)
-        raw, _ = inputs_of(self.mechanism, Signal.CRANK_PIN_FORCE)
+        raw, _ = signal_inputs(self.mechanism, Signal.CRANK_PIN_FORCE)
         _, steps = derived(raw, self.loads, columns, self.numbers.values, steps=True)
         turned = np.ascontiguousarray((columns[:, None] == np.array(_SLOTS)) * 1.0)
         points = Points(
             np.repeat(which, many),
-            np.repeat(_inside(begin, end), many),
+            np.repeat(_angles_within(begin, end), many),
             np.repeat(angle, many),
             np.tile(np.arange(many), len(which)),
             np.repeat(cut, many),
         )
-        found = _at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
+        found = _stress_at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
         return found.reshape(len(which), many, -1)
 
 
-def _inside(begin: Array, end: Array) -> Array:
+def _angles_within(begin: Array, end: Array) -> Array:
     """Return `within` of many segments."""
-    inside: Array = within(begin, end)  # type: ignore[arg-type, assignment]
+    inside: Array = angle_within(begin, end)  # type: ignore[arg-type, assignment]
     return inside
 
 
 _NO_STEPS, _NO_TURN = np.zeros((0, 0, 1), np.complex128), np.zeros((0, len(_SLOTS)))
 
 
-def _at(
+def _stress_at(
     blocks: Array,
     steps: NDArray[np.complex128],
     sizes: Array,
@@ -245,7 +247,7 @@ def _at(
 
 def field_of(mechanism: Mechanism, designs: Array) -> Field:
     """Return the `Field` of designs (n, 3 + k), each turning fully."""
-    raw, loads = inputs_of(mechanism, Signal.CRANK_PIN_FORCE)
+    raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
     numbers = numbers_of(mechanism, designs, room=len(raw), gradients=True)
     values, n = numbers.values, len(designs)
     blocks, _ = derived(raw, loads, numbers.columns, values)
@@ -253,15 +255,15 @@ def field_of(mechanism: Mechanism, designs: Array) -> Field:
     for place, slot in enumerate(_SLOTS):
         own = np.flatnonzero(numbers.columns == slot)
         sizes[:, place] = values[:, own[0]] if len(own) else raw[slot]
-    cuts = breakpoints_of(blocks, loads, watch_of(mechanism, Signal.CRANK_PIN_FORCE), rubbing=rubs(mechanism))
+    cuts = breakpoints_of(blocks, loads, cycle_window(mechanism, Signal.CRANK_PIN_FORCE), rubbing=rubs(mechanism))
     room = (ANGLES + 8) * n + 4 * int(cuts.many.sum())
     start, theta, inside = np.empty(n + 1, np.int64), np.empty(room), np.empty(room)
     first, segment, kappa = np.empty(room, np.bool_), np.empty(room, np.int64), np.empty(n)
-    total = _place(np.ascontiguousarray(values[:, :3]), cuts, start, theta, inside, first, segment, kappa)
+    total = _sample_segments(np.ascontiguousarray(values[:, :3]), cuts, start, theta, inside, first, segment, kappa)
     theta, inside, first, segment = theta[:total], inside[:total], first[:total], segment[:total]
     none = np.full(total, -1)
     which = np.repeat(np.arange(n), np.diff(start))
     points = Points(which, inside, theta, none, none)
-    stress = _at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, rubs(mechanism))
+    stress = _stress_at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, rubs(mechanism))
     samples = Samples(start, theta, first, segment, stress)
     return Field(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)

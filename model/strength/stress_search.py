@@ -45,7 +45,7 @@ def room_for(count: int) -> Candidates:
     return Candidates(whole[0], whole[1], whole[2], np.empty((count, 2), np.int64), np.empty(count))
 
 
-def first_of(given: Candidates, count: int) -> Candidates:
+def first_candidates(given: Candidates, count: int) -> Candidates:
     """Return the first candidates."""
     return Candidates(
         given.which[:count], given.face[:count], given.pull[:count], given.at[:count], given.share[:count]
@@ -53,7 +53,7 @@ def first_of(given: Candidates, count: int) -> Candidates:
 
 
 @analytic
-def _along(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+def _stress_at_share(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
     """Stress of a sample at a place; with a base 7 further its slope over the crank angle."""
     axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
     bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
@@ -61,14 +61,14 @@ def _along(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
 
 
 @analytic
-def _rising(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
-    """Slope of `_along` over the place."""
+def _slope_at_share(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+    """Slope of `_stress_at_share` over the place."""
     axial = row[k, base + 1] + 2.0 * xi * row[k, base + 2]
     return axial + face * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
 
 
 @analytic
-def _listed(row: Any, first: Any, begin: Any, count: Any, sign: Any, found: Any) -> int:
+def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, found: Any) -> int:
     """List the highest local maxima of sign times a row of samples, ends of segments included; return how many."""
     n = 0
     for k in range(count):
@@ -117,7 +117,7 @@ def propose(
                 xi = j / (STATIONS - 1.0)
                 top, bottom = -math.inf, math.inf
                 for k in range(count):
-                    value = _along(stress, begin + k, base, faces[f], xi)
+                    value = _stress_at_share(stress, begin + k, base, faces[f], xi)
                     top, bottom = max(top, value), min(bottom, value)
                 for g in range(criteria.shape[0]):
                     best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
@@ -134,14 +134,14 @@ def propose(
                         continue
                     row, xi = space[j], j / (STATIONS - 1.0)
                     for k in range(count):
-                        row[k] = _along(stress, begin + k, base, faces[f], xi)
+                        row[k] = _stress_at_share(stress, begin + k, base, faces[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
                     for end in range(2):  # one place in the code: the compiler works out each anew
                         if end == 0 and p > 0.0:
-                            high_count = _listed(row, first, begin, count, 1.0, ups)
+                            high_count = _list_maxima(row, first, begin, count, 1.0, ups)
                         elif end == 1 and q > 0.0:
-                            low_count = _listed(row, first, begin, count, -1.0, downs)
+                            low_count = _list_maxima(row, first, begin, count, -1.0, downs)
                     for pair in range(high_count * low_count):
                         up, down = ups[pair // low_count], downs[pair % low_count]
                         height = (p * row[up] if p > 0.0 else 0.0) - (q * row[down] if q > 0.0 else 0.0)
@@ -184,29 +184,32 @@ def climb(
                 sign = 1.0 if weight > 0.0 else -1.0
                 k, t = given.at[c, end], 0.0
                 for _ in range(_ITERATIONS):
-                    rate = sign * _along(stress, k, base + 7, face, xi)
+                    rate = sign * _stress_at_share(stress, k, base + 7, face, xi)
                     if rate > 0.0 and k < last and not first[k + 1]:
-                        if sign * _along(stress, k + 1, base + 7, face, xi) < 0.0:
+                        if sign * _stress_at_share(stress, k + 1, base + 7, face, xi) < 0.0:
                             t = 1.0
                             break
                         k += 1
                     elif rate < 0.0 and not first[k]:
                         k -= 1
-                        if sign * _along(stress, k, base + 7, face, xi) > 0.0:
+                        if sign * _stress_at_share(stress, k, base + 7, face, xi) > 0.0:
                             t = 1.0
                             break
                     else:
                         break
                 given.at[c, end] = k
-                f0, g0 = _along(stress, k, base, face, xi), _rising(stress, k, base, face, xi)
+                f0, g0 = _stress_at_share(stress, k, base, face, xi), _slope_at_share(stress, k, base, face, xi)
                 if t == 0.0:
                     angles[c, end] = theta[k]
                     value += weight * f0
                     slope += weight * g0
                     continue
                 h = theta[k + 1] - theta[k]
-                f1, g1 = _along(stress, k + 1, base, face, xi), _rising(stress, k + 1, base, face, xi)
-                s0, s1 = h * _along(stress, k, base + 7, face, xi), h * _along(stress, k + 1, base + 7, face, xi)
+                f1, g1 = _stress_at_share(stress, k + 1, base, face, xi), _slope_at_share(stress, k + 1, base, face, xi)
+                s0, s1 = (
+                    h * _stress_at_share(stress, k, base + 7, face, xi),
+                    h * _stress_at_share(stress, k + 1, base + 7, face, xi),
+                )
                 # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
                 a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
                 width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
@@ -215,7 +218,10 @@ def climb(
                 u = 1.0 - t
                 h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
                 value += weight * (h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1)
-                r0, r1 = h * _rising(stress, k, base + 7, face, xi), h * _rising(stress, k + 1, base + 7, face, xi)
+                r0, r1 = (
+                    h * _slope_at_share(stress, k, base + 7, face, xi),
+                    h * _slope_at_share(stress, k + 1, base + 7, face, xi),
+                )
                 slope += weight * (h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1)
             if slope > 0.0:
                 lower = xi

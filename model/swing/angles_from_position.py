@@ -11,7 +11,7 @@ from ..kinematics.position import motion
 _OFF = 1e-9
 
 
-def angles_of(x: Any, sign: float, side: float, designs: Any) -> Any:
+def crank_angles_at(x: Any, sign: float, side: float, designs: Any) -> Any:
     """Return the crank angles (n,) of designs that put the slider at x (n,); NaN where none does.
 
     sign: +1 on the open branch, -1 on the crossed one. side: +1 with the crank pin left of the line from crank pivot to

@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import Numbers
-from .angles_from_position import angles_of
+from .angles_from_position import crank_angles_at
 from .swing import STARTS, Swing
 
 Complexes = NDArray[np.complex128]
@@ -146,4 +146,4 @@ def _ends(swing: Swing, sign: float, designs: Any, column: int | None) -> tuple[
     if swing.of == "crank":
         return first, last
     side = 1.0 if swing.side == "left" else -1.0
-    return angles_of(first, sign, side, designs), angles_of(last, sign, side, designs)
+    return crank_angles_at(first, sign, side, designs), crank_angles_at(last, sign, side, designs)

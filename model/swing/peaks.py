@@ -20,7 +20,7 @@ from ..signals.cycle_segments import Segments
 from ..signals.peak_search import Maxima, find_maxima
 from .closure import passes
 from .swing import Swing
-from .swing_batch import Many, Pieces
+from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, ERROR
 
 KEPT = 6
@@ -50,7 +50,7 @@ class _Curve:
     toward: the sign (n,) that it is judged by; None for its size.
     """
 
-    many: Many
+    many: SwingBatch
     ways: tuple[Pieces, ...]
     state: int
     numbers: int
@@ -119,7 +119,7 @@ def least_drives(
     Where the least one is below zero, loads push the linkage on, and the drive holds it back.
     """
 
-    def found(many: Many) -> Maxima:
+    def found(many: SwingBatch) -> Maxima:
         first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
         return _maxima(many, (many.pieces(back=back),), DRIVE, kept, gradients, toward)
@@ -132,7 +132,7 @@ def holding_peaks(
 ) -> SwingPeaks:
     """Return the sizes of the drive at the ends of designs (n, 3 + k), without inertia. free: without friction."""
     one = np.ones((1, 3 + len(mechanism.varying)))
-    ways = 2 if Many(mechanism, swing, one, slopes=False, slow=True, free=free).both else 1
+    ways = 2 if SwingBatch(mechanism, swing, one, slopes=False, slow=True, free=free).both else 1
     found = partial(_at_ends, gradients=gradients)
     return _gathered(mechanism, swing, designs, 2 * ways, gradients, found, slow=True, free=free)
 
@@ -143,7 +143,7 @@ def _gathered(
     designs: Array,
     kept: int,
     gradients: bool,
-    of: Callable[[Many], Maxima],
+    of: Callable[[SwingBatch], Maxima],
     *,
     slow: bool = False,
     free: bool = False,
@@ -158,12 +158,12 @@ def _gathered(
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]
-        many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
+        many = SwingBatch(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
         stuck = many.locked()
         if stuck.any():
             values[own[stuck], 0] = np.inf
             own = own[~stuck]
-            many = Many(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
+            many = SwingBatch(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
         if len(own):
             found = of(many)
             values[own], places[own] = found.values, found.places
@@ -174,7 +174,7 @@ def _gathered(
     return SwingPeaks(values, places, slopes if gradients else None)
 
 
-def _peaks(many: Many, state: int, kept: int, gradients: bool) -> Maxima:
+def _peaks(many: SwingBatch, state: int, kept: int, gradients: bool) -> Maxima:
     # A force on the slider has the guide's friction by its size: without slopes its kink needs no cut.
     contacts = gradients or many.swing.driver == "crank"
     forces = state != ERROR
@@ -184,13 +184,13 @@ def _peaks(many: Many, state: int, kept: int, gradients: bool) -> Maxima:
 
 
 def _maxima(
-    many: Many, ways: tuple[Pieces, ...], state: int, kept: int, gradients: bool, toward: Array | None = None
+    many: SwingBatch, ways: tuple[Pieces, ...], state: int, kept: int, gradients: bool, toward: Array | None = None
 ) -> Maxima:
     curve = _Curve(many, ways, state, many.columns if gradients else 0, toward)
     return find_maxima(curve, curve.segments(), np.full(many.count, _PANELS), kept=kept, signed=toward is not None)
 
 
-def _at_ends(many: Many, gradients: bool) -> Maxima:
+def _at_ends(many: SwingBatch, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
     for back in many.ways():
         for share in (0.0, 1.0):

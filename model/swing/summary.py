@@ -10,7 +10,7 @@ from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .swing import Swing, placed, require_swing, slowly
-from .swing_cycle import At, Over
+from .swing_cycle import SwingCycle, SwingPoint
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class SwingSummary:
     linkage: Linkage
     crank_angles: tuple[float, float]
     slider_positions: tuple[float, float]
-    peak_drive: At
+    peak_drive: SwingPoint
     drive_start: tuple[float, float]
     drive_end: tuple[float, float]
     holds: bool
@@ -40,10 +40,10 @@ class SwingSummary:
     energy_back: float
     stored: float
     efficiency: float | None
-    peak_power: At | None
-    least_transmission: At
-    position_error: At | None
-    locked: At | None
+    peak_power: SwingPoint | None
+    least_transmission: SwingPoint
+    position_error: SwingPoint | None
+    locked: SwingPoint | None
 
     @property
     def swing_angle(self) -> float:
@@ -63,11 +63,11 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     """
     own = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, own, swing)
-    over = Over(mechanism, own, swing)
+    over = SwingCycle(mechanism, own, swing)
     ends = np.array([0.0, 1.0])
-    slow = Over(mechanism, own, slowly(swing))
+    slow = SwingCycle(mechanism, own, slowly(swing))
     still = slow.at(ends), slow.at(ends, back=True)
-    free = Over(replace(mechanism, friction=Friction()), own, slow.swing)
+    free = SwingCycle(replace(mechanism, friction=Friction()), own, slow.swing)
     locked = over.first_locked()
     peak = over.greatest("drive")
     power = None if swing.duration is None else over.greatest("power")
@@ -94,7 +94,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     )
 
 
-def _efficiency(slow: Over, free: Over) -> float | None:
+def _efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
     """Return the energy without friction over that with it, of the first way that is driven."""
     for back in (False, True):
         least, spent = free.energy(back=back), slow.energy(back=back)

@@ -19,7 +19,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single import one_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .angles_from_position import angles_of
+from .angles_from_position import crank_angles_at
 from .law import NO_TABLE, spline
 from .swing_types import Driver, Law, Side, Stated
 
@@ -145,7 +145,7 @@ def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
         return swing
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     places, side = np.array([swing.start, swing.end]), 1.0 if swing.side == "left" else -1.0
-    angles = angles_of(places, linkage.sign, side, np.array([[r, l, e], [r, l, e]])).tolist()
+    angles = crank_angles_at(places, linkage.sign, side, np.array([[r, l, e], [r, l, e]])).tolist()
     for place, angle in zip(places.tolist(), angles, strict=True):
         if math.isnan(angle):
             raise AssemblyError(_missed(place, linkage, swing))

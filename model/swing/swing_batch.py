@@ -59,7 +59,7 @@ class Pieces:
         return np.asarray(self.cuts[:, :-1] + 0.382 * np.diff(self.cuts, axis=1))
 
 
-class Many:
+class SwingBatch:
     """Designs that can swing as asked. numbers: raw ones that they set. slopes: whether derivatives are asked for."""
 
     def __init__(
@@ -285,7 +285,7 @@ def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
 
         def work(begin: int, end: int) -> None:
             own = rows[begin:end]
-            found[own] = ~Many(mechanism, swing, designs[own], slopes=False).locked()
+            found[own] = ~SwingBatch(mechanism, swing, designs[own], slopes=False).locked()
 
         in_chunks(len(rows), work)
     return found

@@ -30,7 +30,7 @@ _BISECTIONS = 55
 
 
 @dataclass(frozen=True)
-class At:
+class SwingPoint:
     """A value of a swing and its place: way, share of the time, crank angle, slider position; SI."""
 
     value: float
@@ -41,7 +41,7 @@ class At:
 
 
 @dataclass(frozen=True)
-class Over:
+class SwingCycle:
     """A machine, a linkage and a swing."""
 
     mechanism: Mechanism
@@ -52,17 +52,17 @@ class Over:
         """Return the curves at shares (n,) of the time of one way."""
         return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
 
-    def greatest(self, name: str) -> At:
+    def greatest(self, name: str) -> SwingPoint:
         """Return the greatest size of a curve on both ways."""
         forth, back = (self._extreme(name, way, np.abs) for way in (False, True))
         # The same on both ways but for rounding, as without friction: the first.
         return back if abs(back.value) > abs(forth.value) * (1.0 + _EQUAL) or np.isnan(forth.value) else forth
 
-    def least(self, name: str) -> At:
+    def least(self, name: str) -> SwingPoint:
         """Return the least value of a curve, the same on both ways."""
         return self._extreme(name, False, np.negative)
 
-    def ends_of(self, name: str) -> tuple[At, At]:
+    def ends_of(self, name: str) -> tuple[SwingPoint, SwingPoint]:
         """Return the least and the greatest value of a curve over both ways; NaN where friction locks all over."""
         low, high = (
             [self._extreme(name, way, worth, most=4) for way in (False, True)] for worth in (np.negative, np.positive)
@@ -84,7 +84,7 @@ class Over:
         """Curves of a way between two shares: the extremes of many curves are at the same places, as at the ends."""
         return {}
 
-    def _extreme(self, name: str, back: bool, worth: np.ufunc, most: int = 1) -> At:
+    def _extreme(self, name: str, back: bool, worth: np.ufunc, most: int = 1) -> SwingPoint:
         """Return the extreme of one way. most: how many of the best local ones between the samples are followed."""
         curves = self._sampled[back]
         ranks = _ranks(getattr(curves, name), worth)
@@ -94,16 +94,16 @@ class Over:
         found = [self._refined(name, back, worth, curves, row) for row in dict.fromkeys(best)]
         return found[int(np.argmax(_ranks(np.array([at.value for at in found]), worth)))]
 
-    def _refined(self, name: str, back: bool, worth: np.ufunc, curves: SwingCurves, best: int) -> At:
+    def _refined(self, name: str, back: bool, worth: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
         for _ in range(_ZOOMS):
             low, high = curves.share[max(best - 1, 0)], curves.share[min(best + 1, len(curves.share) - 1)]
             if (back, low, high) not in self._zoomed:
                 self._zoomed[back, low, high] = self.at(np.linspace(low, high, _ZOOMED), back=back)
             curves = self._zoomed[back, low, high]
             best = int(np.argmax(_ranks(getattr(curves, name), worth)))
-        return _place(curves, best, back, float(getattr(curves, name)[best]))
+        return _point_at(curves, best, back, float(getattr(curves, name)[best]))
 
-    def first_locked(self) -> At | None:
+    def first_locked(self) -> SwingPoint | None:
         """Return the first place where friction may lock the linkage, to a bisection between many."""
         if not self.mechanism.friction.acts:
             return None
@@ -114,7 +114,7 @@ class Over:
                 first = int(rows[0])
                 before = share[max(first - 1, 0)]
                 at = self._change(before, share[first], lambda curves: np.isnan(curves.drive), back) if first else 0.0
-                return _place(self.at(np.array([at]), back=back), 0, back, np.nan)
+                return _point_at(self.at(np.array([at]), back=back), 0, back, np.nan)
         return None
 
     def holds(self) -> bool:
@@ -193,7 +193,7 @@ class Over:
             return []
         share = np.linspace(0.0, 1.0, _SIDES)
         found: list[float] = []
-        for side in (_presses, _turns_back):
+        for side in (_guide_pushes_up, _crank_pin_reverses):
             values = side(self.at(share, back=back))
             places = np.flatnonzero(values[:-1] != values[1:]).tolist()
             found += [self._change(share[i], share[i + 1], side, back) for i in places]
@@ -212,16 +212,16 @@ def _ranks(values: Array, worth: np.ufunc) -> Array:
     return np.where(np.isnan(values), -np.inf, worth(values))
 
 
-def _presses(curves: SwingCurves) -> Mask:
+def _guide_pushes_up(curves: SwingCurves) -> Mask:
     return curves.guide > 0.0
 
 
-def _turns_back(curves: SwingCurves) -> Mask:
+def _crank_pin_reverses(curves: SwingCurves) -> Mask:
     return curves.rod_rate > 1.0
 
 
-def _place(curves: SwingCurves, row: int, back: bool, value: float) -> At:
-    return At(
+def _point_at(curves: SwingCurves, row: int, back: bool, value: float) -> SwingPoint:
+    return SwingPoint(
         value,
         back,
         float(curves.share[row]),

@@ -12,11 +12,11 @@ from ..machine.start import Start
 from .swing import Swing, started
 from .swing_types import Driver, Law, Side
 
-_ANGLES, _PLACES = ("start", "end"), ("slider_start", "slider_end")
+_ANGLES, _POSITIONS = ("start", "end"), ("slider_start", "slider_end")
 
 
 @dataclass(frozen=True, kw_only=True)
-class AskedSwing:
+class SwingRequest:
     """Limits and law asked of a swing; None for what stays. start, end: crank angles, rad. slider_start, slider_end: m.
 
     side, driver, law, duration (s), actuator_tolerance (m): as in `Swing`.
@@ -33,20 +33,20 @@ class AskedSwing:
     actuator_tolerance: float | None = None
 
 
-def asked_swing(
-    mechanism: Mechanism, motion: Swing | None, asked: AskedSwing, names: Mapping[str, str] | None = None
+def resolve_swing(
+    mechanism: Mechanism, motion: Swing | None, asked: SwingRequest, names: Mapping[str, str] | None = None
 ) -> tuple[Mechanism, Swing]:
     """Return the swing that is asked for, and the machine without a start of its own.
 
     motion: of the job, from the start that the machine of one design has; None without one. Then the crank drives,
     slowly. A start that is asked for alone takes the end along where the job states the angle or the travel. names: of
-    the fields of `AskedSwing`, for messages, where they are not those of Python. Raises `InputError` for ends of two
+    the fields of `SwingRequest`, for messages, where they are not those of Python. Raises `InputError` for ends of two
     kinds, ends that are missing, and a table of motion that no job gives.
     """
-    said = {name: (names or {}).get(name, name) for name in AskedSwing.__dataclass_fields__}
+    said = {name: (names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
     motion = None if motion is None else started(mechanism, motion)
     given: dict[str, Any] = {
-        **_ends(asked, motion, said),
+        **_requested_ends(asked, motion, said),
         **{
             name: getattr(asked, name)
             for name in ("side", "driver", "law", "duration", "actuator_tolerance")
@@ -68,17 +68,17 @@ def asked_swing(
         found = replace(motion, **given)
     else:
         kept = ("driver", "law", "duration", "points", "actuator_tolerance")
-        found = _new(({} if motion is None else {name: getattr(motion, name) for name in kept}) | given, said)
+        found = _new_swing(({} if motion is None else {name: getattr(motion, name) for name in kept}) | given, said)
     return replace(mechanism, start=Start()), replace(found, follows=False)
 
 
-def _ends(asked: AskedSwing, motion: Swing | None, said: Mapping[str, str]) -> dict[str, Any]:
+def _requested_ends(asked: SwingRequest, motion: Swing | None, said: Mapping[str, str]) -> dict[str, Any]:
     """Return start and end that are asked for, and what they are of."""
-    found = {name: getattr(asked, name) for name in (*_ANGLES, *_PLACES) if getattr(asked, name) is not None}
+    found = {name: getattr(asked, name) for name in (*_ANGLES, *_POSITIONS) if getattr(asked, name) is not None}
     if not found:
         return {}
     of = "crank" if next(iter(found)) in _ANGLES else "slider"
-    own = _ANGLES if of == "crank" else _PLACES
+    own = _ANGLES if of == "crank" else _POSITIONS
     if any(name not in own for name in found):
         raise InputError(
             "a swing runs between two crank angles, or between two places of the slider; got "
@@ -90,9 +90,9 @@ def _ends(asked: AskedSwing, motion: Swing | None, said: Mapping[str, str]) -> d
     return ends | {"of": of}
 
 
-def _new(given: dict[str, Any], said: Mapping[str, str]) -> Swing:
+def _new_swing(given: dict[str, Any], said: Mapping[str, str]) -> Swing:
     slider = given.get("of") == "slider"
-    for name, key in zip(_ANGLES, _PLACES if slider else _ANGLES, strict=True):
+    for name, key in zip(_ANGLES, _POSITIONS if slider else _ANGLES, strict=True):
         if name not in given:
             raise InputError(
                 f"a swing runs from one {'slider position' if slider else 'crank angle'} to another; got no "

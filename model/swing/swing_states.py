@@ -12,7 +12,7 @@ from ..arrays import Array, Whole
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import beside_crank_loads
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Watch, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..dynamics.torque import balance, with_couple
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, seldom_kernel
@@ -130,7 +130,7 @@ def _states(
     rows = blocks.shape[1]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
-    watch = Watch(0, 0.0, 1.0, False, False)
+    watch = CycleWindow(0, 0.0, 1.0, False, False)
     last, last_step = -1, -1
     for p in range(share.shape[0]):
         if which[p] != last:

@@ -17,7 +17,7 @@ from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
 from .closure import passes
 from .swing import Swing
-from .swing_batch import Many, Pieces
+from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, RATE
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
@@ -51,7 +51,9 @@ def graded() -> tuple[Array, Array]:
 
 def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
     """Return the work of the drive on the forward stroke, J, for designs (n, 3 + k)."""
-    return _gathered(mechanism, swing, designs, gradients, lambda rows: _forth(mechanism, swing, rows, gradients))
+    return _for_passing_designs(
+        mechanism, swing, designs, gradients, lambda rows: _forward_work(mechanism, swing, rows, gradients)
+    )
 
 
 def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
@@ -61,12 +63,12 @@ def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
     """
 
     def both_ways(rows: Array) -> tuple[Array, Array]:
-        free = Many(mechanism, swing, rows, slopes=False, free=True)
+        free = SwingBatch(mechanism, swing, rows, slopes=False, free=True)
         ways = [_work(free, free.pieces(back=back), False)[0] for back in (False, True)]
         total = np.add(*ways)
         return -np.where(np.abs(total) <= _EVEN * np.abs(ways[0]), 0.0, total), np.empty((len(rows), 0))
 
-    return _gathered(mechanism, swing, designs, False, both_ways).values
+    return _for_passing_designs(mechanism, swing, designs, False, both_ways).values
 
 
 def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
@@ -74,10 +76,12 @@ def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, grad
 
     Of the way back where only that is driven; NaN where neither is.
     """
-    return _gathered(mechanism, swing, designs, gradients, lambda rows: _efficiency(mechanism, swing, rows, gradients))
+    return _for_passing_designs(
+        mechanism, swing, designs, gradients, lambda rows: _efficiency(mechanism, swing, rows, gradients)
+    )
 
 
-def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, of: Any) -> Work:
+def _for_passing_designs(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, of: Any) -> Work:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     values = np.full(len(designs), np.nan)
     slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))
@@ -85,7 +89,7 @@ def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: boo
 
     def work(begin: int, end: int) -> None:
         own = rows[begin:end]
-        stuck = Many(mechanism, swing, designs[own], slopes=False).locked()
+        stuck = SwingBatch(mechanism, swing, designs[own], slopes=False).locked()
         values[own[stuck]] = np.inf
         own = own[~stuck]
         if len(own):
@@ -97,15 +101,17 @@ def _gathered(mechanism: Mechanism, swing: Swing, designs: Array, gradients: boo
     return Work(values, slopes if gradients else None)
 
 
-def _forth(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
-    many = Many(mechanism, swing, designs, slopes=gradients)
+def _forward_work(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
+    many = SwingBatch(mechanism, swing, designs, slopes=gradients)
     values, slopes = _work(many, many.pieces(back=False), gradients)
     return values, many.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
 
 
 def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     found, slope = np.full(len(designs), np.nan), np.zeros((len(designs), designs.shape[1] if gradients else 0))
-    rubbing, free = (Many(mechanism, swing, designs, slopes=gradients, slow=True, free=each) for each in (False, True))
+    rubbing, free = (
+        SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=each) for each in (False, True)
+    )
     for back in (True, False):  # forth has the last word
         spent, by_spent = _work(rubbing, rubbing.pieces(back=back), gradients)
         least, by_least = _work(free, free.pieces(back=back), gradients)
@@ -118,7 +124,7 @@ def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: b
     return found, slope
 
 
-def _work(many: Many, own: Pieces, gradients: bool) -> tuple[Array, Array]:
+def _work(many: SwingBatch, own: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
     u, w = graded()
     design, piece = np.nonzero(own.live)

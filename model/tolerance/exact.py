@@ -133,8 +133,8 @@ def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array
         for crank, offset in product(r, e):
             take(crank, offset, angles)
     for crank, offset in product(r, e):
-        take(crank, offset, _within(np.arcsin(offset / (l + crank)), middle, turn))
-    take(r[1], 0.0, _within(0.0, middle, turn))
+        take(crank, offset, _clip_angle(np.arcsin(offset / (l + crank)), middle, turn))
+    take(r[1], 0.0, _clip_angle(0.0, middle, turn))
     return best
 
 
@@ -142,13 +142,13 @@ def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
     """Least position on the open branch; arguments as for `_greatest`."""
     best = np.full(middle.shape, np.inf)
     for crank, offset in product(r, e):
-        dead = _within(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
+        dead = _clip_angle(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
         for angles in (*(middle + turn[:, None]), dead):
             np.minimum(best, _position(crank, l, offset, angles), out=best)
     return best
 
 
-def _within(angle: float, middle: Array, turn: Array) -> Array:
+def _clip_angle(angle: float, middle: Array, turn: Array) -> Array:
     """Return a crank angle moved into middle + turn, whole turns left out."""
     away = angle - middle
     return middle + np.clip(away - _TURN * np.round(away / _TURN), *turn)

@@ -25,7 +25,16 @@ import numpy as np
 from ..arrays import Array
 from ..cycle.self_locking import require_driving
 from ..dynamics.crank_loads import beside_crank_loads
-from ..dynamics.segments import Cuts, Watch, cut_cycle, enter, load_on_slider, room_for, with_formulas, within
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    angle_within,
+    cut_cycle,
+    enter,
+    load_on_slider,
+    room_for,
+    with_formulas,
+)
 from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
@@ -36,10 +45,10 @@ from ..machine.derived import derived
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
-from ..signals.signal_inputs import watch_of
+from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
 from .energy import height_energy, moving_inertia
-from .friction_torque import Rubbed, Rubbing, Senses, jamming, least_inertia
+from .friction_torque import CylinderFriction, FrictionState, Senses, jamming_error, least_inertia
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12
@@ -75,12 +84,12 @@ class Terms:
 
 
 @kernel
-def _cut(block: Table, loads: Loads, watch: Watch, cuts: Cuts) -> int:
+def _cut(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
     return cut_cycle(design_at(block, 0), block, 0, loads, watch, cuts)
 
 
 @kernel
-def _enter(block: Table, loads: Loads, watch: Watch, inside: float, piece: Integers, shift: Row) -> bool:
+def _enter(block: Table, loads: Loads, watch: CycleWindow, inside: float, piece: Integers, shift: Row) -> bool:
     _, outward = enter(design_at(block, 0), block, 0, inside, loads, watch, piece, shift)
     return outward
 
@@ -121,13 +130,13 @@ class Span:
         """Return the terms at crank angles (n,), rad."""
         raise NotImplementedError
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction at crank angles, rad, speeds, rad/s, and accelerations (n,), rad/s^2."""
         raise NotImplementedError
 
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
-    ) -> tuple[Array, Rubbed]:
+    ) -> tuple[Array, FrictionState]:
         """Return accelerations (n,), rad/s^2, with friction, and torque and heat of the motion with them.
 
         torque: of the motor on the crank, N m. inertia: of the drive, kg m^2. guess: where an iteration starts. Raises
@@ -189,7 +198,7 @@ class Equation:
         if self.rubs:
             left = self.least_inertia(angles) + added
             if not left.min() > 1e-6 * inertia.max():
-                raise jamming(angles, left)
+                raise jamming_error(angles, left)
 
 
 class Stretch(Span):
@@ -201,16 +210,16 @@ class Stretch(Span):
         self._piece, self._shift = np.zeros(count, np.int64), np.zeros(count)
         self._block, self._loads = equation.block, equation.loads
         counter_clockwise = _enter(
-            self._block, self._loads, equation.watch, within(low, high), self._piece, self._shift
+            self._block, self._loads, equation.watch, angle_within(low, high), self._piece, self._shift
         )
         self._outward = bool(counter_clockwise == (way > 0.0))
         if equation.rubs:
             d = design_at(self._block, _STILL)
-            rod = design_motion(math.sin(within(low, high)), math.cos(within(low, high)), d).rod_1
+            rod = design_motion(math.sin(angle_within(low, high)), math.cos(angle_within(low, high)), d).rod_1
             slide = d.branch * (1.0 if self._outward else -1.0)
             senses = Senses(way, float(slide), math.copysign(1.0, rod * way))
             given = self._block, _PUSH, self._loads, self._outward, senses, self._piece, self._shift
-            self._rubbing = Rubbing(*given)
+            self._rubbing = CylinderFriction(*given)
 
     def at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
@@ -218,13 +227,13 @@ class Stretch(Span):
         _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction, (n,)."""
         return self._rubbing.at(crank_angle, speed, acceleration)
 
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
-    ) -> tuple[Array, Rubbed]:
+    ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and torque and heat with them, (n,)."""
         return self._rubbing.under(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
 
@@ -244,7 +253,7 @@ class CrankEquation(Equation):
             require_driving(mechanism.friction, linkage)
         require_one_cylinder(mechanism.arrangement, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
-        self.loads, self.watch = load_structure(mechanism), watch_of(mechanism, Signal.TORQUE)
+        self.loads, self.watch = load_structure(mechanism), cycle_window(mechanism, Signal.TORQUE)
         raw = np.repeat(raw_vector(mechanism)[:, None], 5, axis=1)
         raw[:3] = np.array([[float(linkage.crank)], [float(linkage.rod)], [float(linkage.offset)]])
         raw[Raw.SPEED] = raw[Raw.ACCELERATION] = 0.0

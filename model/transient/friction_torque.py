@@ -55,7 +55,7 @@ class Senses(NamedTuple):
     swing: float
 
 
-class Rubbed(NamedTuple):
+class FrictionState(NamedTuple):
     """State of motion at crank angles (n,), with friction.
 
     torque: on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed: its
@@ -95,13 +95,13 @@ def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> A
 
 
 @analytic
-def settled(step: Any, last: Any) -> bool:
+def has_converged(step: Any, last: Any) -> bool:
     """Return whether the iteration ends with a step and the one before it, both as shares of the acceleration."""
     return bool(step <= _SETTLED or (step <= _ROUNDING and step >= 0.5 * last))
 
 
 @analytic
-def narrowed(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -> Any:
+def next_acceleration(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -> Any:
     """Return the next acceleration of Newton's iteration, and the bracket of its root.
 
     excess: motor torque less what the motion takes at a, N m. slope, least: of what it takes, with the drive's inertia.
@@ -114,7 +114,7 @@ def narrowed(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -
 
 
 @seldom_kernel
-def _rubbed(
+def _fill_friction_states(
     stepped: ComplexTable,
     block: Table,
     push: int,
@@ -132,7 +132,7 @@ def _rubbed(
     by_speed: bool,
     out: Table,
 ) -> None:
-    """Fill the rows of `out` (6, n): those of `Rubbed`, in its order.
+    """Fill the rows of `out` (6, n): those of `FrictionState`, in its order.
 
     stepped: the design, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
     acceleration 1, without gravity. Loads' pieces are those of the span. most: steps by which accelerations are solved
@@ -164,11 +164,11 @@ def _rubbed(
                 break
             if steps < most and least + inertia > 0.0:
                 excess = torques[i] - inertia * a - torque.real
-                new, low, high = narrowed(a, excess, rate + inertia, least + inertia, low, high)
+                new, low, high = next_acceleration(a, excess, rate + inertia, least + inertia, low, high)
                 size = abs(new) + (abs(torques[i]) + abs(torque.real)) / (least + inertia)
                 step = abs(new - a) / size if size > 0.0 else 0.0
                 a, steps = new, steps + 1
-                if not settled(step, last):
+                if not has_converged(step, last):
                     last = step
                     continue
             accelerations[i] = a
@@ -185,7 +185,7 @@ def _rubbed(
             by = 1
 
 
-class Rubbing:
+class CylinderFriction:
     """Friction of one cylinder between two breakpoints.
 
     block: columns of the design; push: the one at speed 0 and acceleration 1, without gravity. piece, shift: of the
@@ -198,36 +198,36 @@ class Rubbing:
         stepped = np.array(block[:, :1], dtype=np.complex128)
         self._given = stepped, block, push, loads, outward, senses, piece, shift
 
-    def at(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+    def at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat of a motion (n,)."""
         return self._fill(crank_angle, speed, acceleration, np.empty(0), 0.0, 0, by_speed=True)
 
     def under(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
-    ) -> tuple[Array, Rubbed]:
+    ) -> tuple[Array, FrictionState]:
         """Return the accelerations under a torque of the motor, and torque and heat of the motion with them."""
         found = np.array(guess)
         state = self._fill(crank_angle, speed, found, torque, inertia, ITERATIONS, by_speed=by_speed)
-        require_single(crank_angle, state.least + inertia)
+        require_inertia_left(crank_angle, state.least + inertia)
         return found, state
 
     def _fill(
         self, angle: Array, speed: Array, found: Array, torque: Array, inertia: float, most: int, *, by_speed: bool
-    ) -> Rubbed:
+    ) -> FrictionState:
         out = np.empty((6, len(angle)))
-        _rubbed(*self._given, angle, speed, found, torque, inertia, most, by_speed, out)
+        _fill_friction_states(*self._given, angle, speed, found, torque, inertia, most, by_speed, out)
         torque, by_acceleration, rate, least, heat, _ = out
-        return Rubbed(torque, by_acceleration, rate, least, heat, out[5:])
+        return FrictionState(torque, by_acceleration, rate, least, heat, out[5:])
 
 
-def require_single(angle: Array, left: Array) -> None:
+def require_inertia_left(angle: Array, left: Array) -> None:
     """Raise `InputError` where friction may jam a crank. angle: rad. left: inertia that friction leaves, kg m^2."""
     if not (left > 0.0).all():
-        raise jamming(angle, left)
+        raise jamming_error(angle, left)
 
 
-def jamming(angle: Array, left: Array) -> InputError:
-    """Return the error of a crank that friction may jam where least inertia is left; see `require_single`."""
+def jamming_error(angle: Array, left: Array) -> InputError:
+    """Return the error of a crank that friction may jam where least inertia is left; see `require_inertia_left`."""
     worst = int(np.argmin(np.where(np.isnan(left), -np.inf, left)))
     return InputError(
         "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "
@@ -237,8 +237,8 @@ def jamming(angle: Array, left: Array) -> InputError:
     )
 
 
-def added_up(parts: list[Rubbed]) -> Rubbed:
+def sum_cylinders(parts: list[FrictionState]) -> FrictionState:
     """Return the state of a shaft from those of its cylinders."""
     guides = np.concatenate([part.guides for part in parts])
     torque, by_acceleration, by_speed, least, heat = np.sum([part[:-1] for part in parts], axis=0)
-    return Rubbed(torque, by_acceleration, by_speed, least, heat, guides)
+    return FrictionState(torque, by_acceleration, by_speed, least, heat, guides)

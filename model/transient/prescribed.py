@@ -84,7 +84,7 @@ class SpeedOverTime:
 
         spline = CubicSpline(at, values)
         turned = spline.antiderivative()
-        return cls(_inside(spline, at), _inside(spline.derivative(), at), lambda t: start + turned(t))
+        return cls(_bounded_spline(spline, at), _bounded_spline(spline.derivative(), at), lambda t: start + turned(t))
 
 
 def over_angle(
@@ -186,7 +186,7 @@ def _table(what: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Arr
     return points, values
 
 
-def _inside(spline: Any, at: Array) -> Function:
+def _bounded_spline(spline: Any, at: Array) -> Function:
     """Return a spline that refuses what lies beyond its table."""
 
     def inside(time: Array) -> Array:

@@ -17,7 +17,14 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import Member, members
 from ..machine.two_turns import cycle_turns, half_at, halves
 from .equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
-from .friction_torque import ITERATIONS, Rubbed, added_up, narrowed, require_single, settled
+from .friction_torque import (
+    ITERATIONS,
+    FrictionState,
+    has_converged,
+    next_acceleration,
+    require_inertia_left,
+    sum_cylinders,
+)
 
 
 class ShaftStretch(Span):
@@ -35,26 +42,26 @@ class ShaftStretch(Span):
         columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in found), strict=True)
         return Terms(*(np.sum(column, axis=0) for column in columns))
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> Rubbed:
+    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction of all cylinders, (n,)."""
-        return added_up([stretch.rubbed(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts])
+        return sum_cylinders([stretch.rubbed(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts])
 
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
-    ) -> tuple[Array, Rubbed]:
+    ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and torque and heat of all cylinders with them, (n,)."""
         found, last = np.array(guess), math.inf
         low, high = np.full(found.shape, -np.inf), np.full(found.shape, np.inf)
         for _ in range(ITERATIONS):
             state = self.rubbed(crank_angle, speed, found)
             least = state.least + inertia
-            require_single(crank_angle, least)
+            require_inertia_left(crank_angle, least)
             excess = torque - inertia * found - state.torque
-            new, low, high = narrowed(found, excess, state.by_acceleration + inertia, least, low, high)
+            new, low, high = next_acceleration(found, excess, state.by_acceleration + inertia, least, low, high)
             size = np.abs(new) + (np.abs(torque) + np.abs(state.torque)) / least
             step = float((np.abs(new - found) / np.where(size > 0.0, size, 1.0)).max())
             found = new
-            if settled(step, last):
+            if has_converged(step, last):
                 break
             last = step
         return found, state

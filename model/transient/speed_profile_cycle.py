@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.crank_speed import pace, pace_knots
+from ..cycle.crank_speed import crank_speed, speed_knots
 from ..cycle.cycle import Cycle, breakpoints, cycle
 from ..cycle.shaking import shaking_curves
 from ..errors import InputError
@@ -35,7 +35,7 @@ _SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration
 
 
 @dataclass(frozen=True)
-class UnevenCurves:
+class SpeedProfileCurves:
     """Crank speed, rad/s, and acceleration, rad/s^2, over the crank angle (n,), and the curves of the cycle there.
 
     others: curves (n,) by name, SI: forces of the joints by their size, shaking force and moment, power.
@@ -48,7 +48,7 @@ class UnevenCurves:
 
 
 @dataclass(frozen=True)
-class UnevenCycle:
+class SpeedProfileCycle:
     """Numbers over a turn, SI.
 
     period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over the mean speed.
@@ -72,9 +72,9 @@ class UnevenCycle:
         return self.work / self.period
 
 
-def uneven_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> UnevenCurves:
+def speed_profile_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> SpeedProfileCurves:
     """Return the curves of one fully turning linkage at crank angles (n,), rad."""
-    speed, acceleration = pace(mechanism, crank_angle)
+    speed, acceleration = crank_speed(mechanism, crank_angle)
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     others = {
@@ -89,10 +89,10 @@ def uneven_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) ->
         "slider_acceleration": curves.slider_acceleration,
         "shaking_moment": shaken.moment,
     }
-    return UnevenCurves(speed, acceleration, curves, others)
+    return SpeedProfileCurves(speed, acceleration, curves, others)
 
 
-def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
+def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileCycle:
     """Return the numbers of one fully turning linkage over a turn; of a cycle of two turns, per turn.
 
     Raises `InputError` for a machine at rest or under a constant acceleration, and where friction locks the linkage.
@@ -105,12 +105,12 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
         )
 
     def followed(theta: Array) -> Array:
-        found = uneven_curves(mechanism, linkage, theta)
+        found = speed_profile_curves(mechanism, linkage, theta)
         rows = [found.speed, found.acceleration, 1.0 / np.abs(found.speed), *(found.others[name] for name in _SIZES)]
         return np.stack([*rows, *(found.others[name] ** 2 for name in _SQUARES)])
 
     turns = cycle_turns(mechanism)
-    cuts, knots = breakpoints(mechanism, linkage), pace_knots(mechanism)
+    cuts, knots = breakpoints(mechanism, linkage), speed_knots(mechanism)
     start, end = cuts[0], cuts[0] + turns * TURN
     at = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
     ends = np.unique(np.concatenate([cuts, *at, np.linspace(start, end, 1 + turns * _PIECES)]))
@@ -124,7 +124,7 @@ def uneven_cycle(mechanism: Mechanism, linkage: Linkage) -> UnevenCycle:
         peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), angle_in_cycle(top.angle, turns * TURN))
     way, torque = mechanism.direction, 3 + _SIZES.index("torque")
     mean = found.mean(torque)
-    return UnevenCycle(
+    return SpeedProfileCycle(
         least_speed=Extreme(least.value, angle_in_cycle(least.angle, TURN)),
         greatest_speed=Extreme(greatest.value, angle_in_cycle(greatest.angle, TURN)),
         acceleration=_size(found.extremes(1), 1),

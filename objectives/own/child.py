@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.complex_forces import follow_forces
+from ...model.signals.complex_forces import complex_joint_forces
 from .apply import Answer, Function, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 
@@ -83,7 +83,7 @@ class Timed(Designs):
         if rubs not in self.compiled:
             self.watch.__exit__()
             type(self).wait()
-            follow_forces(self.mechanism, self._dimensions[:1].astype(complex), np.zeros((1, 1), complex))
+            complex_joint_forces(self.mechanism, self._dimensions[:1].astype(complex), np.zeros((1, 1), complex))
             self.compiled.add(rubs)
             self.watch.__enter__()
         return super().forces(angle)

@@ -16,7 +16,7 @@ from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.complex_forces import follow_forces
+from ...model.signals.complex_forces import complex_joint_forces
 from ..needs import ONE_TIMING
 
 Numbers = NDArray[Any]
@@ -159,7 +159,7 @@ class Designs:
                 "quantities that come with the software, also in a formula"
             )
         shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
-        found, load = follow_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
+        found, load = complex_joint_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
         parts: list[Numbers] = [*found, load]
         if not (np.iscomplexobj(self._dimensions) or np.iscomplexobj(angle)):
             parts = [part.real for part in parts]

@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.cycle.crank_speed import pace_knots
+from ...model.cycle.crank_speed import speed_knots
 from ...model.cycle.cycle import breakpoints
-from ...model.cycle.multi_cylinder import whole_breakpoints
+from ...model.cycle.multi_cylinder import multi_cylinder_breakpoints
 from ...model.cycle.self_locking import locking_margin
 from ...model.dynamics.segments import crowded, crowding, uncrowded
 from ...model.linkage.linkage import Linkage
@@ -152,10 +152,12 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
     cuts = breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage)
     ends = [float(angle) for angle in linkage.dead_centre_angles]
     fixed = np.mod([*ends, 0.5 * math.pi, 1.5 * math.pi], _TURN)
-    fixed = np.concatenate([fixed, np.mod(pace_knots(mechanism), _TURN)])
+    fixed = np.concatenate([fixed, np.mod(speed_knots(mechanism), _TURN)])
     every = [cuts, *(fixed + turn * _TURN for turn in range(cycle_turns(mechanism)))]
     if mechanism.arrangement is not None:
-        every.append(whole_breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage))
+        every.append(
+            multi_cylinder_breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage)
+        )
     return np.unique(np.mod(np.concatenate(every), cycle_turns(mechanism) * _TURN))
 
 

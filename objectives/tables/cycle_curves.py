@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.cycle.crank_speed import bend, pace
+from ...model.cycle.crank_speed import acceleration_slope, crank_speed
 from ...model.cycle.cycle import cycle
-from ...model.cycle.multi_cylinder import whole_curves
+from ...model.cycle.multi_cylinder import multi_cylinder_curves
 from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.linkage.linkage import Linkage
@@ -83,7 +83,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     theta = acting.crank_angle
     torque, of = acting.torque, ""
     if cylinder_count(mechanism) > 1:
-        torque, of = whole_curves(mechanism, linkage, theta).torque, " of all cylinders"
+        torque, of = multi_cylinder_curves(mechanism, linkage, theta).torque, " of all cylinders"
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
     third = third_derivative(sine, cosine, m, linkage.crank)
@@ -98,7 +98,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("rod_angle", "rod angle", direction(m.across, m.along), ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, ANGLE),
         Curve("torque", f"drive torque{of}", torque, TORQUE),
-        Curve("power", f"drive power{of}", pace(mechanism, theta)[0] * torque if speed else nothing, POWER),
+        Curve("power", f"drive power{of}", crank_speed(mechanism, theta)[0] * torque if speed else nothing, POWER),
         Curve("load", "load on the slider", acting.load, FORCE),
         *(
             Curve(name, f"{name[:-2].replace('_', ' ')} force along {name[-1]}", getattr(acting, name), FORCE)
@@ -144,5 +144,7 @@ def _jerk(mechanism: Mechanism, m: Motion, third: Array, theta: Array) -> Array:
     """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta), a the crank's acceleration; third: x''', m."""
     if mechanism.speed_profile is None:
         return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
-    speed, acceleration = pace(mechanism, theta)
-    return np.asarray((third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * bend(mechanism, theta)) * speed)
+    speed, acceleration = crank_speed(mechanism, theta)
+    return np.asarray(
+        (third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * acceleration_slope(mechanism, theta)) * speed
+    )

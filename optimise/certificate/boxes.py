@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import is_shaft
 from ...model.machine.raw import Raw, raw_vector
 from ...model.machine.two_turns import cycle_turns, halves
-from ...model.signals.shaft_statistics import apart
+from ...model.signals.shaft_statistics import equivalent_single_cranks
 from ...model.signals.signals import Signal
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
@@ -64,7 +64,7 @@ def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
 
     Of a cycle of two turns each turn is one.
     """
-    single = apart(mechanism, signal) if is_shaft(mechanism) else (mechanism,)
+    single = equivalent_single_cranks(mechanism, signal) if is_shaft(mechanism) else (mechanism,)
     if not signal.needs_forces:
         return single
     return tuple(half for one in single for half in (halves(one) if cycle_turns(one) > 1 else (one,)))

@@ -24,7 +24,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw import Loads
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
-from ...model.signals.signal_inputs import inputs_of, watch_of
+from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal, size_of_force
 from ...objectives.cycle_peak import CyclePeak
 from .enclosure import UNIT, Enclosure, beside, between, chosen
@@ -51,8 +51,8 @@ class Curve:
     def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
         self.kind, self.peak = peak.signal, peak
         self.mechanism = mechanism
-        self.raw, self.loads = inputs_of(mechanism, peak.signal)
-        self.watch = watch_of(mechanism, peak.signal, during=peak.during)
+        self.raw, self.loads = signal_inputs(mechanism, peak.signal)
+        self.watch = cycle_window(mechanism, peak.signal, during=peak.during)
         self.direction = 1.0 if mechanism.speed >= 0.0 else -1.0
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
         self.jumps = self.watch.split and peak.signal not in (Signal.TORQUE, Signal.POWER)

@@ -340,10 +340,10 @@ class Problem:
         pass, ends that are missing or of two kinds, and as `analyse` does.
         """
         from ...model.swing.summary import summarise
-        from ...model.swing.swing_request import AskedSwing, asked_swing
+        from ...model.swing.swing_request import SwingRequest, resolve_swing
 
         self._require_chosen()
-        asked = AskedSwing(
+        asked = SwingRequest(
             start=start,
             end=end,
             slider_start=slider_start,
@@ -355,7 +355,7 @@ class Problem:
             actuator_tolerance=actuator_tolerance,
         )
         machine, sizes = one_design(self.mechanism, design)
-        machine, swing = asked_swing(machine, self.motion, asked, {"side": "crank_side"})
+        machine, swing = resolve_swing(machine, self.motion, asked, {"side": "crank_side"})
         return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
 
     def _require_chosen(self) -> None:

@@ -10,7 +10,7 @@ from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
-from ...model.machine.loads.load_text import between
+from ...model.machine.loads.load_text import range_text
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.two_turns import cycle_turns
@@ -114,7 +114,7 @@ def _machine(problem: Problem) -> list[str]:
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
     if len(low) != len(high):  # a number that is zero at one end leaves its line out
         return machine_in_words(problem, problem.mechanism)
-    return [between(one, other) for one, other in zip(low, high, strict=True)]
+    return [range_text(one, other) for one, other in zip(low, high, strict=True)]
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.multi_cylinder import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -22,7 +22,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import load_job
 from tests.model.bodies import bodies
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
@@ -274,9 +274,9 @@ def test_rms_torque_along_a_profile_is_over_time(seed: int) -> None:
     assert average_torque(case.machine, case.design[None]).rms[0] == pytest.approx(wanted, rel=1e-9)
     linkage = linkage_of(case.design, case.machine.branch)
     if case.machine.arrangement is not None:
-        assert whole_cycle(case.machine, linkage).rms == pytest.approx(wanted, rel=1e-9)
+        assert multi_cylinder_cycle(case.machine, linkage).rms == pytest.approx(wanted, rel=1e-9)
     else:
-        assert uneven_cycle(case.machine, linkage).rms_torque == pytest.approx(wanted, rel=1e-9)
+        assert speed_profile_cycle(case.machine, linkage).rms_torque == pytest.approx(wanted, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -287,7 +287,7 @@ def test_rms_shaking_along_a_profile_is_over_time(seed: int) -> None:
     for kind, rms in zip((Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT), wanted, strict=True):
         assert average(case.machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-9)
     if case.machine.arrangement is not None:
-        whole = whole_cycle(case.machine, linkage_of(case.design, case.machine.branch))
+        whole = multi_cylinder_cycle(case.machine, linkage_of(case.design, case.machine.branch))
         assert (whole.rms_shaking_force, whole.rms_shaking_moment) == pytest.approx(wanted, rel=1e-9)
 
 
@@ -299,4 +299,4 @@ def test_a_feeder_at_2400_rpm_heats_its_motor_by_the_time_it_takes(
     machine = load_job(pytestconfig.rootpath / "runs/feeder.toml").mechanism
     machine = replace(machine, speed_profile=Harmonics(cosines=(cosine,)))
     assert average_torque(machine, FEEDER).rms[0] == pytest.approx(rms, abs=0.005)
-    assert uneven_cycle(machine, linkage_of(FEEDER[0])).rms_torque == pytest.approx(rms, abs=0.005)
+    assert speed_profile_cycle(machine, linkage_of(FEEDER[0])).rms_torque == pytest.approx(rms, abs=0.005)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage.from_slider import CrankSolution, reach
+from slidercrank.model.linkage.from_slider import CrankSolution, slider_ranges
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch
 from tests.model.cases import Array, linkage_of, random_designs
@@ -87,7 +87,7 @@ def test_as_many_solutions_as_a_dense_sweep_finds(branch: Branch) -> None:
     for row in short_rods(400, seed=37):
         linkage, size = linkage_of(row, branch), row[0] + row[1]
         position = random.uniform(-1.0, 1.0) * size
-        if min(abs(position - end) for ends in reach(linkage) for end in ends) < 1e-4 * size:
+        if min(abs(position - end) for ends in slider_ranges(linkage) for end in ends) < 1e-4 * size:
             continue  # the sweep may step over two solutions next to a dead centre
         crossings = sum(int(np.sum(np.diff(swept > position))) for swept in swept_positions(linkage))
         found: tuple[CrankSolution, ...] = ()
@@ -109,7 +109,7 @@ def test_the_reach_is_that_of_a_dense_sweep(branch: Branch) -> None:
         expected = sorted((float(swept.min()), float(swept.max())) for swept in swept_positions(linkage))
         # A top between two of the 20,001 angles is missed by the square of their distance; an end of an arc, by the
         # root of the rounding of its angle.
-        np.testing.assert_allclose(reach(linkage), expected, rtol=0, atol=1e-6 * (row[0] + row[1]))
+        np.testing.assert_allclose(slider_ranges(linkage), expected, rtol=0, atol=1e-6 * (row[0] + row[1]))
         counts.append(len(expected))
     assert min(counts.count(1), counts.count(2)) > 20
 
@@ -141,7 +141,7 @@ def test_beside_a_dead_centre_there_are_two_solutions() -> None:
 
 def test_a_crank_longer_than_the_rod_has_its_folded_dead_centre_on_the_far_side() -> None:
     linkage = Linkage(0.1, 0.06, 0.01)
-    (near, far) = reach(linkage)
+    (near, far) = slider_ranges(linkage)
     folded = -math.sqrt(0.04**2 - 0.01**2)
     assert near[1] == pytest.approx(folded, rel=1e-14)
     assert far[1] == pytest.approx(math.sqrt(0.16**2 - 0.01**2), rel=1e-14)
@@ -180,7 +180,7 @@ def test_the_ends_of_the_reach_as_a_refusal_tells_them_are_in_reach(branch: Bran
         with pytest.raises(AssemblyError, match="must be in reach") as refused:
             linkage.from_slider(2.0 * (row[0] + row[1]))
         told = re.findall(r"(-?[\d.e-]+) mm", str(refused.value).partition("; got")[0])
-        assert len(told) == 2 * len(reach(linkage))
+        assert len(told) == 2 * len(slider_ranges(linkage))
         for end in told:
             assert linkage.from_slider(float(end) / 1e3)
 

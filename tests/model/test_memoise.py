@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.memoise import remembered
+from slidercrank.model.machine.memoise import memoise_by_machine
 
 
 def test_an_answer_is_kept_for_the_same_object_and_arguments_alone() -> None:
     asked: list[tuple[float, str, bool]] = []
 
-    @remembered
+    @memoise_by_machine
     def answer(mechanism: Mechanism, kind: str, *, whole: bool = True) -> float:
         asked.append((mechanism.speed, kind, whole))
         return mechanism.speed

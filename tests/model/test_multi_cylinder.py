@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import alone, members
+from slidercrank.model.machine.members import members, single_cylinder
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -68,15 +68,15 @@ def test_the_whole_is_the_sum_of_single_runs(seed: int) -> None:
         torque[1] += own.moment
         mean += average_torque(alone, np.array([[linkage.crank, linkage.rod, linkage.offset]])).mean[0]
     size = np.abs(torque[0]).max()
-    assert whole_curves(machine, linkage, theta).torque == pytest.approx(at, rel=1e-12, abs=1e-12 * size)
-    found = whole_cycle(machine, linkage)
+    assert multi_cylinder_curves(machine, linkage, theta).torque == pytest.approx(at, rel=1e-12, abs=1e-12 * size)
+    found = multi_cylinder_cycle(machine, linkage)
     assert found.mean == pytest.approx(mean, rel=1e-10, abs=1e-10 * size)
     for extreme, sign in (
         (found.greatest, 1.0),
         (found.least, -1.0),
     ):  # none beyond, and one of its two limits is there
         assert sign * extreme.value >= (sign * torque[0]).max() - 1e-10 * size
-        near = whole_curves(machine, linkage, extreme.angle + np.array([-1e-10, 1e-10])).torque
+        near = multi_cylinder_curves(machine, linkage, extreme.angle + np.array([-1e-10, 1e-10])).torque
         assert np.abs(near - extreme.value).min() < 1e-7 * size
     assert found.rms == pytest.approx(math.sqrt(np.mean(torque[0] ** 2)), rel=1e-5)
     assert found.fluctuation == pytest.approx(math.sqrt(np.mean((torque[0] - mean) ** 2)), rel=1e-4)
@@ -91,8 +91,8 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
     """To 1e-10, from other formulas: those of the quantities."""
     machine, linkage = random_whole(3 * seed + 1)
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
-    found = whole_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
-    machine = alone(machine)
+    found = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
+    machine = single_cylinder(machine)
     peak = find_peaks(machine, Signal.TORQUE, design, kept=1)
     averages = average_torque(machine, design)
     assert abs(found.peak.value) == pytest.approx(peak.values[0, 0], rel=1e-10)
@@ -113,19 +113,19 @@ def test_textbook_engines_balance() -> None:
     Norton, Design of Machinery, chapter 14: a four-cylinder in line shakes with twice the crank's speed.
     """
     four = Arrangement(phases=degrees(0, 180, 180, 0), places=(-0.15, -0.05, 0.05, 0.15))
-    curves = whole_curves(replace(PISTONS, arrangement=four), INLINE, DENSE)
+    curves = multi_cylinder_curves(replace(PISTONS, arrangement=four), INLINE, DENSE)
     spectrum = np.abs(np.fft.rfft(curves.force_x)) / len(DENSE)
     assert spectrum[[1, 3]] == pytest.approx([0.0, 0.0], abs=1e-12 * spectrum[2])
     # Second harmonic of the piston's acceleration, r w^2 (A - A^3 / 4 ...): to the first term A = r / l, 5 %.
     assert 2.0 * spectrum[2] == pytest.approx(4 * 0.4 * 0.04 * 100.0**2 * 0.04 / 0.13, rel=0.05)
-    assert whole_cycle(replace(PISTONS, arrangement=four), INLINE).couple.value == 0.0
+    assert multi_cylinder_cycle(replace(PISTONS, arrangement=four), INLINE).couple.value == 0.0
     six = Arrangement(phases=degrees(0, 120, 240, 240, 120, 0), places=(-0.25, -0.15, -0.05, 0.05, 0.15, 0.25))
-    found = whole_cycle(replace(PISTONS, arrangement=six), INLINE)
-    one = whole_cycle(replace(PISTONS, arrangement=Arrangement(phases=(0.0,))), INLINE)
+    found = multi_cylinder_cycle(replace(PISTONS, arrangement=six), INLINE)
+    one = multi_cylinder_cycle(replace(PISTONS, arrangement=Arrangement(phases=(0.0,))), INLINE)
     assert found.couple.value == 0.0
     assert found.shaking_force.value < 2e-3 * one.shaking_force.value  # the sixth harmonic is left
     boxer = Arrangement(phases=degrees(0, 180), banks=degrees(0, 180), places=(-0.02, 0.02))
-    found = whole_cycle(replace(PISTONS, arrangement=boxer), INLINE)
+    found = multi_cylinder_cycle(replace(PISTONS, arrangement=boxer), INLINE)
     assert found.shaking_force.value == 0.0
     assert found.couple.value == pytest.approx(0.04 * one.shaking_force.value, rel=1e-12)
 
@@ -146,7 +146,7 @@ def test_a_cylinder_turned_with_its_bank_gives_the_same_power_to_gravity() -> No
 
     for theta in (0.1, 1.7, 4.4):
         slope = (energy(theta + 1e-5) - energy(theta - 1e-5)) / 2e-5
-        found = whole_curves(replace(machine, arrangement=arrangement), linkage, theta).torque[0]
+        found = multi_cylinder_curves(replace(machine, arrangement=arrangement), linkage, theta).torque[0]
         assert found == pytest.approx(slope, rel=1e-6)
 
 

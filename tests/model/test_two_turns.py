@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
 from slidercrank.model.cycle.efficiency import energies
-from slidercrank.model.cycle.multi_cylinder import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
@@ -90,7 +90,7 @@ def test_peaks_and_means_are_those_of_both_turns(seed: int) -> None:
         cuts = breakpoints(machine, linkage)
         assert (np.diff(cuts) > 0.0).all()
         assert (cuts < 2.0 * TURN).all()
-        whole = whole_cycle(replace(machine, arrangement=Arrangement(phases=(0.0,))), linkage)
+        whole = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.0,))), linkage)
         assert abs(whole.peak.value) == pytest.approx(peaks.values[n, 0], rel=1e-10)
         assert whole.rms == pytest.approx(averages.rms[n], rel=1e-9)
         if n or seed > 3:
@@ -160,7 +160,7 @@ def test_four_cylinders_of_four_strokes_fire_one_after_the_other() -> None:
     linkage = Linkage(0.03, 0.11, 0.0)
     phases = tuple(math.radians(angle) for angle in (0, 180, 360, 540))
     four = replace(machine, arrangement=Arrangement(phases=phases, places=(0.0, 0.1, 0.2, 0.3)))
-    found = whole_cycle(four, linkage)
+    found = multi_cylinder_cycle(four, linkage)
     assert found.mean == pytest.approx(4.0 * average_torque(machine, np.array([[0.03, 0.11, 0.0]])).mean[0], rel=1e-10)
     spectrum = np.abs(np.fft.rfft(sum(cycle(machine, linkage, DENSE + phase).torque for phase in phases)))
     assert spectrum[[1, 2, 3]] == pytest.approx(0.0, abs=1e-9 * spectrum[4])

@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 
 from slidercrank import solve
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import alone, members
+from slidercrank.model.machine.members import members, single_cylinder
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
@@ -61,9 +61,9 @@ def row(linkage: Linkage) -> Array:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_peaks_and_averages_of_the_whole_are_those_of_polynomials_through_its_sum(seed: int) -> None:
-    """Another formulation: `whole_cycle` adds curves up first; two to six cylinders in banks, a third with friction."""
+    """Compare with `multi_cylinder_cycle`, which adds curves first: 2 to 6 cylinders in banks, some with friction."""
     machine, linkage = random_whole(seed)
-    whole, design = whole_cycle(machine, linkage), row(linkage)
+    whole, design = multi_cylinder_cycle(machine, linkage), row(linkage)
     for kind, wanted, rms in (
         (Signal.TORQUE, abs(whole.peak.value), whole.rms),
         (Signal.SHAKING_FORCE, whole.shaking_force.value, whole.rms_shaking_force),
@@ -82,7 +82,7 @@ def test_peaks_and_averages_of_the_whole_are_those_of_polynomials_through_its_su
 def test_peaks_along_a_profile_are_those_of_its_curves(seed: int) -> None:
     """Every second machine has friction; its guide changes sides elsewhere than at constant speed."""
     machine, linkage = random_uneven(seed, friction=seed % 2 == 0)
-    found, design = uneven_cycle(machine, linkage), row(linkage)
+    found, design = speed_profile_cycle(machine, linkage), row(linkage)
     for name, kind in MOVING.items():
         wanted = found.peaks[name].value
         assert find_peaks(machine, kind, design, kept=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
@@ -96,7 +96,7 @@ def test_peaks_along_a_profile_are_those_of_its_curves(seed: int) -> None:
 def test_the_jerk_along_a_profile_is_the_slope_of_the_acceleration() -> None:
     machine, linkage = random_uneven(5)
     theta, h = np.linspace(0.0, TURN, 2000, endpoint=False), 1e-5
-    ahead, behind = (uneven_curves(machine, linkage, theta + step) for step in (h, -h))
+    ahead, behind = (speed_profile_curves(machine, linkage, theta + step) for step in (h, -h))
     slope = (ahead.curves.slider_acceleration - behind.curves.slider_acceleration) / (2.0 * h)
     jerk = np.abs(slope * 0.5 * (ahead.speed + behind.speed))
     found = find_peaks(machine, Signal.SLIDER_JERK, row(linkage), kept=1)
@@ -192,7 +192,7 @@ def test_four_strokes_in_line_are_a_dense_sweep_of_their_sum() -> None:
         torque += cycle(own.mechanism, linkage, theta + own.lead).torque
     found = find_peaks(machine, Signal.TORQUE, design, kept=1)
     assert found.values[0, 0] == pytest.approx(np.abs(torque).max(), rel=1e-6)
-    at = whole_curves(machine, linkage, found.angles[0] + np.array([-1e-9, 1e-9])).torque
+    at = multi_cylinder_curves(machine, linkage, found.angles[0] + np.array([-1e-9, 1e-9])).torque
     assert np.abs(at).max() == pytest.approx(found.values[0, 0], rel=1e-6)
     assert average(machine, Signal.TORQUE, design).rms[0] == pytest.approx(math.sqrt(np.mean(torque**2)), rel=1e-5)
 
@@ -203,7 +203,9 @@ def test_works_and_volumes_are_those_of_all_cylinders_and_ratios_those_of_one() 
         **dict.fromkeys(("indicated_work", "displacement_volume", "delivered_work", "mean_torque"), 3.0),
         **dict.fromkeys(("clearance_ratio", "mean_effective_pressure", "volumetric_efficiency", "stroke"), 1.0),
     }.items():
-        one, all_of_them = (QUANTITIES[name].evaluate(each, designs).values for each in (alone(machine), machine))
+        one, all_of_them = (
+            QUANTITIES[name].evaluate(each, designs).values for each in (single_cylinder(machine), machine)
+        )
         assert all_of_them == pytest.approx(factor * one, rel=1e-10), name
 
 

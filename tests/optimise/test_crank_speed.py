@@ -14,7 +14,7 @@ from scipy.integrate import quad
 import slidercrank as sc
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.notes import notes_of
 
@@ -77,7 +77,7 @@ def test_a_profile_is_scaled_to_the_time_of_a_cycle(profile: dict[str, Any] | No
         assert turn_seconds(found) == pytest.approx(seconds, rel=1e-11), stated
         assert math.copysign(1.0, found.speed) == way
         if profile:
-            assert uneven_cycle(found, sc.Linkage(0.03, 0.1, 0.01)).period == pytest.approx(seconds, rel=1e-9)
+            assert speed_profile_cycle(found, sc.Linkage(0.03, 0.1, 0.01)).period == pytest.approx(seconds, rel=1e-9)
 
 
 def test_speeds_without_a_profile_are_the_same_to_rounding_however_they_are_stated() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.multi_cylinder import whole_curves
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
@@ -41,7 +41,7 @@ def even_engine(count: int, seed: int) -> tuple[Mechanism, Linkage]:
 def angle_of_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
     """Return the first crank angle, deg, of the greatest torque, by parabolas through samples; sign 0: of its size."""
     theta = np.linspace(0.0, TURN, 20_000, endpoint=False)
-    torque = whole_curves(machine, linkage, theta).torque
+    torque = multi_cylinder_curves(machine, linkage, theta).torque
     curve = sign * torque if sign else np.abs(torque)
     top = (curve >= np.roll(curve, 1)) & (curve > np.roll(curve, -1))
     before, at, after = (np.roll(curve, k)[top] for k in (1, 0, -1))

@@ -12,7 +12,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.objectives.tables.measured import measured_from
 from slidercrank.service.motion.play import play_of_turn
 from tests.service.api.fixed_front import API, Solved, client_of
@@ -86,7 +86,7 @@ def test_the_api_understands_a_time_and_previews_its_direction(solved: Solved) -
 
 def test_what_moves_takes_the_time_of_a_turn() -> None:
     problem, linkage = sc.problem(JOB), sc.Linkage(0.03, 0.12, 0.01)
-    period = uneven_cycle(problem.mechanism, linkage).period
+    period = speed_profile_cycle(problem.mechanism, linkage).period
     assert period == pytest.approx(0.025, rel=1e-12)
     assert play_of_turn(problem.mechanism, linkage).record["perSecond"] == pytest.approx(1.0 / period, rel=1e-12)
 

@@ -12,12 +12,12 @@ TURNS: Ways = ("counter-clockwise", "clockwise")
 
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
-_APART = re.compile(r"([ ,;()]+)")
+_SEPARATORS = re.compile(r"([ ,;()]+)")
 
 
-def between(low: str, high: str) -> str:
+def range_text(low: str, high: str) -> str:
     """Return one text for two ends of a range: numbers that differ as "200 to 400", other differences side by side."""
-    words = [_APART.split(text) for text in (low, high)]
+    words = [_SEPARATORS.split(text) for text in (low, high)]
     pairs = list(zip(*words, strict=False))
     alike = len(words[0]) == len(words[1])
     if alike and all(one == other or (_NUMBER.fullmatch(one) and _NUMBER.fullmatch(other)) for one, other in pairs):

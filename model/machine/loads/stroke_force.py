@@ -68,7 +68,7 @@ class StrokeForce(Load):
         return "throughout"
 
 
-def _along(force: float, stroke: str, over: StrokePart, *, drives: bool = False) -> Load:
+def _force_along_motion(force: float, stroke: str, over: StrokePart, *, drives: bool = False) -> Load:
     """Return a force along the motion, N, in a part of a stroke, or all of it, or of both ("motion")."""
     outward = 0.0 if stroke == "inward stroke" else force
     inward = 0.0 if stroke == "outward stroke" else -force
@@ -116,7 +116,7 @@ StrokeForce.tables = (
         "size).",
         (_SIZE, Entry("opposes", _STROKES, "what it resists", "outward stroke"), _OVER),
         {"force": "100 N", "opposes": "outward stroke"},
-        lambda force, opposes, over: _along(-force, opposes, over),
+        lambda force, opposes, over: _force_along_motion(-force, opposes, over),
     ),
     Table(
         "helps",
@@ -125,7 +125,7 @@ StrokeForce.tables = (
         "A force of constant size that helps a stroke or a part of it, or every motion.",
         (_SIZE, Entry("helps", _STROKES, "what it helps", "inward stroke"), _OVER),
         {"force": "100 N", "helps": "inward stroke"},
-        lambda force, helps, over: _along(force, helps, over, drives=True),
+        lambda force, helps, over: _force_along_motion(force, helps, over, drives=True),
     ),
     Table(
         "direction",

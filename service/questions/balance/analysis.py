@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ....model.cycle.multi_cylinder import WholeCurves, whole_curves
+from ....model.cycle.multi_cylinder import MultiCylinderCurves, multi_cylinder_curves
 from ....model.cycle.shaking import ShakingCurves, shaking_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -91,10 +91,10 @@ def _shaken(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 
-def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> ShakingCurves | WholeCurves:
+def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> ShakingCurves | MultiCylinderCurves:
     """Return the shaking of all cylinders at crank angles (n,), rad."""
     if mechanism.arrangement is not None:
-        return whole_curves(mechanism, linkage, theta)
+        return multi_cylinder_curves(mechanism, linkage, theta)
     return shaking_curves(mechanism, linkage, theta)
 
 

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.multi_cylinder import whole_breakpoints, whole_curves, whole_cycle
+from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import Member, alone, members
+from ....model.machine.members import Member, members, single_cylinder
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
@@ -64,7 +64,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
 
     Raises `InputError` for a machine without stated cylinders.
     """
-    whole = whole_cycle(mechanism, linkage)
+    whole = multi_cylinder_cycle(mechanism, linkage)
     return {
         "cylinders": [_each(member, linkage) for member in members(mechanism)],
         "peak_torque_Nm": abs(whole.peak.value),
@@ -85,8 +85,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
         "rms_shaking_moment_Nm": whole.rms_shaking_moment,
         "peak_rocking_couple_Nm": whole.couple.value,
         "peak_rocking_couple_angle_deg": _degrees(whole.couple),
-        "peak_shaking_force_of_one_N": peak(alone(mechanism), Signal.SHAKING_FORCE, linkage).value,
-        "peak_shaking_moment_of_one_Nm": peak(alone(mechanism), Signal.SHAKING_MOMENT, linkage).value,
+        "peak_shaking_force_of_one_N": peak(single_cylinder(mechanism), Signal.SHAKING_FORCE, linkage).value,
+        "peak_shaking_moment_of_one_Nm": peak(single_cylinder(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
 
 
@@ -138,8 +138,8 @@ def blocks(numbers: Cylinders) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return torque, shaking force and shaking moment of the whole over a turn, with the torque of each cylinder."""
-    theta = turn(whole_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
-    degrees, now = np.degrees(theta), whole_curves(mechanism, linkage, theta)
+    theta = turn(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
+    degrees, now = np.degrees(theta), multi_cylinder_curves(mechanism, linkage, theta)
     each = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(now.torques)]
     together = Line("together", degrees, now.torque)
     forces = [Line("along x", degrees, now.force_x), Line("along y", degrees, now.force_y, 1)]

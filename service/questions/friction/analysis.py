@@ -14,7 +14,7 @@ from ....model.cycle.locked_angles import verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import alone, is_shaft
+from ....model.machine.members import is_shaft, single_cylinder
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
@@ -74,7 +74,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     Undefined values are None: torques and energies of a linkage that locks, the efficiency if the load does no net
     work.
     """
-    whole, mechanism = is_shaft(mechanism), alone(mechanism)
+    whole, mechanism = is_shaft(mechanism), single_cylinder(mechanism)
     friction, found = mechanism.friction, verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
@@ -158,7 +158,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
 
     At angles where friction locks there is no torque and no force.
     """
-    mechanism = alone(mechanism)
+    mechanism = single_cylinder(mechanism)
     smooth = replace(mechanism, friction=Friction())
     found = verdict(mechanism, linkage)
     ends = [end for span in found.locked for end in span]

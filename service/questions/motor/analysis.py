@@ -9,9 +9,9 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ....model.cycle.crank_speed import pace
+from ....model.cycle.crank_speed import crank_speed
 from ....model.cycle.cycle import breakpoints, cycle
-from ....model.cycle.multi_cylinder import whole_curves
+from ....model.cycle.multi_cylinder import multi_cylinder_curves
 from ....model.cycle.self_locking import locking_margin
 from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
@@ -21,7 +21,7 @@ from ....model.machine.members import cylinders_of
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
-from ....model.signals.shaft_statistics import time_share
+from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.needs import SPEED
@@ -75,7 +75,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
         "mean_torque_Nm": plain(averages.mean[0]),
         "peak_power_W": plain(power.value) if moves else None,
         "peak_power_angle_deg": plain(power.degrees) if moves else None,
-        "mean_power_W": plain(time_share(mechanism) * mechanism.speed * averages.mean[0]) if moves else None,
+        "mean_power_W": plain(mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]) if moves else None,
         "greatest_reflected_inertia_kg_m2": greatest.value,
         "greatest_reflected_inertia_angle_deg": greatest.degrees,
         "least_reflected_inertia_kg_m2": least,
@@ -134,12 +134,12 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns)
     degrees = np.degrees(theta)
     several = mechanism.arrangement is not None
-    torque = (whole_curves if several else cycle)(mechanism, linkage, theta).torque
+    torque = (multi_cylinder_curves if several else cycle)(mechanism, linkage, theta).torque
     averages = average_torque(mechanism, design)
-    rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * time_share(mechanism))
+    rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * mean_speed_ratio(mechanism))
     inertia = Line("inertia", degrees, _inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
-    power = Line("power", degrees, torque * pace(mechanism, theta)[0])
+    power = Line("power", degrees, torque * crank_speed(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))
     panels = (
         over_turn("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from ....model.cycle.multi_cylinder import whole_breakpoints, whole_curves
+from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement
@@ -95,13 +95,13 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return the flow of each cylinder and of all together, of a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
     alone = _pressures(shaft)
-    theta = turn(whole_breakpoints(alone, linkage))
+    theta = turn(multi_cylinder_breakpoints(alone, linkage))
     degrees, panels = np.degrees(theta), []
     if _is_even(mechanism):
         each = _flows(shaft, linkage, theta)
         single = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(each) if len(each) > 1]
         together = Line("together", degrees, np.sum(each, axis=0))
         panels.append(over_turn("liquid flow", *single, together, kind=VOLUME_FLOW))
-    torque = whole_curves(alone, linkage, theta).torque
+    torque = multi_cylinder_curves(alone, linkage, theta).torque
     panels.append(over_turn("pressure torque", Line("", degrees, torque), kind=TORQUE))
     return Sheet("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)

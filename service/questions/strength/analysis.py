@@ -14,7 +14,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.first_greatest import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
-from ....model.strength.places import Along
+from ....model.strength.places import WholeBar
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS, NEAR
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
@@ -100,7 +100,7 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
     found: dict[str, float | None] = {}
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
-        along = (Along(LINKS[name].part),)
+        along = (WholeBar(LINKS[name].part),)
         (peak,) = stress_peaks(mechanism, along, row_of(linkage), np.array([criterion]), kept=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]

@@ -11,8 +11,8 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism, Window
 from ....model.swing.summary import SwingSummary, summarise
 from ....model.swing.swing import Swing
-from ....model.swing.swing_cycle import At, Over
-from ....model.swing.swing_request import AskedSwing, asked_swing
+from ....model.swing.swing_cycle import SwingCycle, SwingPoint
+from ....model.swing.swing_request import SwingRequest, resolve_swing
 from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
@@ -138,7 +138,7 @@ def _swing_from_inputs(
     crank_side: Side | None = None,
     **inputs: Any,
 ) -> tuple[Mechanism, Swing]:
-    return asked_swing(mechanism, swing, AskedSwing(side=crank_side, **inputs), words)
+    return resolve_swing(mechanism, swing, SwingRequest(side=crank_side, **inputs), words)
 
 
 def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
@@ -196,7 +196,7 @@ def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
 
     Left out: loads that are zero, errors without tolerances, forces where nothing acts.
     """
-    over = Over(mechanism, found.linkage, found.swing)
+    over = SwingCycle(mechanism, found.linkage, found.swing)
     entries: dict[str, Any] = {}
     for curve in (*motion_and_drive(found.swing), *sizes_of_forces()):
         least, most = over.ends_of(curve.attribute)
@@ -215,7 +215,7 @@ def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
     return entries
 
 
-def _value_and_place(key: str, at: At, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
+def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
     """Return a value and its places. stem: how the keys of these begin; the key without its unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {

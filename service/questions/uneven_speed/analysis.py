@@ -8,13 +8,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ....model.cycle.crank_speed import pace_knots
+from ....model.cycle.crank_speed import speed_knots
 from ....model.cycle.cycle import breakpoints
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
-from ....model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
+from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.sheets import DASHED, Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, Value, compared, joined, named_number, number_list
@@ -72,7 +72,7 @@ def _require(mechanism: Mechanism) -> None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
     """Return speeds, period and peaks at the profile, and the peaks at constant speed. Raises without a profile."""
     _require(mechanism)
-    found, even = (uneven_cycle(each, linkage) for each in (mechanism, replace(mechanism, speed_profile=None)))
+    found, even = (speed_profile_cycle(each, linkage) for each in (mechanism, replace(mechanism, speed_profile=None)))
     record: dict[str, Any] = {
         "least_speed_rpm": _RPM * found.least_speed.value,
         "least_speed_angle_deg": math.degrees(found.least_speed.angle),
@@ -118,10 +118,12 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     """Return speed, torque and shaking force over a turn, at the profile and at constant speed."""
     _require(mechanism)
-    knots = np.mod(pace_knots(mechanism), 2.0 * np.pi)
+    knots = np.mod(speed_knots(mechanism), 2.0 * np.pi)
     theta = turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
     degrees = np.degrees(theta)
-    now, even = (uneven_curves(each, linkage, theta) for each in (mechanism, replace(mechanism, speed_profile=None)))
+    now, even = (
+        speed_profile_curves(each, linkage, theta) for each in (mechanism, replace(mechanism, speed_profile=None))
+    )
 
     def both(title: str, kind: Kind, first: Any, second: Any) -> Panel:
         lines = Line("profile", degrees, first), Line("constant speed", degrees, second, DASHED)

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.machine.mechanism import Clearances, Tolerance, Tolerances
 from slidercrank.model.swing.errors import error_shares
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.swing_cycle import Over
+from slidercrank.model.swing.swing_cycle import SwingCycle
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from tests.model.swing.swings import random_swings
 
@@ -22,7 +22,7 @@ CURVES = ("slider_position", "slider_velocity", "drive", "crank_pin", "guide", "
 def test_extremes_of_curves_are_those_of_dense_samples_of_both_ways(friction: bool) -> None:
     share, backs = np.linspace(0.0, 1.0, 4001), set()
     for mechanism, linkage, swing in random_swings(6, seed=83, friction=friction):
-        over = Over(mechanism, linkage, swing)
+        over = SwingCycle(mechanism, linkage, swing)
         if over.first_locked() is not None:
             continue
         ways = [swing_curves(mechanism, linkage, swing, share, back=back) for back in (False, True)]

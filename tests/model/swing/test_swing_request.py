@@ -12,7 +12,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.start import Start
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing
-from slidercrank.model.swing.swing_request import AskedSwing, asked_swing
+from slidercrank.model.swing.swing_request import SwingRequest, resolve_swing
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from tests.model.swing.swings import random_swings
@@ -43,14 +43,14 @@ def test_two_places_are_the_swing_between_the_angles_that_reach_them() -> None:
     for mechanism, linkage, swing in random_swings(30, seed=91, driver="slider"):
         expected = summarise(mechanism, linkage, swing)
         ways = expected.slider_positions
-        asked = AskedSwing(
+        asked = SwingRequest(
             slider_start=ways[0], slider_end=ways[1], driver="slider", law=swing.law, duration=swing.duration
         )
         if swing.law == "table":
             continue
         matches = []
         for side in ("left", "right"):
-            machine, found = asked_swing(mechanism, None, replace(asked, side=side))
+            machine, found = resolve_swing(mechanism, None, replace(asked, side=side))
             try:
                 made = summarise(machine, linkage, found)
             except InputError:  # not on this branch with the crank pin there
@@ -70,28 +70,28 @@ def test_two_places_are_the_swing_between_the_angles_that_reach_them() -> None:
 
 def test_what_is_not_asked_stays_as_the_job_has_it() -> None:
     machine = Mechanism()
-    assert asked_swing(machine, JOB, AskedSwing()) == (machine, JOB)
-    assert asked_swing(machine, JOB, AskedSwing(end=1.0))[1] == replace(JOB, end=1.0)
-    crank = asked_swing(machine, JOB, AskedSwing(driver="crank"))[1]
+    assert resolve_swing(machine, JOB, SwingRequest()) == (machine, JOB)
+    assert resolve_swing(machine, JOB, SwingRequest(end=1.0))[1] == replace(JOB, end=1.0)
+    crank = resolve_swing(machine, JOB, SwingRequest(driver="crank"))[1]
     assert (crank.driver, crank.actuator_tolerance, crank.duration) == ("crank", 0.0, 3.0)
-    slow = asked_swing(machine, JOB, AskedSwing(law="slow"))[1]
+    slow = resolve_swing(machine, JOB, SwingRequest(law="slow"))[1]
     assert (slow.law, slow.duration, slow.driver) == ("slow", None, "slider")
-    places = asked_swing(machine, JOB, AskedSwing(slider_start=3.0, slider_end=1.0, side="right"))[1]
+    places = resolve_swing(machine, JOB, SwingRequest(slider_start=3.0, slider_end=1.0, side="right"))[1]
     assert (places.of, places.side, places.law, places.driver) == ("slider", "right", "harmonic", "slider")
     table = replace(JOB, law="table", points=((0.0, 0.0), (0.5, 0.4), (1.0, 1.0)))
-    assert asked_swing(machine, table, AskedSwing(law="table"))[1] == table
-    assert asked_swing(machine, table, AskedSwing(law="cycloidal"))[1].points == ()
-    assert asked_swing(machine, None, AskedSwing(start=0.1, end=0.4))[1] == Swing(start=0.1, end=0.4)
+    assert resolve_swing(machine, table, SwingRequest(law="table"))[1] == table
+    assert resolve_swing(machine, table, SwingRequest(law="cycloidal"))[1].points == ()
+    assert resolve_swing(machine, None, SwingRequest(start=0.1, end=0.4))[1] == Swing(start=0.1, end=0.4)
 
 
 def test_a_start_takes_the_end_along_where_the_job_states_the_angle() -> None:
     follows = replace(JOB, follows=True)
     own = replace(Mechanism(), start=Start(angle=0.5))
-    machine, found = asked_swing(own, follows, AskedSwing())
+    machine, found = resolve_swing(own, follows, SwingRequest())
     assert (found.start, found.end, machine.start) == (0.5, 2.0, Start())
-    assert asked_swing(own, follows, AskedSwing(start=0.6))[1].end == pytest.approx(2.1)
-    assert asked_swing(own, follows, AskedSwing(start=0.6, end=1.0))[1].end == 1.0
-    assert asked_swing(own, JOB, AskedSwing(start=0.6))[1].end == JOB.end
+    assert resolve_swing(own, follows, SwingRequest(start=0.6))[1].end == pytest.approx(2.1)
+    assert resolve_swing(own, follows, SwingRequest(start=0.6, end=1.0))[1].end == 1.0
+    assert resolve_swing(own, JOB, SwingRequest(start=0.6))[1].end == JOB.end
 
 
 def test_the_swing_of_a_problem_is_that_of_its_quantities() -> None:
@@ -113,14 +113,14 @@ def test_the_swing_of_a_problem_is_that_of_its_quantities() -> None:
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (AskedSwing(start=0.1), "got no end; give both, or a job"),
-        (AskedSwing(slider_end=0.1), "from one slider position to another; got no slider_start"),
-        (AskedSwing(start=0.1, slider_end=0.3), "got start, slider_end; give the two of one"),
-        (AskedSwing(), "got no start"),
-        (AskedSwing(start=0.1, end=0.4, law="table"), "got law table; give its points in"),
-        (AskedSwing(slider_start=0.1, slider_end=0.1), "needs two different slider positions"),
+        (SwingRequest(start=0.1), "got no end; give both, or a job"),
+        (SwingRequest(slider_end=0.1), "from one slider position to another; got no slider_start"),
+        (SwingRequest(start=0.1, slider_end=0.3), "got start, slider_end; give the two of one"),
+        (SwingRequest(), "got no start"),
+        (SwingRequest(start=0.1, end=0.4, law="table"), "got law table; give its points in"),
+        (SwingRequest(slider_start=0.1, slider_end=0.1), "needs two different slider positions"),
     ],
 )
-def test_what_is_missing_is_a_sentence(asked: AskedSwing, words: str) -> None:
+def test_what_is_missing_is_a_sentence(asked: SwingRequest, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        asked_swing(Mechanism(), None, asked)
+        resolve_swing(Mechanism(), None, asked)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.model.cycle.crank_speed import pace
+from slidercrank.model.cycle.crank_speed import crank_speed
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.multi_cylinder import whole_curves, whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -24,7 +24,7 @@ from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.equation import CrankEquation
-from slidercrank.model.transient.speed_profile_cycle import uneven_curves, uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from slidercrank.model.transient.steady import steady_running
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_friction, random_machine
 from tests.model.test_cylinder import random_case as compressor_case
@@ -55,7 +55,7 @@ def test_over_a_turn_the_torque_does_the_work_of_the_loads(seed: int) -> None:
     machine, linkage = random_uneven(seed)
     still = replace(machine, loads=tuple(load for load in machine.loads if not load.speed_power))
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
-    found, wanted = uneven_cycle(still, linkage), average_torque(still, design).mean[0]
+    found, wanted = speed_profile_cycle(still, linkage), average_torque(still, design).mean[0]
     assert found.mean_torque == pytest.approx(wanted, rel=1e-10, abs=1e-10 * found.rms_torque)
     assert found.mean_power == pytest.approx(still.direction * TURN * found.mean_torque / found.period, rel=1e-12)
 
@@ -68,12 +68,12 @@ def test_power_in_is_energy_gained_and_work_done_at_every_angle(seed: int) -> No
     theta = np.random.default_rng(seed).uniform(0.0, TURN, 40)
 
     def energy(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-        speed, _ = pace(machine, angle)
+        speed, _ = crank_speed(machine, angle)
         return 0.5 * equation.inertia(angle) * speed**2 + equation.height_energy(angle)
 
     h = 1e-4
     slope = (8.0 * (energy(theta + h) - energy(theta - h)) - energy(theta + 2 * h) + energy(theta - 2 * h)) / (12.0 * h)
-    found = uneven_curves(machine, linkage, theta)
+    found = speed_profile_curves(machine, linkage, theta)
     rate = np.asarray(linkage.at(theta, speed=1.0).slider_velocity) * linkage.sign
     wanted = slope - found.curves.load * rate
     assert np.abs(found.curves.torque - wanted).max() <= 2e-8 * np.abs(wanted).max()
@@ -87,36 +87,36 @@ def test_viscous_work_is_its_integral() -> None:
     linkage = Linkage(0.05, 0.2, 0.03)
     theta = np.linspace(0.0, TURN, 400, endpoint=False)
     rate = np.asarray(linkage.at(theta, speed=1.0).slider_velocity)
-    wanted = 30.0 * np.mean(rate**2 * np.abs(pace(machine, theta)[0])) * TURN
-    found = uneven_cycle(machine, linkage)
+    wanted = 30.0 * np.mean(rate**2 * np.abs(crank_speed(machine, theta)[0])) * TURN
+    found = speed_profile_cycle(machine, linkage)
     assert found.work == pytest.approx(wanted, rel=1e-12)
     # 1 / (20 (1 + 0.1 sin + 0.2 sin 2)) likewise.
-    assert found.period == pytest.approx(np.mean(1.0 / np.abs(pace(machine, theta)[0])) * TURN, rel=1e-12)
+    assert found.period == pytest.approx(np.mean(1.0 / np.abs(crank_speed(machine, theta)[0])) * TURN, rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_peaks_stand_above_a_dense_sweep(seed: int) -> None:
     machine, linkage = random_uneven(seed, friction=seed % 2 == 0)
-    found = uneven_cycle(machine, linkage)
-    swept = uneven_curves(machine, linkage, np.linspace(0.0, TURN, 20_000))
+    found = speed_profile_cycle(machine, linkage)
+    swept = speed_profile_curves(machine, linkage, np.linspace(0.0, TURN, 20_000))
     for name, values in swept.others.items():
         size = np.abs(values).max()
         assert found.peaks[name].value >= size * (1.0 - 1e-9), name
-        near = uneven_curves(machine, linkage, found.peaks[name].angle + np.array([-1e-9, 1e-9])).others[name]
+        near = speed_profile_curves(machine, linkage, found.peaks[name].angle + np.array([-1e-9, 1e-9])).others[name]
         assert np.abs(np.abs(near) / found.peaks[name].value - 1.0).min() < 1e-5, name
     assert found.greatest_speed.value == pytest.approx(swept.speed.max(), rel=1e-6)
 
 
 def test_without_a_profile_it_is_the_cycle() -> None:
     machine, design = replace(SMOOTH, acceleration=0.0), np.array([[0.05, 0.2, 0.03]])
-    found = uneven_cycle(machine, Linkage(0.05, 0.2, 0.03))
+    found = speed_profile_cycle(machine, Linkage(0.05, 0.2, 0.03))
     for name, kind in (("torque", Signal.TORQUE), ("shaking_force", Signal.SHAKING_FORCE), ("power", Signal.POWER)):
         assert found.peaks[name].value == pytest.approx(
             find_peaks(machine, kind, design, kept=1).values[0, 0], rel=1e-10
         )
     assert found.rms_torque == pytest.approx(average_torque(machine, design).rms[0], rel=1e-12)
     theta = np.linspace(0.0, TURN, 50)
-    same = uneven_curves(machine, Linkage(0.05, 0.2, 0.03), theta).curves.torque
+    same = speed_profile_curves(machine, Linkage(0.05, 0.2, 0.03), theta).curves.torque
     assert (same == cycle(machine, Linkage(0.05, 0.2, 0.03), theta).torque).all()
 
 
@@ -131,14 +131,14 @@ def test_steady_running_under_a_motor_is_replayed() -> None:
     angle = running.crank_angle[kept]
     profile = SpeedTable(angles=tuple(angle.tolist()), speeds=tuple(running.speed[kept].tolist()))
     again = replace(machine, speed=profile.mean, speed_profile=profile)
-    found = uneven_curves(again, linkage, angle)
+    found = speed_profile_curves(again, linkage, angle)
     size = np.abs(running.torque).max()
     assert np.abs(found.curves.torque - running.torque[kept]).max() < 1e-5 * size
     assert (
         np.abs(found.curves.torque + drive.inertia * found.acceleration - running.motor_torque[kept]).max()
         < 1e-5 * size
     )
-    numbers = uneven_cycle(again, linkage)
+    numbers = speed_profile_cycle(again, linkage)
     assert numbers.fluctuation == pytest.approx(running.fluctuation, rel=1e-6)
     assert numbers.period == pytest.approx(running.period, rel=1e-8)
     assert numbers.work == pytest.approx(running.work, rel=1e-6)
@@ -149,7 +149,7 @@ def test_several_cylinders_share_the_speed_of_the_shaft() -> None:
     arrangement = Arrangement(phases=(0.3, 2.0), banks=(0.0, 0.7))
     both = replace(machine, arrangement=arrangement)
     theta = np.linspace(0.1, 6.0, 20)
-    speed, rise = pace(machine, theta)
+    speed, rise = crank_speed(machine, theta)
     torque, moment = np.zeros(20), np.zeros(20)
     for k in range(2):
         c = np.exp(-1j * arrangement.bank(k)) * complex(*machine.gravity)
@@ -157,10 +157,10 @@ def test_several_cylinders_share_the_speed_of_the_shaft() -> None:
         at = theta + arrangement.lead(k)
         torque += cycle(alone, linkage, at, speed=speed, acceleration=rise).torque
         moment += shaking_curves(alone, linkage, at, speed=speed, acceleration=rise).moment
-    found = whole_curves(both, linkage, theta)
+    found = multi_cylinder_curves(both, linkage, theta)
     assert found.torque == pytest.approx(torque, rel=1e-12)
     assert found.moment == pytest.approx(moment, rel=1e-12)
-    assert whole_cycle(both, linkage).greatest.value >= torque.max()
+    assert multi_cylinder_cycle(both, linkage).greatest.value >= torque.max()
 
 
 def test_impossible_profiles_are_refused() -> None:

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.model.cycle.efficiency import energies
-from slidercrank.model.cycle.multi_cylinder import whole_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -22,7 +22,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient import turn
 from slidercrank.model.transient.flywheel import design_flywheel
-from slidercrank.model.transient.speed_profile_cycle import uneven_cycle
+from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.model.transient.steady import Runner
 from tests.model.cases import Array
 
@@ -104,8 +104,8 @@ def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> N
     before = time.process_time()
     found = energies(machine, LINKAGE)
     mean = average_torque(machine, DESIGN, gradients=True)
-    several = whole_cycle(replace(machine, arrangement=Arrangement(phases=(0.0, math.pi))), LINKAGE)
-    uneven = uneven_cycle(machine, LINKAGE)
+    several = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.0, math.pi))), LINKAGE)
+    uneven = speed_profile_cycle(machine, LINKAGE)
     # They take a quarter of a second; halving panels down to rounding takes minutes or never ends.
     assert time.process_time() - before < 10.0
     assert found.useful == pytest.approx(WORK, rel=1e-9)
